@@ -1,0 +1,54 @@
+#pragma once
+// Camera (a sensor): from film points to rays and back. Film coordinates are pixels: x to the right, y down, (0, 0) the
+// upper left corner of the picture.
+
+#include <optional>
+
+#include "etendue/component.h"
+#include "etendue/description.h"
+#include "etendue/ray.h"
+#include "etendue/transform.h"
+
+namespace etendue {
+
+/// A point on the lens seen from a point of the scene.
+struct LensSample {
+  Point3 lens;          ///< where on the lens
+  Vector3 direction;    ///< unit, from the scene point to the lens
+  float distance = 0;   ///< [m]
+  float density = 0;    ///< [1/sr] at the scene point; a pinhole: distance^2 (a delta in area, converted)
+  float importance = 0; ///< W_e [1/(m^2 sr)] of the connection, normalised as `Camera::importance`
+  Point2 film;          ///< where on the film light from the point arrives
+};
+
+/// Densities with which a camera ray is drawn when film points are uniform over the whole film.
+struct CameraDensity {
+  float position = 0;   ///< [1/m^2] on the lens; 1 for a pinhole
+  float direction = 0;  ///< [1/sr]
+};
+
+class Camera : public Component {
+ public:
+  using Interface = Camera;
+  using Parent = Component;
+  static void describe(Description<Camera>&);
+
+  float shutter_open = 0, shutter_close = 0;  ///< [s]
+
+  /// Told by the Job before rendering: the size of the whole picture in pixels.
+  virtual void set_film(int width, int height) = 0;
+  /// The ray that brings light to a film point through a lens point given by `lens` (two uniform numbers). Its weight
+  /// is 1: a pixel's value is the mean radiance of its rays. The ray's cone covers a pixel.
+  virtual Ray ray(Point2 film, Point2 lens, float time) const = 0;
+  /// The film point a ray from the scene ends at, if it meets lens and film; the ray is given as one the camera could
+  /// have sent (from the lens outward).
+  virtual std::optional<Point2> film_point(const Ray&) const = 0;
+  /// A lens point seen from a point of the scene; empty when light from there cannot reach the film.
+  virtual std::optional<LensSample> sample_lens(const Point3& from, float time, Point2 u) const = 0;
+  /// Importance W_e of a ray the camera could have sent [1/(m^2 sr)]; 0 outside the film. Its integral over lens area
+  /// and projected solid angle is 1 for the whole film (per steradian alone for a pinhole, per area for parallel rays).
+  virtual float importance(const Ray&) const = 0;
+  virtual CameraDensity density(const Ray&) const = 0;
+};
+
+}  // namespace etendue

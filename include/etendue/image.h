@@ -1,0 +1,26 @@
+#pragma once
+// Image: plain pixels with named channels. What is developed from an ImageBuffer, toned, written and compared.
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace etendue {
+
+/// Rows from top to bottom, channels interleaved: values[(y * width + x) * channels.size() + c].
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;  ///< "X" "Y" "Z", "R" "G" "B", or "layer.name" as in OpenEXR
+  std::vector<double> values;
+  /// What is known of the picture: "color_space", "file_hash", "seed", "samples", "version", …
+  std::map<std::string, std::string> metadata;
+
+  Image() = default;
+  Image(int w, int h, std::vector<std::string> names)
+      : width(w), height(h), channels(std::move(names)), values(size_t(w) * size_t(h) * channels.size()) {}
+  double& at(int x, int y, size_t c) { return values[(size_t(y) * size_t(width) + size_t(x)) * channels.size() + c]; }
+  double at(int x, int y, size_t c) const { return values[(size_t(y) * size_t(width) + size_t(x)) * channels.size() + c]; }
+};
+
+}  // namespace etendue

@@ -1,0 +1,135 @@
+#pragma once
+// ImageBuffer (a film): collects samples as CIE XYZ in double precision.
+
+#include <array>
+#include <span>
+
+#include "etendue/component.h"
+#include "etendue/description.h"
+#include "etendue/filter.h"
+#include "etendue/image.h"
+#include "etendue/spectrum.h"
+#include "etendue/vector.h"
+
+namespace etendue {
+
+/// Auxiliary layers a renderer may fill at the first surface a camera path meets.
+struct Features {
+  Vector3 albedo;       ///< linear sRGB
+  Vector3 normal;       ///< unit, world
+  float depth = 0;      ///< distance from the camera [m]; 0: nothing was met
+  int object = 0;       ///< 1 + index of the object in the scene; 0: nothing
+};
+
+/// Pixel rectangle [x0, x1) x [y0, y1).
+struct PixelArea {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+  bool operator==(const PixelArea&) const = default;
+};
+
+/// A sample that was not a finite non-negative spectrum; it counts as black.
+struct BadSample {
+  int x = 0, y = 0;
+  std::uint32_t sample = 0;
+  enum class Kind : std::uint8_t { not_a_number, infinite, negative } kind = Kind::not_a_number;
+};
+
+class ImageBuffer;
+
+/// Samples of a part of the picture, collected by one thread without locks and merged into the buffer in a fixed order,
+/// so that results do not depend on threads.
+class ImageTile {
+ public:
+  /// Prepares for samples that fall into an area; keeps its memory.
+  void begin(const ImageBuffer&, const PixelArea&);
+
+  /// Adds a sample at a film point (pixels; centres at half-integers), in the pixel (px, py) it belongs to. Bad values
+  /// are noted and count as zero.
+  void contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, float weight = 1);
+  /// Adds light that did not come through a pixel of its own (light tracing), to be divided by the number of paths:
+  /// `ImageBuffer::splat_scale`. May lie anywhere in the picture.
+  void splat(Point2 film, const Spectrum&, const Wavelengths&);
+  /// The auxiliary values of a sample, when the buffer wants any.
+  void features(int px, int py, const Features&);
+  /// Counts the samples without light as well: call once for each sample path begun.
+  void count_path() { ++paths_; }
+
+ private:
+  friend class ImageBuffer;
+  struct Splat {
+    Point2 film;
+    Xyz value;
+  };
+  const ImageBuffer* buffer_ = nullptr;
+  PixelArea area_, extent_;  // the area and the area widened by the filter
+  std::vector<double> sums_;      // X Y Z weight per pixel of the extent
+  std::vector<double> moments_;   // count, sum Y, sum Y^2 of the samples in each pixel of the area
+  std::vector<double> features_;  // 9 per pixel of the area
+  std::vector<Splat> splats_;
+  std::vector<BadSample> bad_;
+  std::uint64_t bad_count_ = 0, paths_ = 0;
+};
+
+class ImageBuffer : public Component {
+ public:
+  using Interface = ImageBuffer;
+  using Parent = Component;
+  static void describe(Description<ImageBuffer>&);
+  ImageBuffer();
+  ~ImageBuffer() override;
+
+  int width = 512, height = 512;
+  Ref<Filter> filter;
+  std::vector<int> crop;             ///< x0, y0, x1, y1 [pixels]; empty: all
+  std::vector<std::string> layers;   ///< of "albedo", "normal", "depth", "object", "variance", "samples"
+
+  void prepare() override;
+
+  /// Empties the buffer for a new render.
+  void clear();
+  /// The pixels to be rendered.
+  const PixelArea& area() const { return area_; }
+  bool wants_features() const { return wants_features_; }
+  bool wants(const std::string& layer) const;
+
+  /// Adds a tile; the order of calls is part of the result.
+  void merge(const ImageTile&);
+  /// What splats are multiplied by when developed: number of pixels over number of light paths.
+  void set_splat_scale(double scale) { splat_scale_ = scale; }
+
+  /// The picture as X Y Z, with the wanted layers as further channels.
+  Image develop() const;
+  /// Mean over pixels of the standard error of the mean of Y, relative to (Y + 1e-3 of the picture's mean): the measure
+  /// for stopping at an error. Infinite before two samples a pixel.
+  double relative_error() const;
+  /// Samples taken so far, bad ones included.
+  std::uint64_t samples() const { return samples_; }
+  std::uint64_t bad_samples() const { return bad_count_; }
+  /// The first bad samples, at most 32.
+  const std::vector<BadSample>& first_bad_samples() const { return bad_; }
+
+  /// All state, for checkpoints: the same bytes restore the same buffer. `load` throws Error when they do not fit.
+  std::vector<std::byte> save_state() const;
+  void load_state(std::span<const std::byte>);
+
+ private:
+  friend class ImageTile;
+  size_t index(int x, int y) const { return size_t(y - area_.y0) * size_t(area_.width()) + size_t(x - area_.x0); }
+
+  PixelArea area_;
+  bool wants_features_ = false;
+  std::vector<double> sums_, moments_, features_, splats_;
+  double splat_scale_ = 1;
+  std::uint64_t samples_ = 0, bad_count_ = 0;
+  std::vector<BadSample> bad_;
+  // the filter tabulated over one quadrant, weight at ((i + 0.5) / table_size * radius)
+  static constexpr int table_size = 64;
+  std::vector<float> filter_table_;
+  float filter_radius_ = 0.5f;
+  bool box_ = false;  // radius 0.5, constant: each sample counts for its own pixel alone
+};
+
+}  // namespace etendue

@@ -1,0 +1,85 @@
+#pragma once
+// Job: holds all parts of a render and runs them. User interfaces talk to it alone.
+
+#include <atomic>
+#include <functional>
+#include <optional>
+
+#include "etendue/camera.h"
+#include "etendue/image_buffer.h"
+#include "etendue/output.h"
+#include "etendue/renderer.h"
+#include "etendue/scene.h"
+#include "etendue/tone_map.h"
+#include "etendue/wavelength_sampler.h"
+
+namespace etendue {
+
+/// How far a render is.
+struct Progress {
+  std::uint32_t samples = 0, samples_wanted = 0;  ///< per pixel
+  double fraction = 0;           ///< of the work, by whichever rule will stop it first
+  double seconds = 0;            ///< since the first pass began
+  double seconds_left = 0;       ///< estimated; negative: unknown
+  double samples_per_second = 0; ///< over the whole picture
+  double error = 0;              ///< relative, see ImageBuffer::relative_error; only when asked for
+  bool finished = false;
+};
+
+/// Why a render ended.
+enum class Ended : std::uint8_t { samples, time, error, interrupted, aborted };
+
+class Job final : public Component {
+ public:
+  using Interface = Job;
+  using Parent = Component;
+  static void describe(Description<Job>&);
+  Job();
+  ~Job() override;
+
+  Ref<Renderer> renderer;
+  Ref<Camera> camera;
+  Ref<Scene> scene;
+  Ref<ImageBuffer> image;
+  Ref<WavelengthSampler> wavelengths;
+  Ref<ToneMap> tone_map;
+  std::vector<Ref<Output>> outputs;
+  std::uint64_t seed = 0;
+  double time_limit = 0;   ///< [s]; 0: none
+  double error_limit = 0;  ///< relative standard error; 0: none
+
+  // Not described: how this process runs the job.
+  int threads = 0;  ///< 0: all cores
+  std::function<void(const Progress&)> on_progress;
+  double progress_interval = 0.25;  ///< [s]
+
+  void prepare() override;
+
+  /// Prepares everything and renders until a rule says stop. The picture depends on the description and the seed alone.
+  Ended render();
+  /// Asks a running render to stop: at the end of the pass (`finish`), or now, discarding the pass (`abort`). Safe in
+  /// signal handlers.
+  void finish() { stop_.store(1); }
+  void abort() { stop_.store(2); }
+
+  /// The picture so far, with metadata.
+  Image picture() const;
+  /// Writes all outputs; the file name of one without a name comes from `default_stem`. Returns the paths written.
+  std::vector<std::string> write_outputs(const std::string& default_stem) const;
+
+  /// Replays one sample alone; returns its film point.
+  Point2 replay(int x, int y, std::uint32_t sample, PathRecord&);
+
+  /// Metadata that pictures carry, besides what the Job knows itself ("file_hash", …).
+  std::map<std::string, std::string> metadata;
+
+ private:
+  RenderContext context() const;
+
+  std::atomic<int> stop_{0};
+  std::uint32_t samples_done_ = 0;
+  double seconds_ = 0;
+  bool prepared_ = false;
+};
+
+}  // namespace etendue

@@ -1,0 +1,79 @@
+#pragma once
+// Scalars: constants and the few functions that <cmath> lacks.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace etendue {
+
+inline constexpr float pi = 3.14159265358979323846f;
+inline constexpr float inverse_pi = 0.31830988618379067154f;
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// The largest float below 1: random numbers are clamped to it.
+inline constexpr float one_minus_epsilon = 0x1.fffffep-1f;
+
+constexpr float square(float x) {
+  return x * x;
+}
+
+constexpr float lerp(float t, float a, float b) {
+  return (1 - t) * a + t * b;
+}
+
+constexpr float clamp(float x, float low, float high) {
+  return x < low ? low : (x > high ? high : x);
+}
+
+/// sqrt(max(x, 0)): for quantities that are negative only by rounding.
+inline float safe_sqrt(float x) {
+  return std::sqrt(std::max(x, 0.0f));
+}
+
+inline float safe_acos(float x) {
+  return std::acos(clamp(x, -1, 1));
+}
+
+inline float safe_asin(float x) {
+  return std::asin(clamp(x, -1, 1));
+}
+
+constexpr float radians(float degrees) {
+  return degrees * (pi / 180);
+}
+
+constexpr float degrees(float radians) {
+  return radians * (180 / pi);
+}
+
+/// Bound of the relative error after n floating-point operations (Higham 2002, section 3.1).
+constexpr float rounding_bound(int n) {
+  constexpr float half_epsilon = std::numeric_limits<float>::epsilon() / 2;
+  return (float(n) * half_epsilon) / (1 - float(n) * half_epsilon);
+}
+
+/// a*b - c*d without cancellation (Kahan's algorithm with fused multiply-add).
+inline float difference_of_products(float a, float b, float c, float d) {
+  const float cd = c * d;
+  return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+/// A hash of 64 bits to 64 bits (the finaliser of splitmix64, Steele et al. 2014).
+constexpr std::uint64_t mix_bits(std::uint64_t v) {
+  v ^= v >> 30;
+  v *= 0xbf58476d1ce4e5b9ull;
+  v ^= v >> 27;
+  v *= 0x94d049bb133111ebull;
+  v ^= v >> 31;
+  return v;
+}
+
+/// 32 random bits as a float in [0, 1).
+constexpr float to_unit_float(std::uint32_t bits) {
+  return float(bits >> 8) * 0x1p-24f;
+}
+
+}  // namespace etendue

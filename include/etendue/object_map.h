@@ -1,0 +1,31 @@
+#pragma once
+// ObjectMap (a texture): a scalar or a colour at a surface point.
+
+#include "etendue/component.h"
+#include "etendue/description.h"
+#include "etendue/ray.h"
+#include "etendue/spectral_function.h"
+
+namespace etendue {
+
+class ObjectMap : public Component {
+ public:
+  using Interface = ObjectMap;
+  using Parent = Component;
+  static void describe(Description<ObjectMap>&);
+
+  /// The colour at the point, at the path's wavelengths. Who asks says what for: a map given in RGB becomes a
+  /// spectrum accordingly. As a reflectance it lies in [0, 1].
+  virtual Spectrum color(const SurfacePoint&, const Wavelengths&, ColorUse) const = 0;
+  /// A single number at the point (a roughness, a weight): of a colour, its mean over the channels or wavelengths.
+  virtual float scalar(const SurfacePoint&) const = 0;
+  /// The map's only colour when it is the same everywhere, else null: for what is computed once, before rendering.
+  virtual Color constant() const { return nullptr; }
+
+  Spectrum reflectance(const SurfacePoint& p, const Wavelengths& w) const { return color(p, w, ColorUse::reflectance); }
+};
+
+/// A ConstantMap: how a class states its default.
+Ref<ObjectMap> constant(float value);
+
+}  // namespace etendue

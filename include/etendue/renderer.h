@@ -1,0 +1,85 @@
+#pragma once
+// Renderer (an integrator): an algorithm. It has no bookkeeping: the Job counts, shows progress, saves and stops.
+
+#include "etendue/arena.h"
+#include "etendue/camera.h"
+#include "etendue/component.h"
+#include "etendue/description.h"
+#include "etendue/image_buffer.h"
+#include "etendue/light_sampler.h"
+#include "etendue/path_record.h"
+#include "etendue/sampler.h"
+#include "etendue/scene.h"
+#include "etendue/wavelength_sampler.h"
+
+namespace etendue {
+
+/// What a render works on. All of it is prepared and does not change while a pass runs.
+struct RenderContext {
+  const Scene& scene;
+  const Camera& camera;
+  ImageBuffer& image;
+  const WavelengthSampler& wavelengths;
+  std::uint64_t seed = 0;
+};
+
+/// What one sample of a camera-path renderer has at hand.
+struct SampleContext {
+  Wavelengths& wavelengths;   ///< may lose its secondary ones along the path
+  SampleStream& random;
+  Arena& arena;               ///< emptied after the sample
+  Features* features = nullptr;   ///< to be filled at the first surface when not null
+  PathRecord* record = nullptr;   ///< to be filled when not null: someone replays this sample
+};
+
+/// A range of samples per pixel, [begin, end), and the means to run work over all cores.
+class Pass {
+ public:
+  virtual ~Pass() = default;
+  std::uint32_t begin = 0, end = 1;
+
+  /// Runs `work(item, tile, arena)` for items 0 … count-1 on all threads and merges the tiles in the order of items.
+  /// Returns early (with some items left out) when the render is cancelled: the pass is then discarded.
+  using Work = void (*)(void* self, std::uint64_t item, ImageTile&, Arena&);
+  virtual void run(std::uint64_t count, Work work, void* self) = 0;
+
+  template <class F>
+  void run(std::uint64_t count, F&& f) {
+    run(count, [](void* self, std::uint64_t item, ImageTile& tile, Arena& arena) { (*static_cast<std::remove_reference_t<F>*>(self))(item, tile, arena); }, &f);
+  }
+};
+
+class Renderer : public Component {
+ public:
+  using Interface = Renderer;
+  using Parent = Component;
+  static void describe(Description<Renderer>&);
+  Renderer();
+
+  int samples = 64;  ///< per pixel
+  Ref<Sampler> sampler;
+  Ref<LightSampler> light_sampler;
+
+  /// Called once before the first pass of a render.
+  virtual void begin(const RenderContext&);
+  /// Runs one pass. By default camera paths: for each pixel and sample a ray, `radiance` along it, one contribution.
+  virtual void pass(const RenderContext&, Pass&) const;
+  /// Radiance [W m^-2 sr^-1 nm^-1] that arrives along a ray, one sample of it.
+  virtual Spectrum radiance(const RenderContext&, const Ray&, SampleContext&) const;
+
+  /// One sample of the default pass, as it is in the picture: chooses wavelengths, film point, lens point and time, asks
+  /// `radiance`, and says where it fell on the film.
+  struct CameraSample {
+    Point2 film;
+    Spectrum value;
+    Wavelengths wavelengths;
+  };
+  CameraSample camera_sample(const RenderContext&, int x, int y, std::uint32_t sample, Arena&, Features* = nullptr, PathRecord* = nullptr) const;
+
+  /// Whether expectations are exact for any number of samples, or only in the limit.
+  virtual bool unbiased() const { return true; }
+  /// What it cannot render, in words for the user; empty: nothing is left out.
+  virtual std::string limits() const { return {}; }
+};
+
+}  // namespace etendue

@@ -1,0 +1,66 @@
+#pragma once
+// Scene (an accelerator): finds what rays hit. Is itself a SceneObject, so scenes nest.
+
+#include <span>
+#include <vector>
+
+#include "etendue/scene_object.h"
+
+namespace etendue {
+
+class Scene : public SceneObject {
+ public:
+  using Interface = Scene;
+  using Parent = SceneObject;
+  static void describe(Description<Scene>&);
+
+  std::vector<Ref<SceneObject>> objects;
+
+  /// The nearest hit with t in (0, ray.maximum).
+  virtual bool nearest(const Ray&, Hit&) const = 0;
+  /// Whether anything lies on the ray.
+  virtual bool any(const Ray&) const = 0;
+
+  /// The surface point of a hit found by `nearest`, through all the nested scenes it lies in.
+  void locate(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
+    if (hit.depth == 0) [[likely]]
+      hit.object->surface_point(ray, hit, point);
+    else
+      locate_nested(ray, hit, point);
+    point.footprint = ray.width + ray.spread * hit.distance;
+    point.footprint_cosine = std::abs(dot(point.normal, ray.direction));
+  }
+
+  /// Objects that emit, those at infinity included.
+  std::span<const SceneObject* const> luminaires() const { return luminaires_; }
+  /// Objects at infinity, seen by rays that hit nothing.
+  std::span<const SceneObject* const> infinite_luminaires() const { return infinite_; }
+  /// A sphere around all finite objects.
+  Point3 centre() const { return bounds_.centre(); }
+  float radius() const { return bounds_.empty() ? 1.0f : length(bounds_.diagonal()) / 2; }
+  /// Whether any surface lets paths into objects, so that media and indices must be tracked.
+  bool has_interiors() const { return has_interiors_; }
+
+  // As an object in another scene: transforms the ray and asks itself.
+  void prepare() override;
+  Bounds3 bounds() const override;
+  bool intersect(const Ray&, Hit&) const override;
+  bool occludes(const Ray&) const override;
+  void surface_point(const Ray&, const Hit&, SurfacePoint&) const override;
+  void tangents(SurfacePoint&) const override;
+  float area(float time) const override;
+  SurfaceSample sample_area(Point2 u, float time) const override;
+
+ protected:
+  /// Builds the structure over finite objects; called by prepare.
+  virtual void build(std::span<const SceneObject* const> finite) = 0;
+
+ private:
+  void locate_nested(const Ray&, const Hit&, SurfacePoint&) const;
+
+  Bounds3 bounds_;  // of the objects, in the scene's own coordinates
+  std::vector<const SceneObject*> luminaires_, infinite_;
+  bool has_interiors_ = false;
+};
+
+}  // namespace etendue

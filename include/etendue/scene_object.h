@@ -1,0 +1,88 @@
+#pragma once
+// SceneObject (a shape): where surfaces are, and how to choose points on them.
+
+#include <optional>
+#include <span>
+
+#include "etendue/component.h"
+#include "etendue/description.h"
+#include "etendue/emission_shader.h"
+#include "etendue/ray.h"
+#include "etendue/transform.h"
+#include "etendue/volume_shader.h"
+
+namespace etendue {
+
+class Shader;
+
+/// A point chosen on an object.
+struct SurfaceSample {
+  SurfacePoint point;
+  float density = 0;  ///< per area [1/m^2] from sample_area; per solid angle [1/sr] from sample_visible; 0: nothing was found
+  /// A luminaire without extent (a point light, a distant light): `density` is then a probability and no ray meets it.
+  bool delta = false;
+  /// The point is infinitely far along `direction` from where it was asked for.
+  bool infinite = false;
+  Vector3 direction;  ///< unit, from the asking point; only from sample_visible
+  float distance = 0;
+};
+
+/// Triangles in the coordinates of the containing scene, for scenes that traverse them directly.
+struct TriangleView {
+  std::span<const Point3> positions;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+};
+
+class SceneObject : public Component {
+ public:
+  using Interface = SceneObject;
+  using Parent = Component;
+  static void describe(Description<SceneObject>&);
+
+  AnimatedTransform transform;   ///< from the object's own coordinates to those of the scene it is in
+  Ref<Shader> shader;            ///< null: black
+  Ref<EmissionShader> emission;  ///< null: no luminaire
+  Ref<VolumeShader> interior;    ///< null: vacuum inside
+  Sides sides = Sides::both;     ///< which sides scatter light; the other absorbs it
+  int priority = 0;              ///< where objects overlap, the one of highest priority fills the space
+
+  bool luminaire() const { return bool(emission); }
+
+  /// Bounds in the coordinates of the containing scene, over the whole time the shutter is open.
+  virtual Bounds3 bounds() const = 0;
+  /// The nearest intersection with t in (0, ray.maximum). On a hit fills `hit` (all of it) and returns true.
+  virtual bool intersect(const Ray&, Hit&) const = 0;
+  /// Whether anything lies on the ray.
+  virtual bool occludes(const Ray& ray) const {
+    Hit hit;
+    return intersect(ray, hit);
+  }
+  /// All that is known of the surface where a hit was found by a ray, tangents excepted.
+  virtual void surface_point(const Ray&, const Hit&, SurfacePoint&) const = 0;
+  /// Fills dpdu and dpdv of a point on this object.
+  virtual void tangents(SurfacePoint&) const = 0;
+
+  /// World area [m^2], at the given time.
+  virtual float area(float time = 0) const = 0;
+  /// A point by area, with its density [1/m^2].
+  virtual SurfaceSample sample_area(Point2 u, float time) const = 0;
+  /// The density [1/m^2] with which sample_area gives a point.
+  virtual float area_density(const SurfacePoint& p) const { return 1 / area(p.time); }
+  /// A point that may be seen from `from` (only this object is considered), with its density [1/sr] there. By default
+  /// by area, converted: p_omega = p_area * distance^2 / |cos|.
+  virtual SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const;
+  /// The density [1/sr] with which sample_visible gives a point, seen from `from` in `direction` (unit).
+  virtual float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const;
+
+  /// Encloses a volume: has an inside and an outside.
+  virtual bool closed() const { return false; }
+  /// Lies at infinity: never intersected, seen by rays that leave the scene; has no bounds.
+  virtual bool infinite() const { return false; }
+  /// The object as triangles, when that is what it is and it does not move.
+  virtual std::optional<TriangleView> triangles() const { return std::nullopt; }
+
+  /// Place among the luminaires of the scene the renderer sees; -1: none. Set by Scene::prepare.
+  int luminaire_index = -1;
+};
+
+}  // namespace etendue

@@ -1,0 +1,132 @@
+#pragma once
+// Shader (a material) and Scatter (a BSDF at a point). A shader reads its maps once for a point and wavelengths and
+// returns a Scatter, which answers all questions about scattering there.
+
+#include <optional>
+
+#include "etendue/arena.h"
+#include "etendue/component.h"
+#include "etendue/description.h"
+#include "etendue/ray.h"
+#include "etendue/spectrum.h"
+
+namespace etendue {
+
+/// Kinds of scattering, as bits.
+enum Lobe : std::uint8_t {
+  diffuse_reflection = 1,
+  diffuse_transmission = 2,
+  glossy_reflection = 4,
+  glossy_transmission = 8,
+  specular_reflection = 16,   ///< a mirror: all in one direction
+  specular_transmission = 32,
+  pass_through = 64,          ///< straight on, as if nothing were there
+};
+using Lobes = std::uint8_t;
+inline constexpr Lobes no_lobes = 0;
+inline constexpr Lobes all_lobes = 127;
+inline constexpr Lobes diffuse_lobes = diffuse_reflection | diffuse_transmission;
+inline constexpr Lobes glossy_lobes = glossy_reflection | glossy_transmission;
+inline constexpr Lobes specular_lobes = specular_reflection | specular_transmission | pass_through;
+inline constexpr Lobes reflection_lobes = diffuse_reflection | glossy_reflection | specular_reflection;
+inline constexpr Lobes transmission_lobes = diffuse_transmission | glossy_transmission | specular_transmission | pass_through;
+/// Those that have a density and can be evaluated for a given pair of directions.
+inline constexpr Lobes smooth_lobes = diffuse_lobes | glossy_lobes;
+
+/// What the path carries from `in` to `out`: radiance when it was begun at the camera, importance when at a light.
+/// The two differ where light is refracted and where shading normals are used (Veach 1997, chapter 5).
+enum class Transport : std::uint8_t { radiance, importance };
+
+/// A direction chosen by a Scatter. All vectors point away from the surface and have unit length.
+struct ScatterSample {
+  Vector3 direction;
+  Spectrum weight;      ///< f |cos| / density for smooth lobes; the lobe's fraction over its probability for specular ones
+  float density = 0;    ///< [1/sr] for smooth lobes (all asked lobes together); for specular ones a probability
+  Lobe lobe = diffuse_reflection;
+  float eta = 1;        ///< index where the direction leads over index where the path came from; 1 for reflection
+  bool dispersive = false;  ///< the direction holds for the hero wavelength only: drop the others
+  bool specular() const { return (lobe & specular_lobes) != 0; }
+  bool transmitted() const { return (lobe & transmission_lobes) != 0; }
+};
+
+/// Value [1/sr] and density [1/sr] for one pair of directions.
+struct ScatterValue {
+  Spectrum value;
+  float density = 0;
+};
+
+/// Scattering at a point. `out` is the direction the path came from, `in` the one it goes on to, both pointing away
+/// from the surface. Public calls do the side tests, lobe masks and corrections for shading normals and refraction;
+/// parts override the protected local versions, where z is along the shading normal on the front side.
+class Scatter {
+ public:
+  /// f [1/sr], without the cosine. Specular lobes give zero.
+  Spectrum evaluate(const Vector3& out, const Vector3& in, Transport = Transport::radiance, Lobes = all_lobes) const;
+  /// Solid-angle density [1/sr] with which `sample` gives `in`, specular lobes aside. The reverse density is the same
+  /// call with the directions exchanged.
+  float density(const Vector3& out, const Vector3& in, Transport = Transport::radiance, Lobes = all_lobes) const;
+  /// Both of the above in one call.
+  ScatterValue value_and_density(const Vector3& out, const Vector3& in, Transport = Transport::radiance, Lobes = all_lobes) const;
+  /// Chooses a direction among the asked lobes: `choice` picks the lobe, `u` the direction. Empty when the sample is
+  /// absorbed (its contribution is zero, and counts).
+  std::optional<ScatterSample> sample(const Vector3& out, float choice, Point2 u, Transport = Transport::radiance, Lobes = all_lobes) const;
+  /// An estimate of the fraction of light from all asked lobes that leaves towards `out`, for Russian roulette and for
+  /// choosing between lobes; exact where the model has a closed form.
+  Spectrum albedo(const Vector3& out, Lobes which = all_lobes) const { return local_albedo(frame_.to_local(out), which); }
+
+  /// The lobes present at this point.
+  Lobes lobes() const { return lobes_; }
+  bool has(Lobes any) const { return (lobes_ & any) != 0; }
+  /// |cos| of the angle between a direction and the shading normal: the cosine that goes with f.
+  float cosine(const Vector3& v) const { return std::abs(dot(frame_.n, v)); }
+  const Frame& frame() const { return frame_; }
+
+ protected:
+  Scatter(const SurfacePoint& p, Lobes lobes) : frame_(p.shading_normal), normal_(p.normal), lobes_(lobes) {}
+  /// With a tangent frame of its own (anisotropic models); frame.n must be on the side of the point's normal.
+  Scatter(const SurfacePoint& p, const Frame& frame, Lobes lobes) : frame_(frame), normal_(p.normal), lobes_(lobes) {}
+  ~Scatter() = default;
+
+  struct LocalSample {
+    Vector3 in;
+    Spectrum value;     ///< f |cos| for smooth lobes, over all asked lobes; for specular ones the lobe's fraction
+    float density = 0;  ///< [1/sr], over all asked lobes; for specular ones the probability of the choice
+    Lobe lobe = diffuse_reflection;
+    float eta = 1;
+    bool dispersive = false;
+  };
+  // f [1/sr] without cosine, in the convention of importance: no squared-index factor; `which` is a subset of lobes()
+  // already reduced to reflection or transmission by the sides of the two directions, and to smooth lobes.
+  virtual Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const = 0;
+  virtual float local_density(const Vector3& out, const Vector3& in, Lobes which) const = 0;
+  virtual ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const {
+    return {local_evaluate(out, in, which), local_density(out, in, which)};
+  }
+  /// False: absorbed. The density of a smooth sample counts every asked lobe that could have given the direction.
+  virtual bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample&) const = 0;
+  virtual Spectrum local_albedo(const Vector3& out, Lobes which) const = 0;
+  /// Index on the side of `in` over index on the side of `out`; 1 when light is not refracted.
+  virtual float relative_index(const Vector3& out, const Vector3& in) const;
+
+  Frame frame_;
+  Normal3 normal_;
+  Lobes lobes_;
+};
+
+class Shader : public Component {
+ public:
+  using Interface = Shader;
+  using Parent = Component;
+  static void describe(Description<Shader>&);
+
+  /// The scattering at a point, in the arena. Null: nothing is scattered, all is absorbed.
+  virtual const Scatter* bind(const SurfacePoint&, const Wavelengths&, Arena&) const = 0;
+  /// All lobes `bind` may ever return: what renderers and advice plan by.
+  virtual Lobes possible_lobes() const = 0;
+  /// The refractive index of what lies behind the surface; 1 when the shader does not refract.
+  virtual Spectrum interior_index(const Wavelengths&) const { return Spectrum(1.0f); }
+  /// Whether a path through the surface enters or leaves the object's inside (so that media and indices nest).
+  virtual bool transmits() const { return (possible_lobes() & transmission_lobes) != 0; }
+};
+
+}  // namespace etendue

@@ -1,0 +1,159 @@
+#pragma once
+// The light a path carries: values at the path's few wavelengths.
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "etendue/math.h"
+
+namespace etendue {
+
+/// Wavelengths per path; docs/decisions tells how the number was chosen.
+inline constexpr int spectrum_size = 4;
+
+/// The range of visible light all spectral data covers [nm].
+inline constexpr float wavelength_low = 360, wavelength_high = 830;
+
+namespace detail {
+using Lanes = float __attribute__((vector_size(spectrum_size * sizeof(float))));
+using IntLanes = std::int32_t __attribute__((vector_size(spectrum_size * sizeof(std::int32_t))));
+}  // namespace detail
+
+/// The thesis's Spectrum: one value for each wavelength of the path it belongs to. What the values mean (radiance,
+/// throughput, reflectance) is said where they are declared.
+class Spectrum {
+ public:
+  constexpr Spectrum() : v_{} {}
+  constexpr Spectrum(float all) : v_(detail::Lanes{} + all) {}  // NOLINT: a number is a flat spectrum
+  explicit constexpr Spectrum(detail::Lanes v) : v_(v) {}
+
+  float operator[](int i) const { return v_[i]; }
+  void set(int i, float value) { v_[i] = value; }
+  const detail::Lanes& lanes() const { return v_; }
+
+  friend Spectrum operator+(Spectrum a, Spectrum b) { return Spectrum(a.v_ + b.v_); }
+  friend Spectrum operator-(Spectrum a, Spectrum b) { return Spectrum(a.v_ - b.v_); }
+  friend Spectrum operator*(Spectrum a, Spectrum b) { return Spectrum(a.v_ * b.v_); }
+  friend Spectrum operator/(Spectrum a, Spectrum b) { return Spectrum(a.v_ / b.v_); }
+  friend Spectrum operator*(Spectrum a, float s) { return Spectrum(a.v_ * s); }
+  friend Spectrum operator*(float s, Spectrum a) { return Spectrum(a.v_ * s); }
+  friend Spectrum operator/(Spectrum a, float s) { return Spectrum(a.v_ * (1 / s)); }
+  Spectrum operator-() const { return Spectrum(-v_); }
+  Spectrum& operator+=(Spectrum b) { v_ += b.v_; return *this; }
+  Spectrum& operator*=(Spectrum b) { v_ *= b.v_; return *this; }
+  Spectrum& operator*=(float s) { v_ *= s; return *this; }
+  Spectrum& operator/=(float s) { v_ *= 1 / s; return *this; }
+
+  bool black() const {
+    for (int i = 0; i < spectrum_size; ++i)
+      if (v_[i] != 0) return false;
+    return true;
+  }
+  float maximum() const {
+    float m = v_[0];
+    for (int i = 1; i < spectrum_size; ++i) m = std::max(m, v_[i]);
+    return m;
+  }
+  float minimum() const {
+    float m = v_[0];
+    for (int i = 1; i < spectrum_size; ++i) m = std::min(m, v_[i]);
+    return m;
+  }
+  float average() const {
+    float sum = 0;
+    for (int i = 0; i < spectrum_size; ++i) sum += v_[i];
+    return sum / spectrum_size;
+  }
+  bool finite() const {
+    for (int i = 0; i < spectrum_size; ++i)
+      if (!std::isfinite(v_[i])) return false;
+    return true;
+  }
+
+ private:
+  detail::Lanes v_;
+};
+
+/// Applies a function of one number to each value: map(s, [](float x) { return std::exp(-x); }).
+template <class F>
+Spectrum map(Spectrum a, F&& f) {
+  Spectrum r;
+  for (int i = 0; i < spectrum_size; ++i) r.set(i, f(a[i]));
+  return r;
+}
+inline Spectrum max(Spectrum a, float b) {
+  return map(a, [b](float x) { return std::max(x, b); });
+}
+inline Spectrum clamp(Spectrum a, float low, float high) {
+  return map(a, [=](float x) { return clamp(x, low, high); });
+}
+inline Spectrum exp(Spectrum a) {
+  return map(a, [](float x) { return std::exp(x); });
+}
+inline Spectrum sqrt(Spectrum a) {
+  return map(a, [](float x) { return safe_sqrt(x); });
+}
+
+/// A colour in the CIE 1931 XYZ space of the 2 degree observer, scaled so that a flat spectrum of 1 has Y = 1:
+/// X = integral of S(lambda) xbar(lambda) over 106.8569 nm, the integral of ybar. A radiance's luminance [cd/m^2] is
+/// Y times 683 times 106.8569.
+struct Xyz {
+  double x = 0, y = 0, z = 0;
+  Xyz& operator+=(const Xyz& b) { x += b.x; y += b.y; z += b.z; return *this; }
+  friend Xyz operator*(double s, const Xyz& c) { return {s * c.x, s * c.y, s * c.z}; }
+  friend Xyz operator+(Xyz a, const Xyz& b) { return a += b; }
+  bool operator==(const Xyz&) const = default;
+};
+
+/// The wavelengths [nm] of one path and the density [1/nm] each was drawn with. The first is the hero: it alone
+/// decides where a dispersive surface sends the path, and it alone lives on after that.
+class Wavelengths {
+ public:
+  Wavelengths() = default;
+  Wavelengths(const std::array<float, spectrum_size>& lambda, const std::array<float, spectrum_size>& density) {
+    for (int i = 0; i < spectrum_size; ++i) place(i, lambda[size_t(i)], density[size_t(i)]);
+  }
+
+  float operator[](int i) const { return lambda_[i]; }
+  float hero() const { return lambda_[0]; }
+  /// [1/nm]; 0 for a wavelength that was dropped.
+  float density(int i) const { return density_[i]; }
+
+  /// Keeps the hero only. Its density becomes that of being drawn as hero, 1/size of what it was, so expectations stay.
+  void drop_secondary() {
+    if (single()) return;
+    density_ = detail::Lanes{};
+    density_[0] = hero_density_ / spectrum_size;
+    single_ = true;
+  }
+  bool single() const { return single_; }
+
+  /// Position in tables of one entry a nanometre from 360 nm: entry i and the fraction towards i + 1.
+  int table_index(int i) const { return index_[i]; }
+  float table_fraction(int i) const { return fraction_[i]; }
+  const detail::IntLanes& table_indices() const { return index_; }
+  const detail::Lanes& table_fractions() const { return fraction_; }
+
+  void place(int i, float lambda, float density) {
+    lambda_[i] = lambda;
+    density_[i] = density;
+    const float x = clamp(lambda - wavelength_low, 0, wavelength_high - wavelength_low);
+    const int k = std::min(int(x), int(wavelength_high - wavelength_low) - 1);
+    index_[i] = k;
+    fraction_[i] = x - float(k);
+    if (i == 0) hero_density_ = density;
+  }
+
+ private:
+  detail::Lanes lambda_{}, density_{}, fraction_{};
+  detail::IntLanes index_{};
+  float hero_density_ = 0;
+  bool single_ = false;
+};
+
+/// The estimate of a spectrum's colour from its values at a path's wavelengths:
+/// X = 1/size * sum_i S_i xbar(lambda_i) / (p(lambda_i) * 106.8569), and so for Y and Z; dropped wavelengths give 0.
+Xyz to_xyz(const Spectrum&, const Wavelengths&);
+
+}  // namespace etendue

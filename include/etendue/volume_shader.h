@@ -1,0 +1,35 @@
+#pragma once
+// VolumeShader: a participating medium. Distance sampling and transmittance are not here but in the transport library,
+// once for all media.
+
+#include "etendue/component.h"
+#include "etendue/description.h"
+#include "etendue/ray.h"
+#include "etendue/spectrum.h"
+
+namespace etendue {
+
+/// Coefficients at a point [1/m], and emitted radiance per distance [W m^-3 sr^-1 nm^-1].
+struct VolumeCoefficients {
+  Spectrum absorption, scattering, emission;
+  Spectrum extinction() const { return absorption + scattering; }
+};
+
+class VolumeShader : public Component {
+ public:
+  using Interface = VolumeShader;
+  using Parent = Component;
+  static void describe(Description<VolumeShader>&);
+
+  virtual VolumeCoefficients coefficients(const Point3&, float time, const Wavelengths&) const = 0;
+  /// Coefficients are the same everywhere: free paths then have a closed form.
+  virtual bool homogeneous() const = 0;
+  /// A bound of the extinction [1/m] over the medium, per wavelength.
+  virtual Spectrum majorant(const Wavelengths&) const = 0;
+  /// Phase function [1/sr] for light that turns from travelling along -out to travelling along in; integrates to 1.
+  virtual float phase(const Point3&, const Vector3& out, const Vector3& in) const = 0;
+  /// A direction and its density [1/sr].
+  virtual Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const = 0;
+};
+
+}  // namespace etendue

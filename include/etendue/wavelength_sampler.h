@@ -1,0 +1,22 @@
+#pragma once
+// WavelengthSampler: the wavelengths of a path.
+
+#include "etendue/component.h"
+#include "etendue/description.h"
+#include "etendue/sampler.h"
+#include "etendue/spectrum.h"
+
+namespace etendue {
+
+class WavelengthSampler : public Component {
+ public:
+  using Interface = WavelengthSampler;
+  using Parent = Component;
+  static void describe(Description<WavelengthSampler>&);
+
+  /// Wavelengths for one sample; `u` is uniform in [0, 1). Densities are per nanometre, such that `to_xyz` estimates
+  /// without bias.
+  virtual Wavelengths sample(const SampleKey&, float u) const = 0;
+};
+
+}  // namespace etendue

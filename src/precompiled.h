@@ -1,0 +1,17 @@
+#pragma once
+// Compiled once: what most sources include.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "etendue/description.h"
+#include "etendue/renderer.h"
