@@ -2,6 +2,7 @@
 // Colours by name and number: RGB spaces, illuminants, black bodies, glasses, metals, measured spectra.
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 
 namespace etendue {
 
+class RgbTable;
+
 /// A set of primaries and a white. Matrices are row major.
 struct RgbSpace {
   std::string name;
@@ -17,6 +20,7 @@ struct RgbSpace {
   std::array<double, 2> white{};                     ///< x, y
   std::array<double, 9> to_xyz{}, from_xyz{};        ///< RGB (1,1,1) has Y = 1
   Color illuminant;                                  ///< the white's spectral distribution, with Y = 1
+  std::shared_ptr<RgbTable> table;                   ///< sigmoid coefficients, computed at first use; copies share it
 };
 
 /// "srgb" (= "rec709"), "display_p3", "rec2020", "adobe_rgb", "aces2065-1", "acescg", "xyz" (primaries X Y Z, white E).

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "etendue/abi.h"
 #include "etendue/registry.h"
 
 namespace etendue {
@@ -206,10 +207,6 @@ template <class T>
 struct IsVector : std::false_type {};
 template <class T>
 struct IsVector<std::vector<T>> : std::true_type {};
-template <class T>
-struct ReferredClass {
-  static constexpr const char* name() { return ""; }
-};
 
 /// The bare name of a class, from the compiler's name for it.
 std::string bare_class_name(const std::type_info&);

@@ -34,6 +34,7 @@ struct PixelArea {
 struct BadSample {
   int x = 0, y = 0;
   std::uint32_t sample = 0;
+  static constexpr std::uint32_t no_sample = ~0u;  ///< the index of a splat, which belongs to no sample
   enum class Kind : std::uint8_t { not_a_number, infinite, negative } kind = Kind::not_a_number;
 };
 
@@ -59,6 +60,7 @@ class ImageTile {
 
  private:
   friend class ImageBuffer;
+  void note(int x, int y, std::uint32_t sample, BadSample::Kind);
   struct Splat {
     Point2 film;
     Xyz value;
@@ -67,7 +69,7 @@ class ImageTile {
   PixelArea area_, extent_;  // the area and the area widened by the filter
   std::vector<double> sums_;      // X Y Z weight per pixel of the extent
   std::vector<double> moments_;   // count, sum Y, sum Y^2 of the samples in each pixel of the area
-  std::vector<double> features_;  // 9 per pixel of the area
+  std::vector<double> features_;  // ImageBuffer::feature_values per pixel of the area
   std::vector<Splat> splats_;
   std::vector<BadSample> bad_;
   std::uint64_t bad_count_ = 0, paths_ = 0;
@@ -117,6 +119,13 @@ class ImageBuffer : public Component {
 
  private:
   friend class ImageTile;
+  // sums of albedo (3), normal (3), depth; how many had a depth; the first object; how many
+  static constexpr size_t feature_values = 10, bad_samples_kept = 32;
+  void allocate();
+  void add_splat(Point2, const Xyz&);
+  double filter_integral(float left, float right, float up, float down) const;
+  std::uint64_t filter_hash() const;
+  static double variance_of_mean(const double* moment);
   size_t index(int x, int y) const { return size_t(y - area_.y0) * size_t(area_.width()) + size_t(x - area_.x0); }
 
   PixelArea area_;

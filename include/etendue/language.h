@@ -14,6 +14,7 @@ class Job;
 
 struct LoadOptions {
   std::vector<std::pair<std::string, std::string>> defines;  ///< `-D name=value`: replace `param`s
+  bool allow_files = true;  ///< false: include, plugin and spectrum("file") are errors, for texts from strangers
 };
 
 /// Reads a render description; throws Errors with everything wrong that can be found in one run. Not prepared yet.
@@ -21,7 +22,7 @@ Ref<Job> load_job(const std::string& path, const LoadOptions& = {});
 /// The same from a text; `name` stands for the file in messages, paths are relative to `folder`.
 Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder = {}, const LoadOptions& = {});
 
-/// Any one component written as an expression, such as "Sphere { radius: 2 m }"; for tests and tools.
+/// Any one component, such as "Sphere { radius: 2 m }", which definitions may precede; for tests and tools.
 Ref<Component> parse_component(const std::string& text, const std::string& name = "text", const std::string& folder = {});
 /// Any value written as an expression.
 Value parse_value(const std::string& text, const std::string& name = "text", const std::string& folder = {});

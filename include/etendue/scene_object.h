@@ -27,7 +27,8 @@ struct SurfaceSample {
   float distance = 0;
 };
 
-/// Triangles in the coordinates of the containing scene, for scenes that traverse them directly.
+/// Triangles in the coordinates of the containing scene, for scenes that traverse them directly. Embree reads 16 bytes at
+/// each position: behind the last one, four more must be readable.
 struct TriangleView {
   std::span<const Point3> positions;
   std::span<const std::array<std::uint32_t, 3>> triangles;
@@ -78,6 +79,8 @@ class SceneObject : public Component {
   virtual bool closed() const { return false; }
   /// Lies at infinity: never intersected, seen by rays that leave the scene; has no bounds.
   virtual bool infinite() const { return false; }
+  /// Tells an object at infinity the sphere around all finite ones; by Scene::prepare.
+  virtual void enclose(const Point3& /*centre*/, float /*radius*/) {}
   /// The object as triangles, when that is what it is and it does not move.
   virtual std::optional<TriangleView> triangles() const { return std::nullopt; }
 

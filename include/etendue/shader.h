@@ -95,8 +95,9 @@ class Scatter {
     float eta = 1;
     bool dispersive = false;
   };
-  // f [1/sr] without cosine, in the convention of importance: no squared-index factor; `which` is a subset of lobes()
-  // already reduced to reflection or transmission by the sides of the two directions, and to smooth lobes.
+  // f [1/sr] without cosine, in the convention of importance: no squared-index factor. `which` holds the asked lobes that
+  // are present, of both sides and specular ones too, so that the probabilities of choosing among them are the same here
+  // as in local_sample; the signs of z tell reflection from transmission (they agree with the geometric sides).
   virtual Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const = 0;
   virtual float local_density(const Vector3& out, const Vector3& in, Lobes which) const = 0;
   virtual ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const {

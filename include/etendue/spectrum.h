@@ -107,7 +107,7 @@ struct Xyz {
 };
 
 /// The wavelengths [nm] of one path and the density [1/nm] each was drawn with. The first is the hero: it alone
-/// decides where a dispersive surface sends the path, and it alone lives on after that.
+/// decides where a dispersive surface sends the path, and it alone goes on after that.
 class Wavelengths {
  public:
   Wavelengths() = default;
@@ -117,15 +117,19 @@ class Wavelengths {
 
   float operator[](int i) const { return lambda_[i]; }
   float hero() const { return lambda_[0]; }
-  /// [1/nm]; 0 for a wavelength that was dropped.
+  /// [1/nm]
   float density(int i) const { return density_[i]; }
 
-  /// Keeps the hero only. Its density becomes that of being drawn as hero, 1/size of what it was, so expectations stay.
-  void drop_secondary() {
-    if (single()) return;
-    density_ = detail::Lanes{};
-    density_[0] = hero_density_ / spectrum_size;
+  /// The path goes on with the hero only. Returns what its throughput must be multiplied by: size for the hero, 0 for the
+  /// others. So the mean over wavelengths in `to_xyz` stays an unbiased estimate, and what the path gathered before
+  /// keeps all its wavelengths. 1 when that was done already.
+  Spectrum drop_secondary() {
+    Spectrum factor(1.0f);
+    if (single_) return factor;
     single_ = true;
+    factor = Spectrum();
+    factor.set(0, float(spectrum_size));
+    return factor;
   }
   bool single() const { return single_; }
 
@@ -142,18 +146,16 @@ class Wavelengths {
     const int k = std::min(int(x), int(wavelength_high - wavelength_low) - 1);
     index_[i] = k;
     fraction_[i] = x - float(k);
-    if (i == 0) hero_density_ = density;
   }
 
  private:
   detail::Lanes lambda_{}, density_{}, fraction_{};
   detail::IntLanes index_{};
-  float hero_density_ = 0;
   bool single_ = false;
 };
 
 /// The estimate of a spectrum's colour from its values at a path's wavelengths:
-/// X = 1/size * sum_i S_i xbar(lambda_i) / (p(lambda_i) * 106.8569), and so for Y and Z; dropped wavelengths give 0.
+/// X = 1/size * sum_i S_i xbar(lambda_i) / (p(lambda_i) * 106.8569), and so for Y and Z.
 Xyz to_xyz(const Spectrum&, const Wavelengths&);
 
 }  // namespace etendue

@@ -29,6 +29,8 @@ struct Unit {
 const Unit* find_unit(std::string_view name);
 const std::vector<Unit>& units();
 std::string_view name(Dimension);
+/// "a length", "an angle"
+std::string with_article(std::string_view);
 
 /// A number with the dimension its unit gave it, in base units; `none` for a plain number.
 struct Number {
@@ -79,5 +81,8 @@ struct Value {
 
 /// Whether two values are equal; components are equal when their classes and all their members are (sharing aside).
 bool equal(const Value&, const Value&);
+inline bool operator==(const Value& a, const Value& b) {
+  return equal(a, b);
+}
 
 }  // namespace etendue

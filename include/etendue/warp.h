@@ -12,8 +12,12 @@ inline Point2 disc(Point2 u) {
   if (a == 0 && b == 0) return {0, 0};
   const bool wide = std::abs(a) > std::abs(b);
   const float r = wide ? a : b;
-  const float phi = wide ? (pi / 4) * (b / a) : (pi / 2) - (pi / 4) * (a / b);
-  return {r * std::cos(phi), r * std::sin(phi)};
+  // Only angles up to pi/4 occur: Taylor's series to x^9 is exact to the last bit of a float there, and much faster than
+  // the library's functions.
+  const float x = (pi / 4) * (wide ? b / a : a / b), x2 = x * x;
+  const float sine = x * (1 + x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880)))));
+  const float cosine = 1 + x2 * (-0.5f + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320))));
+  return wide ? Point2{r * cosine, r * sine} : Point2{r * sine, r * cosine};
 }
 
 /// A unit direction with z >= 0, with density cos(theta)/pi [1/sr].

@@ -1,0 +1,64 @@
+// etendue check FILE: everything but rendering.
+
+#include <fmt/format.h>
+
+#include "app/scene_options.h"
+#include "app/text.h"
+
+namespace etendue {
+
+namespace {
+
+struct Contents {
+  std::uint64_t objects = 0, triangles = 0, scenes = 0;
+};
+
+void count(const Scene& scene, Contents& contents) {
+  ++contents.scenes;
+  for (const Ref<SceneObject>& object : scene.objects) {
+    if (!object) continue;
+    if (const auto* nested = dynamic_cast<const Scene*>(object.get())) {
+      count(*nested, contents);
+      continue;
+    }
+    ++contents.objects;
+    if (const auto view = object->triangles()) contents.triangles += view->triangles.size();
+  }
+}
+
+int check(const SceneOptions& options) {
+  const Ref<Job> job = options.load();
+  prepare_tree(*job);
+
+  Contents contents;
+  count(*job->scene, contents);
+  const PixelArea& area = job->image->area();
+  std::string size = fmt::format("{} x {} pixels", job->image->width, job->image->height);
+  if (area.width() != job->image->width || area.height() != job->image->height)
+    size += fmt::format(", of these x {} to {}, y {} to {}", area.x0, area.x1, area.y0, area.y1);
+
+  fmt::print("objects     {}\n", grouped(contents.objects));
+  if (contents.scenes > 1) fmt::print("scenes      {}\n", grouped(contents.scenes));
+  fmt::print("triangles   {}\n", grouped(contents.triangles));
+  fmt::print("luminaires  {}\n", grouped(job->scene->luminaires().size()));
+  fmt::print("image       {}\n", size);
+  fmt::print("samples     {} per pixel\n", job->renderer->samples);
+  fmt::print("renderer    {}, {}\n", job->renderer->class_info().name, job->renderer->unbiased() ? "unbiased" : "consistent");
+  if (const std::string limits = job->renderer->limits(); !limits.empty()) fmt::print("left out    {}\n", limits);
+  if (job->scene->luminaires().empty()) fmt::print("Nothing emits light: the picture will be black.\n");
+  fmt::print("{} is good\n", options.file);
+  return exit_status::done;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& program, Run& run) {
+  CLI::App* command =
+      program.add_subcommand("check", "Read and prepare a file without rendering it; show everything wrong with it");
+  auto options = std::make_shared<SceneOptions>();
+  options->add_to(*command);
+  command->footer("\nExample\n  etendue check scenes/cornell_box.etd");
+  command->callback([options, &run] { run = [options] { return check(*options); }; });
+}
+
+}  // namespace etendue

@@ -1,0 +1,51 @@
+// The command line program.
+
+#include "app/commands.h"
+#include "app/report.h"
+
+using namespace etendue;
+
+namespace {
+
+constexpr const char* introduction = "Étendue: physically based, spectral Monte Carlo image synthesis.";
+
+constexpr const char* closing = R"(
+First steps
+  etendue render scenes/cornell_box.etd                  renders a scene; the file says to which pictures
+  etendue render box.etd -o box.png --samples 16         a quick look
+  etendue render box.etd -o box.exr --time 5m            as good as five minutes make it
+  etendue check box.etd                                  says what is wrong with a file, without rendering
+  etendue classes                                        everything a file can contain
+  etendue classes PathTracer                             one class: its members, units, defaults and ranges
+  etendue image diff a.exr b.exr                         how much two pictures differ
+
+Help on one command: etendue render --help
+Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
+)";
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  CLI::App program(introduction, "etendue");
+  program.footer(closing);
+  program.set_version_flag("--version", "etendue " ETENDUE_VERSION, "Print the version");
+  program.set_help_flag("-h,--help", "Print this help");
+  program.require_subcommand(1);
+  program.failure_message(usage_failure);
+
+  Run run;
+  add_render_command(program, run);
+  add_check_command(program, run);
+  add_save_command(program, run);
+  add_classes_command(program, run);
+  add_schema_command(program, run);
+  add_manual_command(program, run);
+  add_image_command(program, run);
+
+  try {
+    program.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? exit_status::done : exit_status::bad_input;
+  }
+  return reporting_errors(run);
+}

@@ -1,0 +1,86 @@
+// What goes wrong, told to the user.
+
+#include "app/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "etendue/error.h"
+#include "etendue/language.h"
+
+namespace etendue {
+
+namespace {
+
+void show_all(const std::vector<Error>& errors) {
+  for (const Error& error : errors) {
+    std::string text = show(error);
+    if (text.empty() || text.back() != '\n') text += '\n';
+    fmt::print(stderr, "{}", text);
+  }
+  fmt::print(stderr, "{} error{}\n", errors.size(), errors.size() == 1 ? "" : "s");
+}
+
+const CLI::App* innermost_command(const CLI::App* app) {
+  while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
+  return app;
+}
+
+/// The known option or command nearest to what was not understood.
+std::string meant(const CLI::App* command, const std::string& given) {
+  std::vector<std::string> known;
+  if (given.starts_with("-")) {
+    const std::string bare = given.substr(0, given.find('='));
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    return suggestion(bare, known);
+  }
+  for (const CLI::App* other : command->get_subcommands({})) known.push_back(other->get_name());
+  return suggestion(given, known);
+}
+
+}  // namespace
+
+int reporting_errors(const Run& run) {
+  std::fflush(stdout);
+  try {
+    return run();
+  } catch (const Errors& errors) {
+    show_all(errors.errors);
+    return exit_status::bad_input;
+  } catch (const Error& error) {
+    show_all({error});
+    return exit_status::bad_input;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "etendue: out of memory\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "etendue: unexpected failure: {}\n", error.what());
+  }
+  return exit_status::failed;
+}
+
+std::string usage_failure(const CLI::App* program, const CLI::Error& error) {
+  const CLI::App* command = innermost_command(program);
+  std::string text = error.what();
+  // Whatever the parser stumbled over, what it could not place at all is the likeliest cause.
+  const std::vector<std::string> extras = program->remaining(true);
+  const auto option = std::ranges::find_if(extras, [](const std::string& extra) { return extra.starts_with("-"); });
+  if (option != extras.end())
+    text = fmt::format("there is no option '{}'{}", *option, meant(command, *option));
+  else if (!extras.empty() && command->get_subcommands({}).empty())
+    text = fmt::format("'{}' is one argument too many", extras.front());
+  else if (!extras.empty())
+    text = fmt::format("there is no command '{}'{}", extras.front(), meant(command, extras.front()));
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::string full_name = "etendue";
+  for (const CLI::App* app = program; app != command;) {
+    app = app->get_subcommands().front();
+    full_name += " " + app->get_name();
+  }
+  return fmt::format("etendue: {}\n{} --help tells more\n", text, full_name);
+}
+
+}  // namespace etendue

@@ -1,0 +1,16 @@
+#pragma once
+// What goes wrong, told to the user.
+
+#include <string>
+
+#include "app/commands.h"
+
+namespace etendue {
+
+/// Runs a command; shows the errors it throws on standard error and turns them into an exit status.
+int reporting_errors(const Run&);
+
+/// What is said about a command line that cannot be understood, with the name that was probably meant.
+std::string usage_failure(const CLI::App* program, const CLI::Error& error);
+
+}  // namespace etendue

@@ -1,0 +1,50 @@
+// etendue save FILE -o OUT: reads a render description and writes it again.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/scene_options.h"
+#include "app/text.h"
+#include "etendue/language.h"
+
+namespace etendue {
+
+namespace {
+
+struct SaveOptions : SceneOptions {
+  std::string output;
+  bool all = false;
+};
+
+int save(const SaveOptions& options) {
+  const Ref<Job> job = options.load();
+  if (options.output == "-") {
+    fmt::print("{}", write_description(*job, options.all));
+    return exit_status::done;
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(options.output).parent_path();
+  write_file(options.output, write_description(*job, options.all, folder.string()));
+  return exit_status::done;
+}
+
+}  // namespace
+
+void add_save_command(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand(
+      "save", "Write a file again as one description, with its overrides, includes and params worked in");
+  auto options = std::make_shared<SaveOptions>();
+  options->add_to(*command);
+  command->add_option("-o,--output", options->output, "The file to write; - for standard output")
+      ->required()
+      ->type_name("FILE");
+  command->add_flag("--all", options->all, "Write every member, also those that have their defaults");
+  command->footer(
+      "\nExamples\n"
+      "  etendue save box.etd -o -                          on the terminal\n"
+      "  etendue save box.etd --all -o full.etd             with all defaults, to learn from\n"
+      "  etendue save box.etd -D samples=16 -o quick.etd    with a param replaced");
+  command->callback([options, &run] { run = [options] { return save(*options); }; });
+}
+
+}  // namespace etendue

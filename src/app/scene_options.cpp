@@ -1,0 +1,73 @@
+// What every command takes that reads a render description.
+
+#include "app/scene_options.h"
+
+#include <filesystem>
+
+#include "etendue/language.h"
+
+namespace etendue {
+
+namespace {
+
+std::pair<std::string, std::string> split(const std::string& option, const std::string& text, const char* what) {
+  const size_t at = text.find('=');
+  if (at == std::string::npos || at == 0) throw Error("'" + text + "' is not of the form " + what, {intern(option), 0, 0});
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+}  // namespace
+
+void SceneOptions::add_to(CLI::App& command) {
+  command.add_option("FILE", file, "The render description (.etd)")->required()->type_name("");
+  command.add_option("-D,--define", defines, "Replace the value of a param of the file; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--set", sets, "Set any member of any part, such as renderer.max_depth=4 or scene.objects[2].radius=\"1 cm\"")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--plugin", plugins, "Load a shared library of further classes; may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+}
+
+Ref<Job> SceneOptions::load() const {
+  for (const std::string& plugin : plugins) Registry::instance().load_plugin(plugin);
+  LoadOptions options;
+  for (const std::string& define : defines) options.defines.push_back(split("-D", define, "name=value"));
+  Ref<Job> job = load_job(file, options);
+  std::vector<Error> errors;
+  for (const std::string& set : sets) {
+    try {
+      const auto [path, value] = split("--set", set, "path=value");
+      set_path(*job, path, value);
+    } catch (const Errors& several) {
+      errors.insert(errors.end(), several.errors.begin(), several.errors.end());
+    } catch (const Error& error) {
+      errors.push_back(error);
+    }
+  }
+  if (!errors.empty()) throw Errors(std::move(errors));
+  return job;
+}
+
+std::string SceneOptions::command_line() const {
+  std::string text = " " + shell_quoted(file);
+  for (const std::string& define : defines) text += " -D " + shell_quoted(define);
+  for (const std::string& set : sets) text += " --set " + shell_quoted(set);
+  for (const std::string& plugin : plugins) text += " --plugin " + shell_quoted(plugin);
+  return text;
+}
+
+std::string shell_quoted(const std::string& text) {
+  constexpr const char* harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+  if (!text.empty() && text.find_first_not_of(harmless) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string stem_of(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+}  // namespace etendue

@@ -1,0 +1,33 @@
+#pragma once
+// What every command takes that reads a render description: the file, and what replaces parts of it.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/commands.h"
+#include "etendue/job.h"
+
+namespace etendue {
+
+struct SceneOptions {
+  std::string file;
+  std::vector<std::string> defines;  ///< "name=value"
+  std::vector<std::string> sets;     ///< "path=value"
+  std::vector<std::string> plugins;
+
+  void add_to(CLI::App& command);
+
+  /// Loads plugins and file and applies the overrides. Throws Errors.
+  Ref<Job> load() const;
+  /// These options as they are written on a command line, quoted for a shell, each with a blank before it.
+  std::string command_line() const;
+};
+
+/// The text in single quotes when a shell would otherwise take it apart.
+std::string shell_quoted(const std::string& text);
+
+/// The file's name without folder and ending.
+std::string stem_of(const std::string& file);
+
+}  // namespace etendue

@@ -1,0 +1,101 @@
+// Numbers and times as people read and write them, and text files.
+
+#include "app/text.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "etendue/error.h"
+
+namespace etendue {
+
+std::string grouped(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (int at = int(digits.size()) - 3; at > 0; at -= 3) digits.insert(size_t(at), ",");
+  return digits;
+}
+
+std::string duration_text(double seconds) {
+  if (!(seconds >= 0)) return "?";
+  if (seconds < 60) return fmt::format("{:.1f} s", seconds);
+  const auto whole = std::int64_t(std::llround(seconds));
+  if (whole < 3600) return fmt::format("{} m {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} m", whole / 3600, whole / 60 % 60);
+}
+
+double parse_duration(const std::string& text, const std::string& option) {
+  const auto wrong = [&] {
+    return Error(fmt::format("'{}' is no time; write seconds, or 90s, 5m, 1h, 1h30m", text), {intern(option), 0, 0});
+  };
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  double seconds = 0, largest_unit = INFINITY;
+  if (at == end) throw wrong();
+  while (at != end) {
+    double number = 0;
+    const auto [after, problem] = std::from_chars(at, end, number);
+    if (problem != std::errc() || !(number >= 0) || !std::isfinite(number)) throw wrong();
+    const bool plain = after == end;
+    const double unit = plain || *after == 's' ? 1 : *after == 'm' ? 60 : *after == 'h' ? 3600 : 0;
+    // Units come once each, the largest first; a plain number stands alone.
+    if (unit == 0 || unit >= largest_unit || (plain && at != text.data())) throw wrong();
+    largest_unit = unit;
+    seconds += number * unit;
+    at = plain ? end : after + 1;
+  }
+  if (seconds <= 0) throw wrong();
+  return seconds;
+}
+
+void parse_integers(const std::string& text, char separator, int count, int* out, const std::string& option,
+                    const std::string& form) {
+  const auto wrong = [&] { return Error(fmt::format("'{}' is not of the form {}", text, form), {intern(option), 0, 0}); };
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int i = 0; i < count; ++i) {
+    const auto [after, problem] = std::from_chars(at, end, out[i]);
+    if (problem != std::errc()) throw wrong();
+    const bool last = i + 1 == count;
+    if (last ? after != end : after == end || *after != separator) throw wrong();
+    at = last ? end : after + 1;
+  }
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  const std::string beside = fmt::format("{}.{}.part", path, getpid());
+  std::FILE* file = std::fopen(beside.c_str(), "wb");
+  bool good = file != nullptr;
+  int reason = errno;
+  if (good) {
+    good = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+    if (!good) reason = errno;
+    if (std::fclose(file) != 0 && good) {
+      good = false;
+      reason = errno;
+    }
+    if (good && std::rename(beside.c_str(), path.c_str()) != 0) {
+      good = false;
+      reason = errno;
+    }
+    if (!good) std::remove(beside.c_str());
+  }
+  if (!good) throw Error(fmt::format("cannot write '{}': {}", path, std::strerror(reason)));
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (file) text << file.rdbuf();
+  if (!file || file.bad()) throw Error(fmt::format("cannot read '{}': {}", path, std::strerror(errno)));
+  return std::move(text).str();
+}
+
+}  // namespace etendue

@@ -1,0 +1,24 @@
+#pragma once
+// Numbers and times as people read and write them, and text files.
+
+#include <cstdint>
+#include <string>
+
+namespace etendue {
+
+/// 1234567 as "1,234,567".
+std::string grouped(std::uint64_t);
+/// "4.2 s", "3 m 07 s", "2 h 05 m".
+std::string duration_text(double seconds);
+/// "90", "90s", "5m", "1.5h", "1h30m" in seconds. Throws Error, said to come from `option`, for anything else.
+double parse_duration(const std::string& text, const std::string& option);
+/// Whole numbers separated by `separator`, exactly `count` of them. Throws Error likewise.
+void parse_integers(const std::string& text, char separator, int count, int* out, const std::string& option,
+                    const std::string& form);
+
+/// Writes a text file beside its place and moves it there when whole. Throws Error naming the file and the reason.
+void write_file(const std::string& path, const std::string& text);
+/// A whole file. Throws Error naming the file and the reason.
+std::string read_file(const std::string& path);
+
+}  // namespace etendue

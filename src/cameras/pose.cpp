@@ -1,0 +1,35 @@
+// Where a camera stands, and what is wrong with how that was said.
+
+#include "cameras/pose.h"
+
+namespace etendue {
+
+void Placement::set(const Component& camera, const Point3& from, const Point3& to, const Vector3& up,
+                    const AnimatedTransform& transform) {
+  if (!is_finite(from)) camera.fail("from", "must be finite numbers");
+  if (!is_finite(to)) camera.fail("to", "must be finite numbers");
+  const Vector3 forward = to - from;
+  if (!(length(forward) > 0)) camera.fail("to", "must be another point than from: it says where the camera looks");
+  if (!is_finite(up) || !(length(up) > 0)) camera.fail("up", "must be a direction other than zero");
+  if (!(length(cross(normalize(forward), normalize(up))) > 1e-5f)) camera.fail("up", "must not point along the line of sight");
+  if (!transform.valid()) camera.fail("transform", "cannot be inverted");
+  // A camera that is stretched would measure lens and film in other units than the world's.
+  for (const auto& key : transform.keys()) {
+    const Vector3 axes[3] = {key.transform(Vector3{1, 0, 0}), key.transform(Vector3{0, 1, 0}), key.transform(Vector3{0, 0, 1})};
+    for (int i = 0; i < 3; ++i)
+      if (!(std::abs(length(axes[i]) - 1) < 1e-3f) || !(std::abs(dot(axes[i], axes[(i + 1) % 3])) < 1e-3f))
+        camera.fail("transform", "a camera can be moved and turned but not scaled or sheared");
+  }
+  base_ = Transform::look_at(from, to, up);
+  transform_ = transform;
+  moving_ = transform.animated();
+  still_ = Pose(transform_.still() * base_);
+}
+
+void check_shutter(const Camera& camera) {
+  if (!std::isfinite(camera.shutter_open)) camera.fail("shutter_open", "must be a finite time");
+  if (!std::isfinite(camera.shutter_close) || camera.shutter_close < camera.shutter_open)
+    camera.fail("shutter_close", "the shutter must not close before it opens");
+}
+
+}  // namespace etendue

@@ -1,0 +1,43 @@
+#pragma once
+// One value a nanometre over 360-830 nm, linear between: what most spectra are evaluated from.
+
+#include <array>
+
+#include "color/tables.h"
+#include "etendue/spectrum.h"
+
+namespace etendue {
+
+class DenseTable {
+ public:
+  DenseTable() = default;
+  /// From a function of the wavelength [nm].
+  template <class F>
+  explicit DenseTable(F&& f) {
+    for (int i = 0; i < tables::size; ++i) values_[size_t(i)] = float(f(double(wavelength_low) + i));
+  }
+
+  Spectrum evaluate(const Wavelengths& wavelengths) const {
+    detail::Lanes a{}, b{};
+    for (int i = 0; i < spectrum_size; ++i) {
+      const float* entry = &values_[size_t(wavelengths.table_index(i))];
+      a[i] = entry[0];
+      b[i] = entry[1];
+    }
+    return Spectrum(a + wavelengths.table_fractions() * (b - a));
+  }
+  /// 0 outside 360-830 nm.
+  float at(float wavelength) const {
+    const float x = wavelength - wavelength_low;
+    if (!(x >= 0 && x <= float(tables::size - 1))) return 0;
+    const int i = std::min(int(x), tables::size - 2);
+    const float* entry = &values_[size_t(i)];
+    return entry[0] + (x - float(i)) * (entry[1] - entry[0]);
+  }
+  float entry(int i) const { return values_[size_t(i)]; }
+
+ private:
+  std::array<float, tables::size> values_{};
+};
+
+}  // namespace etendue

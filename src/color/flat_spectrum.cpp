@@ -1,0 +1,24 @@
+#include "color/named.h"
+#include "etendue/spectral_function.h"
+
+namespace etendue {
+
+namespace {
+
+class FlatSpectrum final : public SpectralFunction {
+ public:
+  explicit FlatSpectrum(float value) : value_(value) {}
+  Spectrum evaluate(const Wavelengths&, ColorUse) const override { return Spectrum(value_); }
+  float at(float, ColorUse) const override { return value_; }
+  std::string expression() const override { return number_text(value_); }
+  bool varies() const override { return false; }
+
+ private:
+  float value_;
+};
+
+}  // namespace
+
+Color flat_spectrum(float value) { return Color(new FlatSpectrum(value)); }
+
+}  // namespace etendue

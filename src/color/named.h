@@ -1,0 +1,37 @@
+#pragma once
+// Texts of the render description language, and look-up of named data.
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace etendue {
+
+/// The shortest text that reads back to the same number.
+std::string number_text(double);
+std::string number_text(float);
+/// A string of the language with its quotes.
+std::string quoted(std::string_view);
+
+/// Whether `given` is `name` or one of `aliases` (separated by commas), in capitals or not.
+bool is_named(std::string_view given, std::string_view name, std::string_view aliases);
+/// Throws Error: "unknown glass 'BK8' (did you mean 'BK7'?); known are …".
+[[noreturn]] void fail_unknown(const std::string& what, const std::string& given, const std::vector<std::string>& known);
+
+/// The names of a table of src/color/tables.h.
+template <class T>
+std::vector<std::string> names_of(std::span<const T> table) {
+  std::vector<std::string> names;
+  for (const T& entry : table) names.emplace_back(entry.name);
+  return names;
+}
+/// The entry of this name; throws Error when there is none.
+template <class T>
+const T& find_named(std::span<const T> table, const std::string& what, const std::string& given) {
+  for (const T& entry : table)
+    if (is_named(given, entry.name, entry.aliases)) return entry;
+  fail_unknown(what, given, names_of(table));
+}
+
+}  // namespace etendue

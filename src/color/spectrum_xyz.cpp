@@ -1,0 +1,26 @@
+// The estimate of a path's colour, made once per path.
+
+#include "color/tables.h"
+#include "etendue/spectrum.h"
+
+namespace etendue {
+
+Xyz to_xyz(const Spectrum& spectrum, const Wavelengths& wavelengths) {
+  // X = 1/size sum_i S_i xbar(lambda_i) / (p_i integral of ybar); rows hold xbar, ybar, zbar over that integral.
+  using Row = float __attribute__((vector_size(16)));
+  Row sum{};
+  for (int i = 0; i < spectrum_size; ++i) {
+    const float density = wavelengths.density(i);
+    // A wavelength that was never placed counts for nothing.
+    const float weight = density > 0 ? spectrum[i] / density : 0;
+    const tables::ObserverRow* row = &tables::observer_rows[size_t(wavelengths.table_index(i))];
+    Row a, b;
+    __builtin_memcpy(&a, row, sizeof a);
+    __builtin_memcpy(&b, row + 1, sizeof b);
+    sum += (a + wavelengths.table_fraction(i) * (b - a)) * weight;
+  }
+  constexpr double scale = 1.0 / spectrum_size;
+  return {scale * double(sum[0]), scale * double(sum[1]), scale * double(sum[2])};
+}
+
+}  // namespace etendue

@@ -1,0 +1,163 @@
+// Classes as JSON, and the JSON Schema of everything that can be written.
+
+#include <cmath>
+
+#include "component/reflection_values.h"
+#include "etendue/reflection.h"
+
+namespace etendue {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json member_json(const Member& member) {
+  Json json;
+  json["name"] = member.name;
+  json["type"] = std::string(name(member.kind));
+  if (member.list) json["list"] = true;
+  if (member.kind == Kind::component) json["class"] = member.component_class;
+  if (!unit_text(member).empty()) json["unit"] = member.unit;
+  if (member.required) json["required"] = true;
+  json["default"] = value_json(member.default_value, member);
+  if (member.range) {
+    if (std::isfinite(member.range->low)) json["range"][member.range->open_low ? "more_than" : "low"] = member.range->low;
+    if (std::isfinite(member.range->high)) json["range"]["high"] = member.range->high;
+  }
+  if (!member.choices.empty()) json["choices"] = member.choices;
+  json["effect"] = std::string(name(member.effect));
+  if (member.owner) json["declared_by"] = member.owner->name;
+  json["text"] = member.text;
+  return json;
+}
+
+Json as_json(const ClassInfo& info) {
+  Json json;
+  json["name"] = info.name;
+  if (const ClassInfo* parent = parent_of(info)) json["parent"] = parent->name;
+  json["abstract"] = info.abstract();
+  json["summary"] = info.summary;
+  if (!info.source.empty()) json["source"] = info.source;
+  if (!info.provider.empty()) json["provider"] = info.provider;
+  if (!info.literal.empty()) json["literal"] = info.literal;
+  json["members"] = Json::array();
+  for (const Member& member : info.members) json["members"].push_back(member_json(member));
+  json["subclasses"] = Json::array();
+  for (const ClassInfo* other : makeable(info))
+    if (other != &info) json["subclasses"].push_back(other->name);
+  return json;
+}
+
+// ---- schema ---------------------------------------------------------------------------------------------------------
+
+Json reference(const std::string& definition) { return {{"$ref", "#/$defs/" + definition}}; }
+
+/// What fits the member as a single value, its list left aside.
+Json item_schema(const Member& member) {
+  Json json;
+  switch (member.kind) {
+    case Kind::boolean: json["type"] = "boolean"; break;
+    case Kind::integer:
+    case Kind::number:
+      json["type"] = member.kind == Kind::integer ? "integer" : "number";
+      if (member.range) {
+        if (std::isfinite(member.range->low)) json[member.range->open_low ? "exclusiveMinimum" : "minimum"] = member.range->low;
+        if (std::isfinite(member.range->high)) json["maximum"] = member.range->high;
+      }
+      break;
+    case Kind::string:
+      json["type"] = "string";
+      if (!member.choices.empty()) json["enum"] = member.choices;
+      break;
+    case Kind::file: json["type"] = "string"; break;
+    case Kind::choice: json["enum"] = member.choices; break;
+    case Kind::vector2:
+    case Kind::vector3:
+    case Kind::point3:
+    case Kind::normal3: {
+      const int size = member.kind == Kind::vector2 ? 2 : 3;
+      json = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", size}, {"maxItems", size}};
+      break;
+    }
+    case Kind::color: return reference("color");
+    case Kind::transform: return reference("transform");
+    case Kind::component: return reference(member.component_class + ".any");
+  }
+  return json;
+}
+
+Json member_schema(const Member& member) {
+  Json json = item_schema(member);
+  if (member.list)
+    json = {{"type", "array"}, {"items", json}};
+  else if (member.default_value.none() && (member.kind == Kind::component || member.kind == Kind::color))
+    json = {{"anyOf", Json::array({json, {{"type", "null"}}})}};  // may stay without one
+  json["description"] = member.text;
+  if (!unit_text(member).empty()) json["x-unit"] = member.unit;
+  json["x-effect"] = std::string(name(member.effect));
+  if (!member.required) json["default"] = value_json(member.default_value, member);
+  return json;
+}
+
+Json class_schema(const ClassInfo& info) {
+  Json json;
+  json["type"] = "object";
+  json["description"] = info.source.empty() ? info.summary : info.summary + " Source: " + info.source;
+  json["properties"]["class"] = {{"const", info.name}};
+  Json required = Json::array({"class"});
+  for (const Member& member : info.members) {
+    json["properties"][member.name] = member_schema(member);
+    if (member.required) required.push_back(member.name);
+  }
+  json["required"] = required;
+  json["additionalProperties"] = false;
+  return json;
+}
+
+/// Anything that may stand where the class is expected.
+Json any_schema(const ClassInfo& info) {
+  Json any = Json::array();
+  for (const ClassInfo* other : makeable(info)) {
+    any.push_back(reference(other->name));
+    // A plain value becomes an object of a class that says so.
+    if (other->literal.empty()) continue;
+    if (const Member* member = other->find(other->literal)) any.push_back(member_schema(*member));
+  }
+  if (any.empty()) return {{"not", Json::object()}, {"description", "No class of this interface is known."}};
+  return {{"description", info.summary}, {"anyOf", any}};
+}
+
+}  // namespace
+
+std::string class_json(const ClassInfo& info) { return as_json(info).dump(2); }
+
+std::string classes_json() {
+  Json all = Json::array();
+  for (const ClassInfo* info : described_classes()) all.push_back(as_json(*info));
+  return all.dump(2);
+}
+
+std::string json_schema() {
+  Json definitions;
+  const Json text = {{"type", "string"}, {"description", "An expression of the render description language."}};
+  const auto numbers = [](int count) {
+    return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", count}, {"maxItems", count}};
+  };
+  definitions["color"] = {
+      {"description", "A number for all wavelengths, linear RGB, or an expression such as blackbody(2856 K)."},
+      {"anyOf", Json::array({{{"type", "number"}}, numbers(3), text})}};
+  definitions["transform"] = {{"description", "A 3x4 matrix, row by row, or an expression such as translate(0, 1 m, 0)."},
+                              {"anyOf", Json::array({numbers(12), text})}};
+  for (const ClassInfo* info : described_classes()) {
+    if (!info->abstract()) definitions[info->name] = class_schema(*info);
+    definitions[info->name + ".any"] = any_schema(*info);
+  }
+  Json schema;
+  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["title"] = "Étendue render description";
+  schema["$ref"] = "#/$defs/Job";
+  schema["$defs"] = std::move(definitions);
+  return schema.dump(2);
+}
+
+}  // namespace etendue

@@ -1,0 +1,170 @@
+// ImageTile: the per-thread side of the film. Everything here runs once per sample.
+
+#include <limits>
+
+#include "etendue/image_buffer.h"
+#include "images/filter_window.h"
+
+namespace etendue {
+namespace {
+
+using BadKind = BadSample::Kind;
+
+// X Y Z weight, added at once; unaligned, as vectors of doubles are.
+using Sums [[gnu::may_alias]] = double __attribute__((vector_size(32), aligned(8)));
+
+/// Values below zero by no more than this part of the largest are rounding.
+constexpr float negative_tolerance = 1e-5f;
+
+bool regular(const Spectrum& s) {
+  const auto& v = s.lanes();
+  bool all = true;
+  for (int i = 0; i < spectrum_size; ++i) all &= v[i] >= 0 && v[i] <= std::numeric_limits<float>::max();
+  return all;
+}
+
+/// What is wrong with a spectrum, and the spectrum with what is not wrong put right: values at wavelengths that were
+/// dropped mean nothing, and negative ones by rounding are zero.
+[[gnu::noinline]] bool repair(Spectrum& s, const Wavelengths& wavelengths, BadKind& kind) {
+  if (wavelengths.single())
+    for (int i = 1; i < spectrum_size; ++i) s.set(i, 0);
+  float largest = 0, least = 0;
+  for (int i = 0; i < spectrum_size; ++i) {
+    if (std::isnan(s[i])) {
+      kind = BadKind::not_a_number;
+      return false;
+    }
+    largest = std::max(largest, s[i]);
+    least = std::min(least, s[i]);
+  }
+  if (std::isinf(largest) || std::isinf(least)) {
+    kind = BadKind::infinite;
+    return false;
+  }
+  if (least < -negative_tolerance * largest) {
+    kind = BadKind::negative;
+    return false;
+  }
+  s = max(s, 0);
+  return true;
+}
+
+/// The colour of a sample; false with the kind when it is bad.
+bool to_color(const Spectrum& value, const Wavelengths& wavelengths, Xyz& color, BadKind& kind) {
+  if (regular(value)) [[likely]] {
+    color = to_xyz(value, wavelengths);
+  } else {
+    Spectrum repaired = value;
+    if (!repair(repaired, wavelengths, kind)) return false;
+    color = to_xyz(repaired, wavelengths);
+  }
+  // A density of zero or one that is no number makes a colour that is no number from a spectrum that is one.
+  const double sum = color.x + color.y + color.z;
+  if (std::isfinite(sum)) [[likely]]
+    return true;
+  kind = std::isnan(sum) ? BadKind::not_a_number : BadKind::infinite;
+  return false;
+}
+
+/// Also false for what is no number.
+bool ordinary(Point2 film) { return std::abs(film.x) < 1e7f && std::abs(film.y) < 1e7f; }
+
+PixelArea intersection(const PixelArea& a, const PixelArea& b) {
+  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+size_t pixels(const PixelArea& a) { return size_t(std::max(a.width(), 0)) * size_t(std::max(a.height(), 0)); }
+
+}  // namespace
+
+void ImageTile::begin(const ImageBuffer& buffer, const PixelArea& area) {
+  buffer_ = &buffer;
+  area_ = intersection(area, buffer.area());
+  // A sample anywhere in a pixel reaches the centres of this many pixels to each side.
+  const int reach = buffer.box_ ? 0 : int(std::ceil(buffer.filter_radius_ - 0.5f));
+  extent_ = intersection({area.x0 - reach, area.y0 - reach, area.x1 + reach, area.y1 + reach}, buffer.area());
+  sums_.assign(4 * pixels(extent_), 0);
+  moments_.assign(3 * pixels(area_), 0);
+  features_.assign(buffer.wants_features() ? ImageBuffer::feature_values * pixels(area_) : 0, 0);
+  splats_.clear();
+  bad_.clear();
+  bad_count_ = paths_ = 0;
+}
+
+void ImageTile::note(int x, int y, std::uint32_t sample, BadSample::Kind kind) {
+  ++bad_count_;
+  if (bad_.size() < ImageBuffer::bad_samples_kept) bad_.push_back({x, y, sample, kind});
+}
+
+void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum& value,
+                           const Wavelengths& wavelengths, float weight) {
+  Xyz color;
+  BadKind kind = BadKind::not_a_number;
+  bool good = to_color(value, wavelengths, color, kind);
+  if (!ordinary(film) || !(weight >= 0 && weight <= std::numeric_limits<float>::max())) [[unlikely]] {
+    if (good) kind = weight < 0 ? BadKind::negative : BadKind::not_a_number;
+    good = false;
+    film = {float(px) + 0.5f, float(py) + 0.5f};
+    weight = 1;
+  }
+  if (!good) [[unlikely]] {
+    note(px, py, sample, kind);
+    color = {};
+  }
+  if (!area_.contains(px, py)) [[unlikely]]
+    return;
+
+  double* moment = &moments_[3 * (size_t(py - area_.y0) * size_t(area_.width()) + size_t(px - area_.x0))];
+  moment[0] += 1;
+  moment[1] += color.y;
+  moment[2] += color.y * color.y;
+
+  const Sums one{color.x, color.y, color.z, 1};
+  if (buffer_->box_) {
+    double* sum = &sums_[4 * (size_t(py - extent_.y0) * size_t(extent_.width()) + size_t(px - extent_.x0))];
+    *reinterpret_cast<Sums*>(sum) += double(weight) * one;
+    return;
+  }
+  constexpr int size = ImageBuffer::table_size;
+  const FilterWindow across(film.x, buffer_->filter_radius_, size, extent_.x0, extent_.x1);
+  const FilterWindow down(film.y, buffer_->filter_radius_, size, extent_.y0, extent_.y1);
+  for (int j = 0; j < down.count; ++j) {
+    const float* row = &buffer_->filter_table_[size_t(down.cells[size_t(j)]) * size];
+    double* sum =
+        &sums_[4 * (size_t(down.first + j - extent_.y0) * size_t(extent_.width()) + size_t(across.first - extent_.x0))];
+    for (int i = 0; i < across.count; ++i, sum += 4)
+      *reinterpret_cast<Sums*>(sum) += double(row[across.cells[size_t(i)]] * weight) * one;
+  }
+}
+
+void ImageTile::splat(Point2 film, const Spectrum& value, const Wavelengths& wavelengths) {
+  const PixelArea& all = buffer_->area();
+  // Light beside the rendered pixels is left out, as camera samples have none from there either: at the picture's edge
+  // both estimate the same mean over the part of the filter that lies inside.
+  if (!(film.x >= float(all.x0) && film.x < float(all.x1) && film.y >= float(all.y0) && film.y < float(all.y1))) return;
+  Xyz color;
+  BadKind kind = BadKind::not_a_number;
+  if (to_color(value, wavelengths, color, kind)) [[likely]]
+    splats_.push_back({film, color});
+  else
+    note(int(film.x), int(film.y), BadSample::no_sample, kind);
+}
+
+void ImageTile::features(int px, int py, const Features& f) {
+  if (features_.empty() || !area_.contains(px, py)) return;
+  double* sum =
+      &features_[ImageBuffer::feature_values * (size_t(py - area_.y0) * size_t(area_.width()) + size_t(px - area_.x0))];
+  if (!is_finite(f.albedo) || !is_finite(f.normal) || !std::isfinite(f.depth)) return;
+  for (int i = 0; i < 3; ++i) {
+    sum[i] += double(f.albedo[i]);
+    sum[3 + i] += double(f.normal[i]);
+  }
+  if (f.depth > 0) {
+    sum[6] += double(f.depth);
+    sum[7] += 1;
+  }
+  if (sum[9] == 0) sum[8] = f.object;
+  sum[9] += 1;
+}
+
+}  // namespace etendue

@@ -1,0 +1,229 @@
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "etendue/color.h"
+#include "etendue/image_tools.h"
+#include "etendue/output.h"
+#include "images/numpy_array.h"
+
+namespace etendue {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
+  throw Error(fmt::format("cannot read '{}': {}", path, reason.empty() ? "the image library gives no reason" : reason));
+}
+
+std::string lower_extension(const std::string& path) {
+  std::string e = std::filesystem::path(path).extension().string();
+  std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return e;
+}
+
+bool known_space(const std::string& name) {
+  const std::vector<std::string> names = rgb_space_names();
+  return name == "xyz" || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Texts of the file, without what only tells how it is packed.
+std::map<std::string, std::string> texts(const OIIO::ImageSpec& spec) {
+  std::map<std::string, std::string> found;
+  for (const OIIO::ParamValue& p : spec.extra_attribs) {
+    const std::string name = p.name().string();
+    if (p.type() == OIIO::TypeString && name.find(':') == std::string::npos && name != "compression" &&
+        name != "ResolutionUnit")
+      found[name] = p.get_string();
+  }
+  return found;
+}
+
+/// How the values are encoded: what the file says, else sRGB for whole numbers and linear for the others.
+std::string encoding(const OIIO::ImageSpec& spec, const std::map<std::string, std::string>& metadata) {
+  const std::vector<std::string> known = transfer_names();
+  const auto said = metadata.find("transfer");
+  if (said != metadata.end() && std::find(known.begin(), known.end(), said->second) != known.end()) return said->second;
+  const std::string space = spec.get_string_attribute("oiio:ColorSpace");
+  if (space == "linear" || space == "Linear" || space == "scene_linear") return "linear";
+  return spec.format.is_floating_point() ? "linear" : "srgb";
+}
+
+void decode(Image& image, const std::string& transfer) {
+  if (transfer == "linear") return;
+  for (size_t c = 0; c < image.channels.size(); ++c) {
+    const std::string& name = image.channels[c];
+    if (name != "R" && name != "G" && name != "B") continue;
+    for (size_t i = c; i < image.values.size(); i += image.channels.size())
+      image.values[i] = decode_transfer(transfer, image.values[i]);
+  }
+}
+
+/// A grey picture as one of three equal channels, the rest behind.
+Image spread_grey(const Image& image, size_t grey) {
+  std::vector<std::string> channels = {"R", "G", "B"};
+  for (size_t c = 0; c < image.channels.size(); ++c)
+    if (c != grey) channels.push_back(image.channels[c]);
+  Image out(image.width, image.height, std::move(channels));
+  out.metadata = image.metadata;
+  for (size_t i = 0, o = 0; i < image.values.size(); i += image.channels.size()) {
+    for (int k = 0; k < 3; ++k) out.values[o++] = image.values[i + grey];
+    for (size_t c = 0; c < image.channels.size(); ++c)
+      if (c != grey) out.values[o++] = image.values[i + c];
+  }
+  return out;
+}
+
+std::string read_bytes(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) refuse(path, std::generic_category().message(errno));
+  std::ostringstream bytes;
+  bytes << in.rdbuf();
+  if (!in || in.bad()) refuse(path, std::generic_category().message(errno));
+  return std::move(bytes).str();
+}
+
+/// Whether a TGA file holds all its pixels, which the image library does not notice: after a header of 18 bytes (their
+/// meaning: Truevision TGA File Format Specification 2.0), a text and a palette come the pixels, plain or in packets of
+/// 1 to 128, of which those with the top bit set hold one pixel to be repeated.
+bool complete_targa(const std::string& file) {
+  const auto byte = [&](size_t i) { return size_t(static_cast<unsigned char>(file[i])); };
+  const auto word = [&](size_t i) { return byte(i) | byte(i + 1) << 8; };
+  if (file.size() < 18) return false;
+  const size_t pixels = word(12) * word(14), size = (byte(16) + 7) / 8;
+  size_t at = 18 + byte(0) + (byte(1) == 1 ? word(5) * ((byte(7) + 7) / 8) : 0);
+  if ((byte(2) & 8) == 0) return at + pixels * size <= file.size();
+  for (size_t done = 0; done < pixels;) {
+    if (at >= file.size()) return false;
+    const size_t packet = byte(at), count = (packet & 127) + 1;
+    at += 1 + (packet & 128 ? 1 : count) * size;
+    done += count;
+  }
+  return at <= file.size();
+}
+
+Image read_numpy(const std::string& path) {
+  const std::string bytes = read_bytes(path);
+  try {
+    Image image = parse_numpy_array(bytes);
+    return image.channels.size() == 1 ? spread_grey(image, 0) : image;
+  } catch (const Error& e) {
+    refuse(path, e.what());
+  }
+}
+
+}  // namespace
+
+Image read_image(const std::string& path) {
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (status.type() == std::filesystem::file_type::not_found) refuse(path, "there is no such file");
+  if (!std::filesystem::exists(status)) refuse(path, code.message());
+  if (std::filesystem::is_directory(status)) refuse(path, "it is a folder");
+  const auto file_size = std::filesystem::file_size(path, code);
+  if (!code && file_size == 0) refuse(path, "it is empty");
+  if (!std::ifstream(path, std::ios::binary)) refuse(path, std::generic_category().message(errno));
+  if (lower_extension(path) == ".npy") return read_numpy(path);
+
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+  if (!input) refuse(path, OIIO::geterror());
+  const OIIO::ImageSpec spec = input->spec();
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) refuse(path, "it holds no pixels");
+  // No format packs better than this; a damaged header must not make us ask for all the memory there is.
+  const double values = double(spec.width) * double(spec.height) * double(spec.nchannels);
+  if (!code && values > 1e6 && values / 65536 > double(file_size))
+    refuse(path, fmt::format("it claims {} x {} pixels, which its {} bytes cannot hold", spec.width, spec.height, file_size));
+
+  if (std::string_view(input->format_name()) == "targa" && !complete_targa(read_bytes(path))) refuse(path, "it ends too early");
+
+  Image image(spec.width, spec.height, spec.channelnames);
+  image.channels.resize(size_t(spec.nchannels));
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::DOUBLE, image.values.data())) refuse(path, input->geterror());
+  image.metadata = texts(spec);
+  const std::string transfer = encoding(spec, image.metadata);
+  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width || spec.height != spec.full_height) {
+    image.metadata["crop_x"] = std::to_string(spec.x - spec.full_x);
+    image.metadata["crop_y"] = std::to_string(spec.y - spec.full_y);
+    image.metadata["full_width"] = std::to_string(spec.full_width);
+    image.metadata["full_height"] = std::to_string(spec.full_height);
+  }
+
+  const auto has = [&](const char* name) {
+    return std::find(image.channels.begin(), image.channels.end(), name) != image.channels.end();
+  };
+  if (!has("R") && !has("X")) {
+    // A single channel of any name, or a luminance with others beside it.
+    const auto y = std::find(image.channels.begin(), image.channels.end(), "Y");
+    if (y != image.channels.end() || image.channels.size() <= 2)
+      image = spread_grey(image, y == image.channels.end() ? 0 : size_t(y - image.channels.begin()));
+  }
+  decode(image, transfer);
+  if (has("X") && has("Y") && has("Z")) {
+    image.metadata["color_space"] = "xyz";
+    image.metadata.erase("transfer");
+  } else {
+    const auto said = image.metadata.find("color_space");
+    if (said == image.metadata.end() || !known_space(said->second)) image.metadata["color_space"] = "srgb";
+    image.metadata["transfer"] = "linear";
+  }
+  return image;
+}
+
+void write_any(const Image& image, const std::string& path) {
+  const ClassInfo* interface = Registry::instance().find("Output");
+  std::vector<std::string> known;
+  if (interface)
+    for (const ClassInfo* c : Registry::instance().subclasses(*interface)) {
+      const Ref<Output> output = ref_cast<Output>(Registry::instance().create(c->name));
+      known.push_back(output->extension());
+      if (output->extension() != lower_extension(path)) continue;
+      output->prepare();
+      const auto transfer = image.metadata.find("transfer");
+      const bool encoded = transfer != image.metadata.end() && transfer->second != "linear";
+      const bool rgb = std::find(image.channels.begin(), image.channels.end(), "R") != image.channels.end();
+      if (output->for_display() && !(rgb && encoded)) {
+        const Ref<ToneMap> encode = ref_cast<ToneMap>(Registry::instance().create("NoToneMap"));
+        output->write_image(encode->apply(convert_color_space(image, "xyz")), path);
+      } else {
+        output->write_image(image, path);
+      }
+      return;
+    }
+  std::string list;
+  for (const std::string& e : known) list += (list.empty() ? "" : ", ") + e;
+  throw Error(fmt::format("cannot write '{}': no output has this ending; known are {}", path, list));
+}
+
+std::string describe_image(const std::string& path) { return fmt::format("{}\n{}", path, describe_image(read_image(path))); }
+
+std::string describe_image(const Image& image) {
+  std::string text = fmt::format("  {} x {} pixels, {} channels\n", image.width, image.height, image.channels.size());
+  for (const auto& [name, value] : image.metadata) text += fmt::format("  {}: {}\n", name, value);
+  size_t width = 8;
+  for (const std::string& c : image.channels) width = std::max(width, c.size());
+  text += fmt::format("  {:<{}} {:>13} {:>13} {:>13} {:>10}\n", "channel", width, "minimum", "mean", "maximum", "not finite");
+  for (size_t c = 0; c < image.channels.size(); ++c) {
+    double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
+    size_t count = 0, bad = 0;
+    for (size_t i = c; i < image.values.size(); i += image.channels.size()) {
+      const double v = image.values[i];
+      if (!std::isfinite(v)) {
+        ++bad;
+        continue;
+      }
+      low = std::min(low, v);
+      high = std::max(high, v);
+      sum += v;
+      ++count;
+    }
+    if (count == 0) low = high = 0;
+    text += fmt::format("  {:<{}} {:>13.6g} {:>13.6g} {:>13.6g} {:>10}\n", image.channels[c], width, low,
+                        count ? sum / double(count) : 0.0, high, bad);
+  }
+  return text;
+}
+
+}  // namespace etendue

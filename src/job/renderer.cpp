@@ -1,0 +1,116 @@
+// What all renderers share: the pass over camera paths.
+
+#include "etendue/renderer.h"
+
+#include <bit>
+
+namespace etendue {
+
+void Renderer::describe(Description<Renderer>& d) {
+  d.summary("An image synthesis algorithm.")
+      .member<&Renderer::samples>("samples", "1", "samples per pixel", range(1, 1 << 30))
+      .member<&Renderer::sampler>("sampler", "", "where random numbers come from")
+      .member<&Renderer::light_sampler>("light_sampler", "", "how luminaires are chosen");
+}
+static const Register<Renderer> registered;
+
+Renderer::Renderer()
+    : sampler(ref_cast<Sampler>(Registry::instance().create("SobolSampler"))),
+      light_sampler(ref_cast<LightSampler>(Registry::instance().create("PowerLightSampler"))) {}
+
+void Renderer::begin(const RenderContext& context) {
+  if (!sampler) fail("sampler", "a renderer needs a sampler");
+  if (!light_sampler) fail("light_sampler", "a renderer needs a light sampler");
+  light_sampler->build(context.scene);
+}
+
+namespace {
+
+/// Dimensions of a camera sample, by purpose; the path's own begin after them.
+enum CameraDimension : std::uint32_t { film_dimension = 0, lens_dimension = 2, time_dimension = 4, wavelength_dimension = 5, path_dimension = 6 };
+
+/// How the picture and the samples of a pass are divided into items: tiles, and for small pictures parts of the sample
+/// range as well. Depends on nothing but the picture's size and the pass, so results do not depend on threads.
+struct Division {
+  PixelArea area;
+  int tile = 32, columns = 1, rows = 1;
+  std::uint32_t begin = 0, end = 1, chunk = 1, chunks = 1;
+
+  Division(const PixelArea& a, const Pass& pass) : area(a), begin(pass.begin), end(pass.end) {
+    columns = (a.width() + tile - 1) / tile;
+    rows = (a.height() + tile - 1) / tile;
+    constexpr std::uint32_t enough = 64;
+    const std::uint32_t tiles = std::uint32_t(columns) * std::uint32_t(rows), n = end - begin;
+    const std::uint32_t wanted = std::clamp((enough + tiles - 1) / tiles, 1u, n);
+    chunk = (n + wanted - 1) / wanted;
+    chunks = (n + chunk - 1) / chunk;
+  }
+  std::uint64_t count() const { return std::uint64_t(columns) * std::uint64_t(rows) * chunks; }
+  PixelArea pixels(std::uint64_t item) const {
+    const int t = int(item / chunks), x = area.x0 + (t % columns) * tile, y = area.y0 + (t / columns) * tile;
+    return {x, y, std::min(x + tile, area.x1), std::min(y + tile, area.y1)};
+  }
+  std::uint32_t first(std::uint64_t item) const { return begin + std::uint32_t(item % chunks) * chunk; }
+  std::uint32_t last(std::uint64_t item) const { return std::min(first(item) + chunk, end); }
+};
+
+}  // namespace
+
+void Renderer::pass(const RenderContext& context, Pass& pass) const {
+  const Division division(context.image.area(), pass);
+  const bool wants_features = context.image.wants_features();
+  pass.run(division.count(), [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
+    const PixelArea area = division.pixels(item);
+    tile.begin(context.image, area);
+    for (int y = area.y0; y < area.y1; ++y)
+      for (int x = area.x0; x < area.x1; ++x)
+        for (std::uint32_t n = division.first(item); n < division.last(item); ++n) {
+          Features features;
+          const CameraSample s = camera_sample(context, x, y, n, arena, wants_features ? &features : nullptr);
+          tile.count_path();
+          tile.contribute(s.film, x, y, n, s.value, s.wavelengths);
+          if (wants_features) tile.features(x, y, features);
+        }
+  });
+}
+
+Renderer::CameraSample Renderer::camera_sample(const RenderContext& context, int x, int y, std::uint32_t n, Arena& arena,
+                                               Features* features, PathRecord* record) const {
+  SampleStream random(*sampler, SampleKey(context.seed, x, y, n));
+  const SampleKey& key = random.key();
+  CameraSample s;
+  const Point2 within = sampler->pair(key, film_dimension);
+  s.film = {float(x) + within.x, float(y) + within.y};
+  const Point2 lens = sampler->pair(key, lens_dimension);
+  const Camera& camera = context.camera;
+  const float time = camera.shutter_close > camera.shutter_open
+                         ? lerp(sampler->number(key, time_dimension), camera.shutter_open, camera.shutter_close)
+                         : camera.shutter_open;
+  s.wavelengths = context.wavelengths.sample(key, sampler->number(key, wavelength_dimension));
+  random.jump(path_dimension);
+
+  SampleContext sample{s.wavelengths, random, arena, features, record};
+  const Ray ray = camera.ray(s.film, lens, time);
+  if (record) {
+    PathRecord::Vertex v;
+    v.kind = "camera";
+    v.object = camera.class_info().name;
+    v.position = ray.origin;
+    v.normal = Normal3(ray.direction);
+    v.throughput = Spectrum(1.0f);
+    record->vertices.push_back(std::move(v));
+  }
+  s.value = radiance(context, ray, sample);
+  arena.reset();
+  if (record) {
+    record->wavelengths = s.wavelengths;
+    record->result = s.value;
+  }
+  return s;
+}
+
+Spectrum Renderer::radiance(const RenderContext&, const Ray&, SampleContext&) const {
+  fail({}, "renders neither passes nor single rays");
+}
+
+}  // namespace etendue

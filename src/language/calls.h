@@ -1,0 +1,60 @@
+#pragma once
+// The functions of the language.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "etendue/vector.h"
+#include "language/evaluator.h"
+
+namespace etendue::language {
+
+/// The arguments of one call. What does not fit throws Error at the argument, with what the call expects.
+class Arguments {
+ public:
+  Arguments(const std::vector<Value>& values, const char* usage, Location at, bool files_allowed)
+      : values_(values), usage_(usage), at_(at), files_allowed_(files_allowed) {}
+
+  size_t count() const { return values_.size(); }
+  const Value& operator[](size_t i) const { return values_[i]; }
+  template <class T>
+  const T* as(size_t i) const {
+    return i < values_.size() ? values_[i].as<T>() : nullptr;
+  }
+  /// For a number of arguments that the call does not take.
+  [[noreturn]] void wrong_count() const;
+  [[noreturn]] void wrong(size_t i, const std::string& expected) const;
+  /// Throws Error with any message at an argument.
+  [[noreturn]] void fail(size_t i, const std::string& message) const;
+
+  /// A number without or with this dimension, in base units. Any use as a float must fit one.
+  double number(size_t i, Dimension = Dimension::none) const;
+  /// An angle [rad]; a plain number is in degrees.
+  double angle(size_t i) const;
+  const std::string& string(size_t i) const;
+  /// Plain numbers, packed.
+  const Numbers& numbers(size_t i) const;
+  Vector3 vector(size_t i, Dimension = Dimension::none) const;
+  /// Three numbers from argument `i` on, or a vector as argument `i`.
+  Vector3 vector_or_three(Dimension = Dimension::none) const;
+  bool files_allowed() const { return files_allowed_; }
+
+ private:
+  const std::vector<Value>& values_;
+  const char* usage_;
+  Location at_;
+  bool files_allowed_;
+};
+
+struct Function {
+  const char* name;
+  const char* usage;  ///< "blackbody(temperature)", for messages
+  Value (*call)(const Arguments&);
+};
+
+std::span<const Function> color_functions();
+std::span<const Function> transform_functions();
+std::span<const Function> math_functions();
+
+}  // namespace etendue::language

@@ -1,0 +1,212 @@
+// Collecting errors and showing them with the line they are in.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <tuple>
+
+#include "etendue/language.h"
+#include "language/source.h"
+
+namespace etendue {
+namespace language {
+
+void Diagnostics::add(const Error& error) {
+  const auto same = [&](const Error& e) {
+    return e.location == error.location && std::string_view(e.what()) == std::string_view(error.what());
+  };
+  if (std::any_of(errors_.begin(), errors_.end(), same)) return;
+  errors_.push_back(error);
+  if (errors_.size() >= limit) throw TooManyErrors{};
+}
+
+void Diagnostics::add(const Errors& list) {
+  for (const Error& error : list.errors) add(error);
+}
+
+void Diagnostics::raise() {
+  if (errors_.empty()) return;
+  std::vector<const char*> files;  // in the order in which they were first heard of
+  const auto rank = [&](const Error& e) {
+    const auto found = std::find(files.begin(), files.end(), e.location.file);
+    if (found != files.end()) return found - files.begin();
+    files.push_back(e.location.file);
+    return std::ptrdiff_t(files.size()) - 1;
+  };
+  for (const Error& e : errors_) rank(e);
+  std::stable_sort(errors_.begin(), errors_.end(), [&](const Error& a, const Error& b) {
+    return std::tuple(rank(a), a.location.line, a.location.column) < std::tuple(rank(b), b.location.line, b.location.column);
+  });
+  throw Errors(std::move(errors_));
+}
+
+Error located(const Error& error, Location fallback) {
+  return error.location.known() ? error : Error(error.what(), fallback);
+}
+
+std::string read_text_file(const std::string& path, Location at) {
+  const auto fail = [&] { throw Error(fmt::format("cannot read '{}': {}", path, std::strerror(errno)), at); };
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) fail();
+  std::string text;
+  std::error_code ignored;
+  const auto size = std::filesystem::file_size(path, ignored);  // only a hint: pipes have none
+  size_t room = ignored ? 0 : size_t(size);
+  for (;;) {
+    room = std::max(room, size_t(1) << 16);
+    const size_t begin = text.size();
+    text.resize(begin + room);
+    errno = 0;
+    const size_t got = std::fread(text.data() + begin, 1, room, file.get());
+    text.resize(begin + got);
+    if (std::ferror(file.get())) fail();
+    if (got < room || std::feof(file.get())) return text;
+    room = 0;
+  }
+}
+
+namespace {
+
+struct Texts {
+  std::mutex mutex;
+  std::map<std::string, std::shared_ptr<const std::string>, std::less<>> by_name;
+};
+
+Texts& texts() {
+  static Texts& all = *new Texts;  // never destroyed: errors may be shown while the program ends
+  return all;
+}
+
+bool continues_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0) == 0x80;
+}
+
+/// A part of a line around a column, and at which character of it the column is.
+struct Excerpt {
+  std::string text;
+  int caret = 0;
+};
+
+constexpr int characters_before = 70, characters_after = 40;
+
+/// Reads the excerpt from any source of characters; `next` gives a negative number at the end. Only what is shown is kept.
+template <class Next>
+std::optional<Excerpt> excerpt(const Location& at, Next next) {
+  int line = 1;
+  while (line < at.line) {
+    const int c = next();
+    if (c < 0) return std::nullopt;
+    if (c == '\n') ++line;
+  }
+  // Lines that fit are shown whole; of longer ones the part around the column.
+  const int first = at.column > characters_before + characters_after ? at.column - characters_before : 1;
+  const int last = first + characters_before + characters_after;
+  Excerpt found;
+  int column = 0;
+  bool more = false;
+  for (int c = next(); c >= 0 && c != '\n'; c = next()) {
+    const char byte = char(c);
+    if (line == 1 && column == 0 && c == 0xEF) {  // a byte order mark is no character
+      next();
+      next();
+      continue;
+    }
+    if (!continues_character(byte)) ++column;
+    if (column > last) {
+      more = true;
+      break;
+    }
+    if (column < first || byte == '\r') continue;
+    found.text += static_cast<unsigned char>(byte) < 0x20 || byte == 0x7F ? ' ' : byte;  // a tab is as wide as a blank
+  }
+  found.caret = std::max(at.column, 1) - first;
+  if (first > 1) {
+    found.text = "…" + found.text;
+    ++found.caret;
+  }
+  if (more) found.text += "…";
+  return found;
+}
+
+std::optional<Excerpt> excerpt(const Location& at) {
+  std::shared_ptr<const std::string> text;
+  {
+    const std::lock_guard lock(texts().mutex);
+    const auto found = texts().by_name.find(std::string_view(at.file));
+    if (found != texts().by_name.end()) text = found->second;
+  }
+  if (text) {
+    size_t position = 0;
+    return excerpt(at, [&] { return position < text->size() ? int(static_cast<unsigned char>((*text)[position++])) : -1; });
+  }
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(at.file, ignored)) return std::nullopt;
+  std::ifstream file(at.file, std::ios::binary);
+  std::streambuf* buffer = file.rdbuf();
+  return file ? excerpt(at, [&] { return buffer->sbumpc(); }) : std::nullopt;
+}
+
+}  // namespace
+
+void remember_text(const char* name, std::string text) {
+  auto shared = std::make_shared<const std::string>(std::move(text));
+  const std::lock_guard lock(texts().mutex);
+  texts().by_name[name] = std::move(shared);
+}
+
+std::optional<size_t> invalid_utf8(const std::string& text) {
+  const auto* s = reinterpret_cast<const unsigned char*>(text.data());
+  const size_t size = text.size();
+  for (size_t i = 0; i < size;) {
+    std::uint64_t eight = 0;
+    if (i + 8 <= size && (std::memcpy(&eight, s + i, 8), (eight & 0x8080808080808080ull) == 0)) {
+      i += 8;
+      continue;
+    }
+    const unsigned c = s[i];
+    if (c < 0x80) {
+      ++i;
+      continue;
+    }
+    const size_t length = c >= 0xF0 ? 4 : (c >= 0xE0 ? 3 : 2);
+    if (c < 0xC2 || c > 0xF4 || i + length > size) return i;
+    std::uint32_t code = c & (0x7Fu >> length);
+    for (size_t k = 1; k < length; ++k) {
+      if ((s[i + k] & 0xC0) != 0x80) return i;
+      code = code << 6 | (s[i + k] & 0x3Fu);
+    }
+    // Overlong forms, halves of surrogate pairs and numbers past the last character are no UTF-8 either.
+    if ((length == 3 && code < 0x800) || (length == 4 && code < 0x10000) || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000)) return i;
+    i += length;
+  }
+  return std::nullopt;
+}
+
+std::string place(const Location& at, const Location& seen_from) {
+  const std::string position = fmt::format("{}:{}", at.line, at.column);
+  return at.file == seen_from.file ? "line " + position : fmt::format("{}:{}", at.file, position);
+}
+
+}  // namespace language
+
+std::string show(const Error& error) {
+  const Location& at = error.location;
+  if (!at.known()) return error.what();
+  if (at.line <= 0) return fmt::format("{}: {}", at.file, error.what());
+  std::string result = fmt::format("{}:{}:{}: {}", at.file, at.line, at.column, error.what());
+  if (const auto found = language::excerpt(at)) {
+    const std::string number = std::to_string(at.line);
+    result += fmt::format("\n    {} | {}\n    {} | {}^", number, found->text, std::string(number.size(), ' '), std::string(size_t(found->caret), ' '));
+  }
+  return result;
+}
+
+}  // namespace etendue

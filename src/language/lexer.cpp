@@ -1,0 +1,206 @@
+#include "language/lexer.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace etendue::language {
+
+namespace {
+
+bool letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool symbol(char c) {
+  return c != 0 && std::string_view("{}[](),:;=+-*/").find(c) != std::string_view::npos;
+}
+
+}  // namespace
+
+bool is_name(std::string_view text) {
+  if (text.empty() || !letter(text.front())) return false;
+  for (const char c : text)
+    if (!letter(c) && !digit(c)) return false;
+  return true;
+}
+
+std::string Token::words() const {
+  switch (type) {
+    case TokenType::end: return "the end of the text";
+    case TokenType::string: return "a string";
+    case TokenType::symbol: return fmt::format("'{}'", symbol);
+    default: return fmt::format("'{}'", text);
+  }
+}
+
+Lexer::Lexer(const Source& source, Diagnostics& diagnostics, size_t begin)
+    : source_(source), text_(source.text), diagnostics_(diagnostics) {
+  s_.position = begin;
+  if (begin == 0 && text_.starts_with("\xEF\xBB\xBF")) s_.position = s_.mark = 3;  // byte order mark
+}
+
+Location Lexer::location() {
+  for (; s_.mark < s_.position; ++s_.mark)
+    if ((static_cast<unsigned char>(text_[s_.mark]) & 0xC0) != 0x80) ++s_.mark_column;
+  // The place may lie behind the last character, but never inside one.
+  return {source_.name, s_.line, s_.mark_column};
+}
+
+void Lexer::skip_blanks() {
+  for (; s_.position < text_.size(); ++s_.position) {
+    const char c = text_[s_.position];
+    if (c == '\n') {
+      ++s_.line;
+      s_.mark = s_.position + 1;
+      s_.mark_column = 1;
+      s_.first_in_line = true;
+    } else if (c == '#') {
+      const size_t end = text_.find('\n', s_.position);
+      if (end == std::string::npos) {
+        s_.position = text_.size();
+        return;
+      }
+      s_.position = end - 1;
+    } else if (c != ' ' && c != '\t' && c != '\r') {
+      return;
+    }
+  }
+}
+
+Token Lexer::next() {
+  skip_blanks();
+  Token token;
+  token.first_in_line = s_.first_in_line;
+  token.at = location();
+  s_.first_in_line = false;
+  if (at_end()) return token;
+  const char c = peek();
+  if (letter(c)) {
+    const size_t begin = s_.position;
+    while (letter(peek()) || digit(peek())) ++s_.position;
+    token.type = TokenType::name;
+    token.text = text_.substr(begin, s_.position - begin);
+  } else if (digit(c) || (c == '.' && digit(peek(1)))) {
+    read_number(token);
+  } else if (c == '"') {
+    read_string(token);
+  } else if (symbol(c)) {
+    token.type = TokenType::symbol;
+    token.symbol = c;
+    ++s_.position;
+  } else {
+    const size_t begin = s_.position++;
+    while (!at_end() && (static_cast<unsigned char>(peek()) & 0xC0) == 0x80) ++s_.position;
+    const auto code = static_cast<unsigned char>(c);
+    const std::string shown = code < 0x20 || code == 0x7F ? fmt::format("U+{:04X}", code) : fmt::format("'{}'", text_.substr(begin, s_.position - begin));
+    diagnostics_.add(Error("unexpected character " + shown, token.at));
+    token.type = TokenType::bad;
+  }
+  return token;
+}
+
+void Lexer::read_number(Token& token) {
+  const char* begin = text_.data() + s_.position;
+  const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), token.number);
+  token.type = TokenType::number;
+  token.text.assign(begin, end);
+  s_.position += size_t(end - begin);
+  if (error == std::errc()) return;
+  const std::string shown = token.text.size() <= 40 ? token.text : token.text.substr(0, 40) + "…";
+  diagnostics_.add(Error(fmt::format("the number {} is outside the range of double precision", shown), token.at));
+  token.type = TokenType::bad;
+}
+
+void Lexer::read_string(Token& token) {
+  token.type = TokenType::string;
+  const auto bad = [&](const std::string& message, Location at) {
+    diagnostics_.add(Error(message, at));
+    token.type = TokenType::bad;
+  };
+  ++s_.position;
+  for (;; ++s_.position) {
+    if (at_end() || peek() == '\n') return bad("the string is not closed in its line: a '\"' is missing", token.at);
+    char c = peek();
+    if (c == '"') break;
+    if (c == 0) {
+      bad("a string cannot hold the character U+0000", location());
+    } else if (c == '\\') {
+      const Location at = location();
+      ++s_.position;
+      if (at_end() || peek() == '\n') continue;
+      c = peek();
+      if (c == 'n') {
+        c = '\n';
+      } else if (c == 't') {
+        c = '\t';
+      } else if (c != '"' && c != '\\') {
+        bad("unknown escape in a string; there are \\\" \\\\ \\n \\t", at);
+      }
+    }
+    token.text += c;
+  }
+  ++s_.position;
+}
+
+bool Lexer::read_row(std::vector<double>& out, int& count) {
+  for (count = 0;;) {
+    skip_blanks();
+    if (peek() == ']') break;
+    const bool negative = peek() == '-';
+    if (negative) {
+      ++s_.position;
+      skip_blanks();
+    }
+    if (!digit(peek()) && !(peek() == '.' && digit(peek(1)))) return false;
+    double value = 0;
+    const char* begin = text_.data() + s_.position;
+    const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
+    if (error != std::errc()) return false;
+    s_.position += size_t(end - begin);
+    out.push_back(negative ? -value : value);
+    if (count < 5) ++count;  // more than a row can have is all that matters
+    skip_blanks();
+    if (peek() == ']') break;
+    if (peek() != ',') return false;
+    ++s_.position;
+  }
+  ++s_.position;
+  return true;
+}
+
+bool Lexer::read_numbers(Numbers& numbers) {
+  const State saved = s_;
+  const auto nothing = [&] {
+    s_ = saved;
+    numbers = {};
+    return false;
+  };
+  skip_blanks();
+  int count = 0;
+  if (peek() != '[') {
+    if (!read_row(numbers.values, count) || count == 0) return nothing();
+  } else {
+    numbers.width = 0;
+    for (;;) {
+      skip_blanks();
+      if (peek() == ']') break;
+      if (peek() != '[') return nothing();
+      ++s_.position;
+      if (!read_row(numbers.values, count) || count < 2 || count > 4) return nothing();
+      if (numbers.width == 0) numbers.width = count;
+      if (numbers.width != count) return nothing();
+      skip_blanks();
+      if (peek() == ']') break;
+      if (peek() != ',') return nothing();
+      ++s_.position;
+    }
+    ++s_.position;
+  }
+  s_.first_in_line = false;
+  return true;
+}
+
+}  // namespace etendue::language

@@ -1,0 +1,70 @@
+#pragma once
+// Characters into tokens.
+
+#include <string>
+#include <vector>
+
+#include "etendue/value.h"
+#include "language/source.h"
+
+namespace etendue::language {
+
+enum class TokenType : std::uint8_t {
+  end,
+  name,
+  number,
+  string,
+  symbol,
+  bad  ///< already reported
+};
+
+struct Token {
+  TokenType type = TokenType::end;
+  char symbol = 0;
+  bool first_in_line = false;  ///< nothing but blanks and comments stand before it in its line
+  double number = 0;
+  std::string text;  ///< the name, the string without its quotes, or the number as written
+  Location at;
+
+  bool is(char c) const { return type == TokenType::symbol && symbol == c; }
+  /// As messages call it: "'{'", "the end of the file", …
+  std::string words() const;
+};
+
+bool is_name(std::string_view);
+
+class Lexer {
+ public:
+  /// The source must be valid UTF-8 and outlive the lexer.
+  Lexer(const Source&, Diagnostics&, size_t begin = 0);
+
+  Token next();
+
+  /// Right after a '[': reads a list of plain numbers, or of rows of 2 to 4 plain numbers each, to its ']' into packed
+  /// form. When the list holds anything else nothing is read. Lists of millions of numbers take this way.
+  bool read_numbers(Numbers&);
+
+ private:
+  struct State {
+    size_t position = 0;
+    int line = 1;
+    size_t mark = 0;      // a place in the line …
+    int mark_column = 1;  // … and its column, so that long lines are counted once
+    bool first_in_line = true;
+  };
+
+  char peek(size_t ahead = 0) const { return s_.position + ahead < text_.size() ? text_[s_.position + ahead] : '\0'; }
+  bool at_end() const { return s_.position >= text_.size(); }
+  void skip_blanks();
+  Location location();
+  void read_string(Token&);
+  void read_number(Token&);
+  bool read_row(std::vector<double>&, int& count);
+
+  const Source& source_;
+  const std::string& text_;
+  Diagnostics& diagnostics_;
+  State s_;
+};
+
+}  // namespace etendue::language

@@ -1,0 +1,206 @@
+#include "language/loader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "etendue/job.h"
+
+namespace etendue::language {
+
+namespace {
+
+constexpr size_t include_limit = 64;
+
+std::string canonical(const std::string& path) {
+  std::error_code error;
+  const auto found = std::filesystem::weakly_canonical(path, error);
+  return error ? path : found.string();
+}
+
+Location start_of(const std::string& path) {
+  return {intern(path), 0, 0};
+}
+
+}  // namespace
+
+void Loader::add_file(const std::string& path) {
+  main_ = intern(path);
+  try {
+    load(path, start_of(path));
+  } catch (const TooManyErrors&) {
+    diagnostics_.raise();
+  }
+}
+
+void Loader::add_text(const std::string& text, const std::string& name, const std::string& folder) {
+  main_ = intern(name);
+  remember_text(main_, text);
+  try {
+    add({main_, folder, text});
+  } catch (const TooManyErrors&) {
+    diagnostics_.raise();
+  }
+}
+
+void Loader::load(const std::string& path, Location named_at) {
+  const std::string spelling = canonical(path);
+  const auto active = std::find_if(active_.begin(), active_.end(), [&](const auto& a) { return a.first == spelling; });
+  if (active != active_.end()) {
+    std::string chain;
+    for (auto i = active; i != active_.end(); ++i) chain += i->second + " → ";
+    diagnostics_.add(Error(fmt::format("the file includes itself: {}{}", chain, path), named_at));
+    return;
+  }
+  if (std::find(files_.begin(), files_.end(), spelling) != files_.end()) return;
+  if (active_.size() >= include_limit) {
+    diagnostics_.add(Error("files are included too deeply: more than 64 levels", named_at));
+    return;
+  }
+  files_.push_back(spelling);
+  Source source;
+  try {
+    source = {intern(path), std::filesystem::path(path).parent_path().string(), read_text_file(path, named_at)};
+  } catch (const Error& e) {
+    diagnostics_.add(e);
+    whole_ = false;
+    return;
+  }
+  active_.emplace_back(spelling, path);
+  add(std::move(source));
+  active_.pop_back();
+}
+
+void Loader::add(Source source) {
+  if (const auto wrong = invalid_utf8(source.text)) {
+    const std::string_view before = std::string_view(source.text).substr(0, *wrong);
+    const size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
+    const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
+    const int line = 1 + int(std::count(before.begin(), before.end(), '\n'));
+    size_t first = line_begin;
+    if (first == 0 && before.starts_with("\xEF\xBB\xBF")) first = 3;
+    const int column = 1 + int(std::count_if(before.begin() + long(first), before.end(), begins_character));
+    const auto byte = static_cast<unsigned char>(source.text[*wrong]);
+    diagnostics_.add(Error(fmt::format("the text is not valid UTF-8: byte 0x{:02X}", byte), {source.name, line, column}));
+    whole_ = false;
+    return;
+  }
+  const std::string folder = source.folder;
+  evaluator_.set_folder(source.name, folder);
+  Document document = parse_document(source, diagnostics_);
+  source.text = {};  // may be as large as all that was made of it
+  whole_ = whole_ && document.whole;
+  for (const Label& plugin : document.plugins) open_plugin(plugin, folder);
+  for (Definition& definition : document.definitions) evaluator_.define(std::move(definition));
+  for (Node& component : document.components) components_.push_back(std::move(component));
+  for (const Label& include : document.includes) {
+    if (!options_.allow_files)
+      diagnostics_.add(Error("files are not allowed here", include.at));
+    else if (include.text.empty())
+      diagnostics_.add(Error("the file name is empty", include.at));
+    else
+      load(FilePath{include.text, folder}.resolved(), include.at);
+  }
+}
+
+void Loader::open_plugin(const Label& plugin, const std::string& folder) {
+  if (!options_.allow_files) {
+    diagnostics_.add(Error("plugins are not allowed here", plugin.at));
+    return;
+  }
+  try {
+    Registry::instance().load_plugin(FilePath{plugin.text, folder}.resolved());
+  } catch (const Error& e) {
+    diagnostics_.add(Error(e.what(), plugin.at));
+    whole_ = false;  // or every use of its classes would be reported as well
+  }
+}
+
+void Loader::replace_params() {
+  for (size_t i = 0; i < options_.defines.size(); ++i) {
+    const auto& [name, text] = options_.defines[i];
+    const auto same = [&](const auto& d) { return d.first == name; };
+    if (std::any_of(options_.defines.begin(), options_.defines.begin() + long(i), same))
+      diagnostics_.add(Error(fmt::format("'{}' is given a value twice", name), {intern("-D " + name), 0, 0}));
+    else
+      evaluator_.redefine(name, text);
+  }
+}
+
+Node* Loader::root(bool job) {
+  const Location nowhere = {main_, 0, 0};
+  Node* found = nullptr;
+  for (Node& node : components_) {
+    if (job && node.text != "Job") {
+      const std::string near = suggestion(node.text, {"Job"});
+      diagnostics_.add(Error(fmt::format("only the Job stands for itself{}; give this a name to use it by: name = {} {{ … }}", near, node.text), node.at));
+    } else if (found) {
+      diagnostics_.add(Error(fmt::format("there is {} already, at {}", job ? "a Job" : "a component", place(found->at, node.at)), node.at));
+    } else {
+      found = &node;
+    }
+  }
+  if (found || !diagnostics_.empty()) return found;
+  diagnostics_.add(Error(job ? "there is no Job: a render description needs one Job { … }" : "there is no component", nowhere));
+  return nullptr;
+}
+
+Ref<Component> Loader::result(bool job) {
+  std::optional<Value> value;
+  try {
+    if (whole_) replace_params();
+    Node* node = root(job);
+    if (!whole_) evaluator_.set_incomplete();
+    if (node) value = evaluator_.evaluate(*node, {});
+    for (Node& other : components_)  // those that should not be there may be wrong in other ways as well
+      if (&other != node) evaluator_.evaluate(other, {});
+    evaluator_.check_unused(main_);
+  } catch (const TooManyErrors&) {
+  }
+  diagnostics_.raise();
+  return value && value->as<Ref<Component>>() ? *value->as<Ref<Component>>() : nullptr;
+}
+
+}  // namespace etendue::language
+
+namespace etendue {
+
+Ref<Job> load_job(const std::string& path, const LoadOptions& options) {
+  language::Loader loader(options);
+  loader.add_file(path);
+  return ref_cast<Job>(loader.result(true));
+}
+
+Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder, const LoadOptions& options) {
+  language::Loader loader(options);
+  loader.add_text(text, name, folder);
+  return ref_cast<Job>(loader.result(true));
+}
+
+Ref<Component> parse_component(const std::string& text, const std::string& name, const std::string& folder) {
+  const LoadOptions options;
+  language::Loader loader(options);
+  loader.add_text(text, name, folder);
+  return loader.result(false);
+}
+
+Value parse_value(const std::string& text, const std::string& name, const std::string& folder) {
+  using namespace language;
+  Diagnostics diagnostics;
+  Evaluator evaluator(diagnostics, true);
+  const Source source{intern(name), folder, text};
+  remember_text(source.name, text);
+  if (invalid_utf8(text)) throw Errors({Error("the text is not valid UTF-8", {source.name, 1, 1})});
+  evaluator.set_folder(source.name, folder);
+  std::optional<Value> value;
+  try {
+    const auto node = parse_expression(source, diagnostics);
+    if (node) value = evaluator.evaluate(*node, {});
+  } catch (const TooManyErrors&) {
+  }
+  diagnostics.raise();
+  return value ? std::move(*value) : Value();
+}
+
+}  // namespace etendue

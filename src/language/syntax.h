@@ -1,0 +1,65 @@
+#pragma once
+// What the parser makes of a text: statements and expressions, nothing evaluated yet.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "etendue/value.h"
+#include "language/source.h"
+
+namespace etendue::language {
+
+enum class NodeType : std::uint8_t {
+  none,
+  boolean,
+  number,
+  string,
+  name,
+  list,
+  numbers,
+  call,
+  component,
+  unit,
+  negation,
+  sum,
+  product,
+  bad  ///< could not be read; reported already
+};
+
+/// A name and its place: of a member, of a unit, of an operator.
+struct Label {
+  std::string text;
+  Location at;
+};
+
+struct Node {
+  NodeType type = NodeType::none;
+  Location at;
+  std::string text;                  ///< string, name, function or class
+  double number = 0;                 ///< number, boolean
+  std::unique_ptr<Numbers> numbers;  ///< a packed list
+  std::vector<Node> children;        ///< items, arguments, member values, operands
+  std::vector<Label> labels;         ///< member names; the unit; the operator before each operand but the first
+};
+
+struct Definition {
+  Label name;
+  bool parameter = false;
+  Node value;
+};
+
+/// One parsed file.
+struct Document {
+  std::vector<Label> includes, plugins;  ///< texts are the paths as written
+  std::vector<Definition> definitions;
+  std::vector<Node> components;  ///< those that stand for themselves, such as the Job
+  bool whole = true;             ///< false when reading had to be given up before the end
+};
+
+/// Reads statements, reporting what is wrong and going on after it.
+Document parse_document(const Source&, Diagnostics&);
+/// Reads one expression that ends with the text; null when it was wrong (and reported). `begin` is where it starts.
+std::unique_ptr<Node> parse_expression(const Source&, Diagnostics&, size_t begin = 0);
+
+}  // namespace etendue::language

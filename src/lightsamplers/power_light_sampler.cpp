@@ -1,0 +1,79 @@
+// PowerLightSampler: luminaires by the power they emit.
+
+#include "etendue/light_sampler.h"
+
+namespace etendue {
+namespace {
+
+class PowerLightSampler final : public LightSampler {
+ public:
+  static void describe(Description<PowerLightSampler>& d) {
+    d.summary("Chooses luminaires in proportion to the power they emit.",
+              "Shirley, Wang & Zimmerman 1996, Monte Carlo techniques for direct lighting calculations");
+  }
+
+  void build(const Scene& scene) override {
+    luminaires_.assign(scene.luminaires().begin(), scene.luminaires().end());
+    std::vector<double> powers;
+    double total = 0;
+    for (const SceneObject* luminaire : luminaires_) {
+      powers.push_back(power(*luminaire, scene.radius()));
+      total += powers.back();
+    }
+    // A power may be an estimate (of a map, by samples) that misses what little there is: nothing that emits may have
+    // probability 0, so each gets at least a thousandth of the mean. Without any power, all are alike.
+    const double count = double(powers.size());
+    const double least = total > 0 ? 1e-3 * total / count : 1;
+    total += least * count;
+    cumulative_.clear();
+    probabilities_.clear();
+    double sum = 0;
+    for (const double p : powers) {
+      sum += p + least;
+      probabilities_.push_back(float((p + least) / total));
+      cumulative_.push_back(float(sum / total));
+    }
+  }
+
+  LightChoice choose(const Point3&, const Normal3&, float u) const override { return choose(u); }
+  float probability(const Point3&, const Normal3&, const SceneObject& luminaire) const override {
+    return probability(luminaire);
+  }
+  LightChoice choose(float u) const override {
+    if (luminaires_.empty()) return {};
+    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), u);
+    const size_t i = std::min(size_t(found - cumulative_.begin()), luminaires_.size() - 1);
+    return {luminaires_[i], probabilities_[i]};
+  }
+  float probability(const SceneObject& luminaire) const override {
+    const size_t index = size_t(luminaire.luminaire_index);
+    return index < luminaires_.size() && luminaires_[index] == &luminaire ? probabilities_[index] : 0;
+  }
+
+ private:
+  /// Power [W] over the visible range: the mean over 64 wavelengths at equal steps, times the range.
+  static double power(const SceneObject& luminaire, float scene_radius) {
+    constexpr int sets = 16;
+    constexpr float range = wavelength_high - wavelength_low, step = range / (sets * spectrum_size);
+    double sum = 0;
+    for (int set = 0; set < sets; ++set) {
+      Wavelengths w;
+      for (int i = 0; i < spectrum_size; ++i) w.place(i, wavelength_low + (float(i * sets + set) + 0.5f) * step, 1 / range);
+      sum += double(luminaire.emission->power(luminaire, w).average());
+    }
+    double watts = sum / sets * double(range);
+    // A luminaire at infinity says what passes through a disc of radius 1 m: the scene's own disc is larger or smaller.
+    if (luminaire.infinite()) watts *= double(scene_radius) * double(scene_radius);
+    if (!(watts >= 0 && std::isfinite(watts)))
+      luminaire.emission->fail({}, "the power of the luminaire is not a finite number: " + std::to_string(watts) + " W");
+    return watts;
+  }
+
+  std::vector<const SceneObject*> luminaires_;
+  std::vector<float> probabilities_, cumulative_;
+};
+
+const Register<PowerLightSampler> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,29 @@
+#pragma once
+// Image files as linear numbers: what encodes them is undone before anything filters them.
+
+#include <OpenImageIO/imageio.h>
+
+#include <string>
+#include <vector>
+
+namespace etendue {
+
+/// The transfer function a file's numbers are in, when `transfer` is "auto": "srgb" for integers, "linear" for floats.
+inline constexpr const char* automatic_transfer = "auto";
+/// Throws Error with a suggestion for an unknown name.
+void check_transfer(const std::string& transfer);
+
+/// Pixels from top to bottom, three channels interleaved; a grey image has three equal ones, and alpha is left out.
+struct LinearImage {
+  int width = 0, height = 0;
+  std::vector<float> rgb;
+};
+/// Throws Error naming the file and the reason.
+LinearImage read_linear_image(const std::string& path, const std::string& transfer);
+
+/// An image reader for OpenImageIO's caches, which gives a file's numbers decoded. It opens files by a key that tells the
+/// path, the transfer function and when the file was last changed.
+OIIO::ImageInput* make_linear_input();
+std::string linear_image_key(const std::string& path, const std::string& transfer);
+
+}  // namespace etendue

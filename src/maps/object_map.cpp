@@ -1,0 +1,15 @@
+// What all maps have in common: they have no members of their own.
+
+#include "etendue/object_map.h"
+
+namespace etendue {
+
+void ObjectMap::describe(Description<ObjectMap>& d) {
+  d.summary(
+      "A number or a colour at each point of a surface (a texture). Where a map is expected, a plain number or colour may "
+      "stand.");
+}
+
+static const Register<ObjectMap> registered;
+
+}  // namespace etendue

@@ -1,0 +1,131 @@
+// What all mesh formats share.
+
+#include "mesh_data.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "etendue/component.h"
+#include "polygon_triangulation.h"
+
+namespace etendue {
+
+MappedFile::MappedFile(const std::string& path) {
+  const int handle = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (handle < 0) throw Error(std::string("cannot open: ") + std::strerror(errno));
+  struct stat status {};
+  if (::fstat(handle, &status) != 0 || !S_ISREG(status.st_mode)) {
+    const std::string reason = S_ISDIR(status.st_mode) ? "it is a folder" : "it is no regular file";
+    ::close(handle);
+    throw Error("cannot read: " + reason);
+  }
+  size_ = size_t(status.st_size);
+  if (size_ > 0) {
+    void* at = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, handle, 0);
+    const int reason = errno;
+    ::close(handle);
+    if (at == MAP_FAILED) throw Error(std::string("cannot read: ") + std::strerror(reason));
+    ::madvise(at, size_, MADV_SEQUENTIAL);
+    data_ = static_cast<const char*>(at);
+  } else {
+    ::close(handle);
+  }
+}
+
+MappedFile::~MappedFile() {
+  if (data_) ::munmap(const_cast<char*>(data_), size_);
+}
+
+MeshData read_mesh(const std::string& path) {
+  try {
+    const MappedFile file(path);
+    const std::string_view text = file.text();
+    if (text.empty()) throw Error("the file is empty");
+    if (text.starts_with("ply\n") || text.starts_with("ply\r")) return read_ply(text);
+    std::string ending = path.substr(std::min(path.size(), path.find_last_of('.') + 1));
+    for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+    if (ending == "ply") return read_ply(text);
+    if (ending == "obj") return read_obj(text);
+    throw Error("this is no mesh format that is known here (PLY and OBJ are; others come in through an importer)");
+  } catch (const Error& error) {
+    throw Error("'" + path + "': " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw Error("'" + path + "': not enough memory");
+  }
+}
+
+void drop_unusable(MeshData& mesh, const std::string& whose) {
+  size_t kept = 0, not_finite = 0, without_area = 0;
+  constexpr float largest = 1e18f;  // squares of coordinates must stay finite, and so does Embree require
+  for (const auto& t : mesh.triangles) {
+    double p[3][3];
+    bool usable = true;
+    for (size_t c = 0; c < 3; ++c) {
+      const Point3& q = mesh.positions[t[c]];
+      usable = usable && std::abs(q.x) < largest && std::abs(q.y) < largest && std::abs(q.z) < largest;  // false for NaN
+      p[c][0] = q.x;
+      p[c][1] = q.y;
+      p[c][2] = q.z;
+    }
+    if (!usable) {
+      ++not_finite;
+      continue;
+    }
+    double e1[3], e2[3], longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      e1[k] = p[1][k] - p[0][k];
+      e2[k] = p[2][k] - p[0][k];
+      longest = std::max({longest, std::abs(e1[k]), std::abs(e2[k])});
+    }
+    const double x = e1[1] * e2[2] - e1[2] * e2[1], y = e1[2] * e2[0] - e1[0] * e2[2], z = e1[0] * e2[1] - e1[1] * e2[0];
+    // Twice the area below 1e-7 of the longest side's square: the height is lost in the rounding of the corners.
+    const double least = 1e-7 * longest * longest;
+    if (!(x * x + y * y + z * z > least * least) || longest < 1e-18) {
+      ++without_area;
+      continue;
+    }
+    mesh.triangles[kept++] = t;
+  }
+  if (kept == 0 && !mesh.triangles.empty())
+    throw Error(whose + ": none of its " + std::to_string(mesh.triangles.size()) + " triangles can be used (" +
+                std::to_string(not_finite) + " with coordinates that are not finite, " + std::to_string(without_area) +
+                " without area)");
+  mesh.triangles.resize(kept);
+  if (not_finite > 0) warn(whose + ": left out " + std::to_string(not_finite) + " triangles with coordinates that are not finite");
+  if (without_area > 0) warn(whose + ": left out " + std::to_string(without_area) + " triangles without area");
+}
+
+void append_polygon(MeshData& mesh, const std::uint32_t* corners, size_t count) {
+  if (count < 3) return;
+  if (count == 3) {
+    mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+    return;
+  }
+  thread_local std::vector<Point3> points;
+  thread_local std::vector<std::array<std::uint32_t, 3>> cut;
+  points.clear();
+  for (size_t i = 0; i < count; ++i) points.push_back(mesh.positions[corners[i]]);
+  const Vector3 normal = newell_normal(points);
+  bool convex = true;
+  for (size_t i = 2; i < count && convex; ++i)
+    convex = dot(cross(points[i - 1] - points[0], points[i] - points[0]), normal) >= 0;
+  for (size_t i = 0; i < count && convex; ++i) {
+    const Point3 &a = points[i], &b = points[(i + 1) % count], &c = points[(i + 2) % count];
+    convex = dot(cross(b - a, c - b), normal) >= 0;
+  }
+  bool sound = is_finite(normal);
+  if (convex || !sound || count > 4096) {  // cutting ears takes quadratic time: a hostile count must not stop the program
+    for (size_t i = 2; i < count; ++i) mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    return;
+  }
+  cut.clear();
+  triangulate(points, cut);
+  for (const auto& t : cut) mesh.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
+}
+
+}  // namespace etendue

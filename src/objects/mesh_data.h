@@ -1,0 +1,50 @@
+#pragma once
+// Triangles as they come from a file or a list, and how they are read.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "etendue/vector.h"
+
+namespace etendue {
+
+/// Triangles with shared vertices. Normals and uvs are by vertex, or absent.
+struct MeshData {
+  std::vector<Point3> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Normal3> normals;  ///< a zero normal: the vertex has none
+  std::vector<Point2> uvs;
+};
+
+/// A whole file in memory without copying. Throws Error with the system's reason.
+class MappedFile {
+ public:
+  explicit MappedFile(const std::string& path);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+  std::string_view text() const { return {data_, size_}; }
+
+ private:
+  const char* data_ = nullptr;
+  size_t size_ = 0;
+};
+
+// The readers take the file's contents. They throw Error("what is wrong"), with the line for text, without the file's name.
+// Indices are checked, positions are not: that is for drop_unusable.
+MeshData read_ply(std::string_view file);
+MeshData read_obj(std::string_view file);
+/// By the file's contents (PLY) or the ending of its name. Throws Error("'name': what is wrong").
+MeshData read_mesh(const std::string& path);
+
+/// Removes triangles with a corner that is not finite and triangles without area, with one warning for each kind that
+/// names `whose`. Throws Error when nothing is left.
+void drop_unusable(MeshData&, const std::string& whose);
+
+/// Appends the triangles of a polygon given by its corners' indices: a fan when it is convex, else by cutting ears.
+void append_polygon(MeshData&, const std::uint32_t* corners, size_t count);
+
+}  // namespace etendue

@@ -1,0 +1,368 @@
+// PLY files: text and binary of both byte orders (Turk 1994, "The PLY polygon file format").
+
+#include <charconv>
+#include <cstring>
+#include <optional>
+
+#include "etendue/error.h"
+#include "mesh_data.h"
+
+namespace etendue {
+namespace {
+
+enum class Type : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+size_t size_of(Type t) {
+  constexpr size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[size_t(t)];
+}
+
+std::optional<Type> find_type(std::string_view name) {
+  constexpr std::string_view names[] = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64",
+                                        "char", "uchar", "short", "ushort", "int",   "uint",   "float",   "double"};
+  for (size_t i = 0; i < 16; ++i)
+    if (names[i] == name) return Type(i % 8);
+  return {};
+}
+
+struct Property {
+  std::string name;
+  Type type = Type::float32;
+  bool list = false;
+  Type count_type = Type::uint8;
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+  /// Bytes one of them takes at least.
+  size_t least_size(bool text) const {
+    size_t n = 0;
+    for (const Property& p : properties) n += text ? 2 : (p.list ? size_of(p.count_type) : size_of(p.type));
+    return n;
+  }
+  bool fixed_size() const {
+    for (const Property& p : properties)
+      if (p.list) return false;
+    return true;
+  }
+  int find(std::initializer_list<std::string_view> names) const {
+    for (std::string_view wanted : names)
+      for (size_t i = 0; i < properties.size(); ++i)
+        if (properties[i].name == wanted) return int(i);
+    return -1;
+  }
+};
+
+template <class T>
+T load(const char* at, bool swap) {
+  T value;
+  if (swap) {
+    char bytes[sizeof(T)];
+    for (size_t i = 0; i < sizeof(T); ++i) bytes[i] = at[sizeof(T) - 1 - i];
+    std::memcpy(&value, bytes, sizeof(T));
+  } else {
+    std::memcpy(&value, at, sizeof(T));
+  }
+  return value;
+}
+
+double load_number(const char* at, Type type, bool swap) {
+  switch (type) {
+    case Type::int8: return load<std::int8_t>(at, swap);
+    case Type::uint8: return load<std::uint8_t>(at, swap);
+    case Type::int16: return load<std::int16_t>(at, swap);
+    case Type::uint16: return load<std::uint16_t>(at, swap);
+    case Type::int32: return load<std::int32_t>(at, swap);
+    case Type::uint32: return load<std::uint32_t>(at, swap);
+    case Type::float32: return double(load<float>(at, swap));
+    case Type::float64: return load<double>(at, swap);
+  }
+  return 0;
+}
+
+/// Numbers of a PLY body, one after another.
+class Body {
+ public:
+  Body(std::string_view file, size_t start, bool text, bool swap)
+      : begin_(file.data()), at_(file.data() + start), end_(file.data() + file.size()), text_(text), swap_(swap) {}
+
+  size_t left() const { return size_t(end_ - at_); }
+  const char* at() const { return at_; }
+  void advance(size_t bytes) { at_ += bytes; }
+  bool text() const { return text_; }
+  bool swap() const { return swap_; }
+
+  double number(Type type) {
+    if (text_) return text_number();
+    const size_t size = size_of(type);
+    if (left() < size) truncated();
+    const double value = load_number(at_, type, swap_);
+    at_ += size;
+    return value;
+  }
+
+  std::uint64_t count(const Property& p) {
+    const double n = number(p.count_type);
+    if (!(n >= 0 && n <= 4294967295.0) || n != std::floor(n)) error("a list of " + p.name + " has no valid length");
+    const std::uint64_t needed = std::uint64_t(n) * (text_ ? 1 : size_of(p.type));
+    if (needed > left()) error("a list of " + p.name + " claims " + std::to_string(std::uint64_t(n)) + " entries, more than the file holds");
+    return std::uint64_t(n);
+  }
+
+  void skip(const Property& p) {
+    const std::uint64_t n = p.list ? count(p) : 1;
+    if (text_) {
+      for (std::uint64_t i = 0; i < n; ++i) text_number();
+    } else {
+      if (n * size_of(p.type) > left()) truncated();
+      at_ += n * size_of(p.type);
+    }
+  }
+
+  [[noreturn]] void truncated() const { error("the file ends too early"); }
+  [[noreturn]] void error(const std::string& message) const {
+    if (!text_) throw Error(message);
+    throw Error("line " + std::to_string(1 + std::count(begin_, std::min(at_, end_), '\n')) + ": " + message);
+  }
+
+ private:
+  double text_number() {
+    while (at_ < end_ && (*at_ == ' ' || *at_ == '\n' || *at_ == '\r' || *at_ == '\t')) ++at_;
+    if (at_ == end_) truncated();
+    if (*at_ == '+') ++at_;
+    double value = 0;
+    const auto [stop, code] = std::from_chars(at_, end_, value);
+    if (code == std::errc::invalid_argument) error("a number is expected");
+    if (code == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();  // its triangles are dropped
+    at_ = stop;
+    if (at_ < end_ && static_cast<unsigned char>(*at_) > ' ') error("a number is expected");
+    return value;
+  }
+
+  const char *begin_, *at_, *end_;
+  bool text_, swap_;
+};
+
+struct Header {
+  bool text = false, swap = false;
+  std::vector<Element> elements;
+  size_t size = 0;  // bytes up to the body
+};
+
+/// Text for a message: what is not printable becomes '?'.
+std::string shown(std::string_view s) {
+  std::string t(s.substr(0, 40));
+  for (char& c : t)
+    if (c < 32 || c > 126) c = '?';
+  return "'" + t + "'";
+}
+
+Header read_header(std::string_view file) {
+  Header header;
+  size_t at = 0;
+  bool format_known = false;
+  for (int line_number = 1;; ++line_number) {
+    const auto fail = [&](const std::string& message) { throw Error("line " + std::to_string(line_number) + ": " + message); };
+    if (at >= file.size()) fail("the file ends within the header");
+    size_t end = file.find('\n', at);
+    if (end == std::string_view::npos) end = file.size();
+    std::string_view line = file.substr(at, std::min<size_t>(end - at, 4096));
+    at = std::min(end + 1, file.size());
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    std::vector<std::string_view> words;
+    for (size_t i = 0; i < line.size();) {
+      const size_t begin = line.find_first_not_of(" \t", i);
+      if (begin == std::string_view::npos) break;
+      const size_t stop = std::min(line.find_first_of(" \t", begin), line.size());
+      words.push_back(line.substr(begin, stop - begin));
+      i = stop;
+    }
+    if (line_number == 1) {
+      if (words.size() != 1 || words[0] != "ply") fail("a PLY file must begin with 'ply'");
+      continue;
+    }
+    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
+    if (words[0] == "end_header") break;
+    if (words[0] == "format") {
+      const std::string_view kind = words.size() > 1 ? words[1] : "";
+      header.text = kind == "ascii";
+      header.swap = kind == (std::endian::native == std::endian::little ? "binary_big_endian" : "binary_little_endian");
+      if (!header.text && kind != "binary_little_endian" && kind != "binary_big_endian") fail("unknown format " + shown(kind));
+      format_known = true;
+    } else if (words[0] == "element") {
+      Element element;
+      if (words.size() != 3) fail("an element needs a name and a count");
+      element.name = words[1];
+      const auto [stop, code] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
+      if (code != std::errc() || stop != words[2].data() + words[2].size()) fail("no valid count of " + shown(words[1]) + ": " + shown(words[2]));
+      for (const Element& other : header.elements)
+        if (other.name == element.name) fail("element " + shown(words[1]) + " is declared twice");
+      header.elements.push_back(std::move(element));
+    } else if (words[0] == "property") {
+      if (header.elements.empty()) fail("a property before any element");
+      Property property;
+      property.list = words.size() == 5 && words[1] == "list";
+      if (!property.list && words.size() != 3) fail("a property needs a type and a name");
+      const std::optional<Type> type = find_type(words[property.list ? 3 : 1]);
+      const std::optional<Type> count = property.list ? find_type(words[2]) : Type::uint8;
+      if (!type || !count) fail("unknown type in property " + shown(words.back()));
+      if (property.list && (*count == Type::float32 || *count == Type::float64)) fail("the length of a list must be an integer");
+      property.type = *type;
+      property.count_type = *count;
+      property.name = words.back();
+      header.elements.back().properties.push_back(std::move(property));
+    } else {
+      fail("unknown header word " + shown(words[0]));
+    }
+  }
+  if (!format_known) throw Error("the header names no format");
+  header.size = at;
+  return header;
+}
+
+void read_vertices(const Element& e, Body& body, MeshData& mesh) {
+  const int x = e.find({"x"}), y = e.find({"y"}), z = e.find({"z"});
+  if (x < 0 || y < 0 || z < 0) throw Error("the vertices have no x, y and z");
+  const int nx = e.find({"nx"}), ny = e.find({"ny"}), nz = e.find({"nz"});
+  const int u = e.find({"u", "s", "texture_u", "texture_s"}), v = e.find({"v", "t", "texture_v", "texture_t"});
+  const bool normals = nx >= 0 && ny >= 0 && nz >= 0, uvs = u >= 0 && v >= 0;
+  const size_t count = size_t(e.count);
+  mesh.positions.reserve(count + 1);  // one more, for the padding the object adds
+  mesh.positions.resize(count);
+  if (normals) mesh.normals.resize(count);
+  if (uvs) mesh.uvs.resize(count);
+
+  if (!body.text() && e.fixed_size()) {
+    std::vector<size_t> offsets;
+    size_t stride = 0;
+    for (const Property& p : e.properties) {
+      offsets.push_back(stride);
+      stride += size_of(p.type);
+    }
+    if (body.left() / stride < count) body.truncated();
+    // One column after another, its type found once.
+    const auto column = [&](int property, char* to, size_t step) {
+      const char* from = body.at() + offsets[size_t(property)];
+      const Type type = e.properties[size_t(property)].type;
+      if (type == Type::float32 && !body.swap()) {
+        for (size_t i = 0; i < count; ++i, from += stride, to += step) std::memcpy(to, from, 4);
+      } else {
+        for (size_t i = 0; i < count; ++i, from += stride, to += step) {
+          const float value = float(load_number(from, type, body.swap()));
+          std::memcpy(to, &value, 4);
+        }
+      }
+    };
+    const auto at = [](void* array, size_t component) { return static_cast<char*>(array) + 4 * component; };
+    if (y == x + 1 && z == x + 2 && stride == 12 && !body.swap() && e.properties[size_t(x)].type == Type::float32 &&
+        e.properties[size_t(y)].type == Type::float32 && e.properties[size_t(z)].type == Type::float32) {
+      std::memcpy(static_cast<void*>(mesh.positions.data()), body.at(), 12 * count);
+    } else {
+      column(x, at(mesh.positions.data(), 0), 12);
+      column(y, at(mesh.positions.data(), 1), 12);
+      column(z, at(mesh.positions.data(), 2), 12);
+    }
+    if (normals) {
+      column(nx, at(mesh.normals.data(), 0), 12);
+      column(ny, at(mesh.normals.data(), 1), 12);
+      column(nz, at(mesh.normals.data(), 2), 12);
+    }
+    if (uvs) {
+      column(u, at(mesh.uvs.data(), 0), 8);
+      column(v, at(mesh.uvs.data(), 1), 8);
+    }
+    body.advance(stride * count);
+    return;
+  }
+  std::vector<float> row(e.properties.size());
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t k = 0; k < row.size(); ++k) {
+      if (e.properties[k].list)
+        body.skip(e.properties[k]);
+      else
+        row[k] = float(body.number(e.properties[k].type));
+    }
+    mesh.positions[i] = {row[size_t(x)], row[size_t(y)], row[size_t(z)]};
+    if (normals) mesh.normals[i] = {row[size_t(nx)], row[size_t(ny)], row[size_t(nz)]};
+    if (uvs) mesh.uvs[i] = {row[size_t(u)], row[size_t(v)]};
+  }
+}
+
+void read_faces(const Element& e, Body& body, MeshData& mesh) {
+  const int indices = e.find({"vertex_indices", "vertex_index"});
+  if (indices < 0 || !e.properties[size_t(indices)].list) throw Error("the faces have no list 'vertex_indices'");
+  const std::uint64_t vertices = mesh.positions.size();
+  mesh.triangles.reserve(size_t(e.count));
+  const auto out_of_range = [&](std::uint64_t face, double index) {
+    body.error("face " + std::to_string(face) + " refers to vertex " + std::to_string(std::int64_t(clamp(float(index), -9e18f, 9e18f))) +
+               " of " + std::to_string(vertices) + " (counting from 0)");
+  };
+  const Property& list = e.properties[size_t(indices)];
+  std::uint64_t face = 0;
+  if (!body.text() && e.properties.size() == 1 && size_of(list.count_type) == 1 && size_of(list.type) == 4 && list.type != Type::float32) {
+    // The common layout: a byte and that many 32-bit indices. Triangles are taken here, anything else below.
+    const char* at = body.at();
+    const char* const end = at + body.left();
+    const bool swap = body.swap();
+    for (; face < e.count && end - at >= 13 && *at == 3; ++face, at += 13) {
+      std::array<std::uint32_t, 3> t;
+      std::memcpy(t.data(), at + 1, 12);
+      if (swap)
+        for (std::uint32_t& i : t) i = __builtin_bswap32(i);
+      if (t[0] >= vertices || t[1] >= vertices || t[2] >= vertices) break;  // reported below
+      mesh.triangles.push_back(t);
+    }
+    body.advance(size_t(at - body.at()));
+  }
+  std::vector<std::uint32_t> corners;
+  for (; face < e.count; ++face)
+    for (const Property& p : e.properties) {
+      if (&p != &list) {
+        body.skip(p);
+        continue;
+      }
+      const std::uint64_t n = body.count(p);
+      corners.clear();
+      for (std::uint64_t i = 0; i < n; ++i) {
+        const double index = body.number(p.type);
+        if (!(index >= 0 && index < double(vertices))) out_of_range(face, index);
+        corners.push_back(std::uint32_t(index));
+      }
+      append_polygon(mesh, corners.data(), corners.size());
+    }
+}
+
+}  // namespace
+
+MeshData read_ply(std::string_view file) {
+  const Header header = read_header(file);
+  Body body(file, header.size, header.text, header.swap);
+  MeshData mesh;
+  bool vertices = false, faces = false;
+  for (const Element& e : header.elements) {
+    if (e.properties.empty() || e.count == 0) continue;
+    // Nothing is reserved for a count that the rest of the file cannot hold (the last number of a text needs no space).
+    if (e.count > (body.left() + 1) / e.least_size(header.text))
+      throw Error("the header claims " + std::to_string(e.count) + " of element " + shown(e.name) + ", more than the file holds");
+    if (e.name == "vertex") {
+      if (e.count > 0xffffffffu) throw Error("more than 2^32 vertices");
+      read_vertices(e, body, mesh);
+      vertices = true;
+    } else if (e.name == "face") {
+      if (!vertices) throw Error("faces come before the vertices they refer to");
+      read_faces(e, body, mesh);
+      faces = true;
+    } else {
+      for (std::uint64_t i = 0; i < e.count; ++i)
+        for (const Property& p : e.properties) body.skip(p);
+    }
+    if (vertices && faces) break;
+  }
+  if (!vertices) throw Error("it has no vertices");
+  if (mesh.triangles.empty()) throw Error("it has no faces");
+  return mesh;
+}
+
+}  // namespace etendue

@@ -1,0 +1,39 @@
+// What all scene objects share.
+
+#include "etendue/scene_object.h"
+
+#include "etendue/shader.h"
+
+namespace etendue {
+
+void SceneObject::describe(Description<SceneObject>& d) {
+  d.summary("A shape with its place, its material and its light.")
+      .member<&SceneObject::transform>("transform", "", "from the object's own coordinates to those of the scene it is in",
+                                       Effect::rebuild)
+      .member<&SceneObject::shader>("shader", "", "how its surface scatters light; none: black")
+      .member<&SceneObject::emission>("emission", "", "how it emits light; none: it does not", Effect::rebuild)
+      .member<&SceneObject::interior>("interior", "", "the medium inside; none: vacuum", Effect::rebuild)
+      .member<&SceneObject::sides>("sides", "", "which sides scatter light; the other absorbs it", choices("front", "back", "both"))
+      .member<&SceneObject::priority>("priority", "1", "where objects overlap, the one of highest priority fills the space");
+}
+
+SurfaceSample SceneObject::sample_visible(const Point3& from, Point2 u, float time) const {
+  SurfaceSample s = sample_area(u, time);
+  if (s.density == 0 || s.delta || s.infinite) return s;
+  const Vector3 to = s.point.position - from;
+  const float d2 = length_squared(to);
+  s.distance = std::sqrt(d2);
+  s.direction = d2 > 0 ? to / s.distance : Vector3{0, 0, 1};
+  const float cosine = std::abs(dot(s.point.normal, s.direction));
+  s.density = cosine > 0 && d2 > 0 ? s.density * d2 / cosine : 0;
+  return s;
+}
+
+float SceneObject::visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
+  const float cosine = std::abs(dot(p.normal, direction));
+  return cosine > 0 ? area_density(p) * distance_squared(p.position, from) / cosine : 0;
+}
+
+static const Register<SceneObject> registered;
+
+}  // namespace etendue

@@ -1,0 +1,266 @@
+// Affine transforms and their interpolation over time.
+
+#include "etendue/transform.h"
+
+#include "etendue/error.h"
+
+namespace etendue {
+namespace {
+
+using Matrix3 = std::array<double, 9>;
+
+double determinant(const Matrix3& a) {
+  return a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
+}
+
+/// The inverse by cofactors; the determinant must not be zero.
+Matrix3 inverse_of(const Matrix3& a) {
+  const double s = 1 / determinant(a);
+  return {s * (a[4] * a[8] - a[5] * a[7]), s * (a[2] * a[7] - a[1] * a[8]), s * (a[1] * a[5] - a[2] * a[4]),
+          s * (a[5] * a[6] - a[3] * a[8]), s * (a[0] * a[8] - a[2] * a[6]), s * (a[2] * a[3] - a[0] * a[5]),
+          s * (a[3] * a[7] - a[4] * a[6]), s * (a[1] * a[6] - a[0] * a[7]), s * (a[0] * a[4] - a[1] * a[3])};
+}
+
+Matrix3 linear_part(const Transform::Matrix& m) {
+  return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
+}
+
+/// The product of the lengths of the columns: the largest determinant columns of these lengths can have.
+double column_product(const Matrix3& a) {
+  double product = 1;
+  for (size_t c = 0; c < 3; ++c) product *= std::sqrt(a[c] * a[c] + a[3 + c] * a[3 + c] + a[6 + c] * a[6 + c]);
+  return product;
+}
+
+/// The unit quaternion (x y z w) of a rotation matrix, from its largest component so that nothing cancels.
+std::array<double, 4> quaternion_of(const Matrix3& r) {
+  const double trace = r[0] + r[4] + r[8];
+  if (trace > 0) {
+    const double s = 2 * std::sqrt(trace + 1);
+    return {(r[7] - r[5]) / s, (r[2] - r[6]) / s, (r[3] - r[1]) / s, s / 4};
+  }
+  const size_t i = r[0] > r[4] ? (r[0] > r[8] ? 0 : 2) : (r[4] > r[8] ? 1 : 2);
+  const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+  const double s = 2 * std::sqrt(std::max(0.0, 1 + r[4 * i] - r[4 * j] - r[4 * k]));
+  std::array<double, 4> q{};
+  q[i] = s / 4;
+  q[j] = (r[3 * j + i] + r[3 * i + j]) / s;
+  q[k] = (r[3 * k + i] + r[3 * i + k]) / s;
+  q[3] = (r[3 * k + j] - r[3 * j + k]) / s;
+  return q;
+}
+
+Matrix3 rotation_of(const std::array<double, 4>& q) {
+  const double x = q[0], y = q[1], z = q[2], w = q[3];
+  return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
+          2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+          2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
+}
+
+double dot4(const std::array<float, 4>& a, const std::array<float, 4>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < 4; ++i) sum += double(a[i]) * b[i];
+  return sum;
+}
+
+/// Interpolation along the great circle (Shoemake 1985); linear where the two nearly agree.
+std::array<double, 4> slerp(double t, const std::array<float, 4>& a, const std::array<float, 4>& b) {
+  const double cosine = std::min(1.0, dot4(a, b));
+  double wa = 1 - t, wb = t;
+  if (cosine < 0.9999) {
+    const double angle = std::acos(cosine), s = std::sin(angle);
+    wa = std::sin((1 - t) * angle) / s;
+    wb = std::sin(t * angle) / s;
+  }
+  std::array<double, 4> q{};
+  double norm = 0;
+  for (size_t i = 0; i < 4; ++i) {
+    q[i] = wa * a[i] + wb * b[i];
+    norm += q[i] * q[i];
+  }
+  for (double& x : q) x /= std::sqrt(norm);
+  return q;
+}
+
+}  // namespace
+
+Transform::Transform(const Matrix& matrix) : m_(matrix) {
+  const Matrix3 a = linear_part(m_);
+  const double det = determinant(a), largest = column_product(a);
+  bool finite = true;
+  for (float x : m_) finite = finite && std::isfinite(x);
+  // A determinant this far below what its columns allow is what rounding leaves of a singular matrix.
+  valid_ = finite && largest > 0 && std::abs(det) > 1e-7 * largest;
+  flips_ = det < 0;
+  identity_ = m_ == Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  if (!valid_) return;
+  const Matrix3 i = inverse_of(a);
+  for (size_t r = 0; r < 3; ++r) {
+    for (size_t c = 0; c < 3; ++c) inverse_[4 * r + c] = float(i[3 * r + c]);
+    inverse_[4 * r + 3] = float(-(i[3 * r] * m_[3] + i[3 * r + 1] * m_[7] + i[3 * r + 2] * m_[11]));
+  }
+  for (float x : inverse_) valid_ = valid_ && std::isfinite(x);
+}
+
+Transform Transform::translate(const Vector3& by) {
+  return Transform(Matrix{1, 0, 0, by.x, 0, 1, 0, by.y, 0, 0, 1, by.z});
+}
+
+Transform Transform::rotate(float angle, const Vector3& axis) {
+  // Rodrigues' formula.
+  const double n = std::sqrt(double(axis.x) * axis.x + double(axis.y) * axis.y + double(axis.z) * axis.z);
+  const double x = axis.x / n, y = axis.y / n, z = axis.z / n, c = std::cos(double(angle)), s = std::sin(double(angle)), d = 1 - c;
+  return Transform(Matrix{float(c + x * x * d), float(x * y * d - z * s), float(x * z * d + y * s), 0,  //
+                          float(y * x * d + z * s), float(c + y * y * d), float(y * z * d - x * s), 0,  //
+                          float(z * x * d - y * s), float(z * y * d + x * s), float(c + z * z * d), 0});
+}
+
+Transform Transform::scale(const Vector3& by) {
+  return Transform(Matrix{by.x, 0, 0, 0, 0, by.y, 0, 0, 0, 0, by.z, 0});
+}
+
+Transform Transform::look_at(const Point3& from, const Point3& to, const Vector3& up) {
+  // Where the direction or the left axis vanishes the columns stay zero, and the transform is not valid.
+  const auto unit = [](const Vector3& v) { return length_squared(v) > 0 ? normalize(v) : Vector3{}; };
+  const Vector3 z = unit(to - from);
+  const Vector3 side = cross(unit(up), z);
+  const Vector3 x = length(side) > 1e-6f ? normalize(side) : Vector3{};
+  const Vector3 y = cross(z, x);
+  return Transform(Matrix{x.x, y.x, z.x, from.x, x.y, y.y, z.y, from.y, x.z, y.z, z.z, from.z});
+}
+
+Transform Transform::inverse() const {
+  Transform t = *this;
+  std::swap(t.m_, t.inverse_);
+  return t;
+}
+
+Transform Transform::operator*(const Transform& b) const {
+  if (identity_) return b;
+  if (b.identity_) return *this;
+  Matrix m{};
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 4; ++c) {
+      double sum = c == 3 ? double(m_[4 * r + 3]) : 0.0;
+      for (size_t k = 0; k < 3; ++k) sum += double(m_[4 * r + k]) * b.m_[4 * k + c];
+      m[4 * r + c] = float(sum);
+    }
+  return Transform(m);
+}
+
+Bounds3 Transform::operator()(const Bounds3& b) const {
+  Bounds3 result;
+  if (b.empty()) return result;
+  for (int i = 0; i < 8; ++i) result.add((*this)(b.corner(i)));
+  return result;
+}
+
+Vector3 Transform::error_bound(const Point3& p, const Vector3& error) const {
+  // Three products, three sums and the rounding of the matrix itself: five roundings at most meet in one term.
+  constexpr float g = rounding_bound(5);
+  const auto row = [&](size_t r) {
+    const float a = std::abs(m_[4 * r]), b = std::abs(m_[4 * r + 1]), c = std::abs(m_[4 * r + 2]);
+    return g * (a * std::abs(p.x) + b * std::abs(p.y) + c * std::abs(p.z) + std::abs(m_[4 * r + 3])) +
+           (1 + g) * (a * error.x + b * error.y + c * error.z);
+  };
+  return {row(0), row(1), row(2)};
+}
+
+AnimatedTransform::AnimatedTransform(std::vector<Key> keys) : keys_(std::move(keys)) {
+  if (keys_.empty()) throw Error("an animated transform needs at least one key");
+  for (size_t i = 0; i < keys_.size(); ++i) {
+    if (!std::isfinite(keys_[i].time)) throw Error("the time of a transform's key must be finite");
+    if (i > 0 && !(keys_[i - 1].time < keys_[i].time)) throw Error("the times of a transform's keys must increase");
+  }
+  if (!animated() || !valid()) return;
+  for (const Key& key : keys_) {
+    Parts parts = decompose(key.transform);
+    // q and -q are the same rotation: take the one nearer to the key before, which gives the shorter way.
+    if (!parts_.empty() && dot4(parts_.back().rotation, parts.rotation) < 0)
+      for (float& x : parts.rotation) x = -x;
+    parts_.push_back(parts);
+  }
+}
+
+bool AnimatedTransform::valid() const {
+  // Between keys of which only one mirrors, the motion would pass through a flat state.
+  for (const Key& key : keys_)
+    if (!key.transform.valid() || key.transform.flips() != keys_.front().transform.flips()) return false;
+  return true;
+}
+
+AnimatedTransform::Parts AnimatedTransform::decompose(const Transform& transform) {
+  // Polar decomposition M = R S by averaging with the inverse transpose (Higham 1986), which converges quadratically.
+  const Matrix3 m = linear_part(transform.matrix());
+  Matrix3 r = m;
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const Matrix3 i = inverse_of(r);
+    double change = 0;
+    for (size_t row = 0; row < 3; ++row)
+      for (size_t c = 0; c < 3; ++c) {
+        const double next = 0.5 * (r[3 * row + c] + i[3 * c + row]);
+        change = std::max(change, std::abs(next - r[3 * row + c]));
+        r[3 * row + c] = next;
+      }
+    if (change < 1e-12) break;
+  }
+  if (determinant(r) < 0)
+    for (double& x : r) x = -x;  // a mirroring goes into the stretch
+  Parts parts;
+  parts.translation = {transform.matrix()[3], transform.matrix()[7], transform.matrix()[11]};
+  const std::array<double, 4> q = quaternion_of(r);
+  for (size_t i = 0; i < 4; ++i) parts.rotation[i] = float(q[i]);
+  for (size_t row = 0; row < 3; ++row)
+    for (size_t c = 0; c < 3; ++c) {
+      double sum = 0;
+      for (size_t k = 0; k < 3; ++k) sum += r[3 * k + row] * m[3 * k + c];  // S = R^T M
+      parts.stretch[3 * row + c] = float(sum);
+    }
+  return parts;
+}
+
+Transform AnimatedTransform::at(float time) const {
+  if (!animated() || parts_.empty() || time <= keys_.front().time) return keys_.front().transform;
+  if (time >= keys_.back().time) return keys_.back().transform;
+  size_t i = 0;
+  while (!(time < keys_[i + 1].time)) ++i;
+  if (time == keys_[i].time || keys_[i].transform == keys_[i + 1].transform) return keys_[i].transform;
+  const Parts &a = parts_[i], &b = parts_[i + 1];
+  const double t = (double(time) - keys_[i].time) / (double(keys_[i + 1].time) - keys_[i].time);
+  const Matrix3 r = rotation_of(slerp(t, a.rotation, b.rotation));
+  Transform::Matrix m{};
+  for (size_t row = 0; row < 3; ++row) {
+    for (size_t c = 0; c < 3; ++c) {
+      double sum = 0;
+      for (size_t k = 0; k < 3; ++k) sum += r[3 * row + k] * ((1 - t) * a.stretch[3 * k + c] + t * b.stretch[3 * k + c]);
+      m[4 * row + c] = float(sum);
+    }
+    const int axis = int(row);
+    m[4 * row + 3] = float((1 - t) * a.translation[axis] + t * b.translation[axis]);
+  }
+  return Transform(m);
+}
+
+Bounds3 AnimatedTransform::sweep(const Bounds3& box, float begin, float end) const {
+  if (!animated()) return still()(box);
+  Bounds3 swept;
+  if (box.empty()) return swept;
+  const int steps = 64 * int(keys_.size() - 1);
+  float largest_step = 0;
+  Point3 before[8];
+  for (int s = 0; s <= steps; ++s) {
+    const Transform t = at(lerp(float(s) / float(steps), begin, end));
+    for (int c = 0; c < 8; ++c) {
+      const Point3 p = t(box.corner(c));
+      if (s > 0) largest_step = std::max(largest_step, distance(p, before[c]));
+      before[c] = p;
+      swept.add(p);
+    }
+  }
+  const Vector3 margin{largest_step, largest_step, largest_step};
+  swept.low = swept.low - margin;
+  swept.high = swept.high + margin;
+  return swept;
+}
+
+}  // namespace etendue

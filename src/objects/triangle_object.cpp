@@ -1,0 +1,338 @@
+#include "triangle_object.h"
+
+#include "etendue/warp.h"
+#include "geometry.h"
+#include "scenes/embree_device.h"
+#include "solid_angle.h"
+#include "triangle_test.h"
+
+namespace etendue {
+namespace {
+
+/// The unit vector along a cross product of edges, whatever their size.
+Vector3 unit_normal(const Vector3& n, float& inverse_length) {
+  const float nn = dot(n, n);
+  if (nn > 1e-30f && nn < 1e30f) [[likely]] {
+    inverse_length = 1 / std::sqrt(nn);
+    return inverse_length * n;
+  }
+  const float s = 1 / max_component(abs(n));
+  const Vector3 m = s * n;
+  const float l = 1 / length(m);
+  inverse_length = std::min(s * l, 1e30f);
+  return l * m;
+}
+
+/// Twice a triangle's area times its normal.
+Vector3 area_vector(const Point3& a, const Point3& b, const Point3& c) {
+  return cross(b - a, c - a);
+}
+
+/// Up to this many triangles are tested one by one when a scene does not traverse them itself.
+constexpr size_t few = 8;
+
+}  // namespace
+
+TriangleObject::TriangleObject() = default;
+TriangleObject::~TriangleObject() = default;
+
+void TriangleObject::adopt(MeshData mesh) {
+  mesh_ = std::move(mesh);
+  lazy_ = std::make_unique<Lazy>();
+  vertices_ = mesh_.positions.size();
+  if (!transform.animated() && !transform.still().identity()) {
+    const Transform& t = transform.still();
+    for (Point3& p : mesh_.positions) p = t(p);
+    for (Normal3& n : mesh_.normals) n = t(n);
+    if (t.flips())  // so that edges still turn around the front
+      for (auto& corner : mesh_.triangles) std::swap(corner[1], corner[2]);
+  }
+  for (Normal3& n : mesh_.normals) {
+    const float l = length(Vector3(n));
+    n = l > 0 && l < infinity ? Normal3(Vector3(n) / l) : Normal3{};
+  }
+  area_ = 0;
+  stored_bounds_ = {};
+  for (const auto& t : mesh_.triangles) {
+    const Point3 &a = mesh_.positions[t[0]], &b = mesh_.positions[t[1]], &c = mesh_.positions[t[2]];
+    area_ += 0.5 * double(length(area_vector(a, b, c)));
+    stored_bounds_.add(a);
+    stored_bounds_.add(b);
+    stored_bounds_.add(c);
+  }
+  mesh_.positions.push_back({});
+  bounds_ = transform.animated() ? swept(transform, stored_bounds_) : stored_bounds_;
+}
+
+TriangleObject::Corners TriangleObject::corners(std::uint32_t primitive, float time) const {
+  const auto& t = mesh_.triangles[primitive];
+  Corners c{{mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]}};
+  if (transform.animated()) {
+    const Transform moved = transform.at(time);
+    for (Point3& p : c.p) p = moved(p);
+    if (moved.flips()) std::swap(c.p[1], c.p[2]);
+  }
+  return c;
+}
+
+const EmbreeTriangles& TriangleObject::accelerator() const {
+  std::call_once(lazy_->accelerator_made, [this] { lazy_->accelerator = std::make_unique<EmbreeTriangles>(view()); });
+  return *lazy_->accelerator;
+}
+
+bool TriangleObject::intersect(const Ray& ray, Hit& hit) const {
+  const Ray local = transform.animated() ? ray_into(transform.at(ray.time), ray) : ray;
+  TriangleHit found{ray.maximum, 0, 0};
+  std::uint32_t primitive = 0;
+  bool any = false;
+  if (mesh_.triangles.size() > few) {
+    any = accelerator().nearest(local, found.t, primitive, found.u, found.v);
+  } else {
+    Ray shortened = local;
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      const auto& t = mesh_.triangles[i];
+      const Point3& a = mesh_.positions[t[0]];
+      const Vector3 e1 = mesh_.positions[t[1]] - a, e2 = mesh_.positions[t[2]] - a;
+      TriangleHit h;
+      if (!intersect_triangle(shortened, a, e1, e2, cross(e1, e2), h)) continue;
+      found = h;
+      shortened.maximum = h.t;
+      primitive = std::uint32_t(i);
+      any = true;
+    }
+  }
+  if (!any) return false;
+  hit.distance = found.t;
+  hit.object = this;
+  hit.primitive = primitive;
+  hit.u = found.u;
+  hit.v = found.v;
+  hit.depth = 0;
+  return true;
+}
+
+bool TriangleObject::occludes(const Ray& ray) const {
+  if (mesh_.triangles.size() > few)
+    return accelerator().any(transform.animated() ? ray_into(transform.at(ray.time), ray) : ray);
+  Hit hit;
+  return intersect(ray, hit);
+}
+
+void TriangleObject::fill(std::uint32_t primitive, float u, float v, float time, SurfacePoint& p) const {
+  const auto& t = mesh_.triangles[primitive];
+  const Point3& p0 = mesh_.positions[t[0]];
+  const Vector3 e1 = mesh_.positions[t[1]] - p0, e2 = mesh_.positions[t[2]] - p0;
+  const Vector3 n = cross(e1, e2);
+  float inverse_length = 0;
+  p.normal = Normal3(unit_normal(n, inverse_length));
+  p.position = p0 + (u * e1 + v * e2);
+
+  // How far the point may be from where an intersection test sees the plane, along the normal N/|N|. With E = |e1| + |e2|
+  // by axis: the point itself and moving it off the surface round its coordinates (3 roundings of p); interpolation,
+  // v0 - O and the product with N round terms of at most E (8 of them); and N, rounded by up to 3 roundings of
+  // X_i = |e1_j e2_k| + |e1_k e2_j|, turns the plane about v0, seen at a distance of at most E. For slivers this last
+  // bound exceeds what is useful, and is cut off.
+  const Vector3 a = abs(e1), b = abs(e2), extent = a + b;
+  const Vector3 x{a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
+  const Vector3 here{std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)};
+  p.error = along(p.normal, rounding_bound(3) * here + rounding_bound(8) * extent) +
+            std::min(rounding_bound(3) * inverse_length * dot(x, extent), 1e-3f * (extent.x + extent.y + extent.z));
+
+  const float w = 1 - u - v;
+  if (mesh_.normals.empty()) {
+    p.shading_normal = p.normal;
+  } else {
+    const Normal3 &n0 = mesh_.normals[t[0]], &n1 = mesh_.normals[t[1]], &n2 = mesh_.normals[t[2]];
+    const Vector3 s = w * Vector3(n0) + u * Vector3(n1) + v * Vector3(n2);
+    const float ss = dot(s, s);
+    const bool known = ss > 1e-12f && dot(n0, n0) > 0 && dot(n1, n1) > 0 && dot(n2, n2) > 0;
+    p.shading_normal = known ? Normal3((1 / std::sqrt(ss)) * s) : p.normal;
+    if (dot(p.shading_normal, p.normal) < 0) p.shading_normal = -p.shading_normal;
+  }
+  if (mesh_.uvs.empty()) {
+    p.uv = {u, v};
+  } else {
+    const Point2 &a0 = mesh_.uvs[t[0]], &a1 = mesh_.uvs[t[1]], &a2 = mesh_.uvs[t[2]];
+    p.uv = {w * a0.x + u * a1.x + v * a2.x, w * a0.y + u * a1.y + v * a2.y};
+  }
+  p.dpdu = {};
+  p.dpdv = {};
+  p.time = time;
+  p.object = this;
+  p.primitive = primitive;
+  p.u = u;
+  p.v = v;
+  if (!transform.animated()) [[likely]] {
+    fill_object_coordinates(transform.still(), p);
+  } else {
+    p.object_position = p.position;
+    p.object_normal = p.normal;
+    carry_out(transform.at(time), p);
+  }
+}
+
+void TriangleObject::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const {
+  fill(hit.primitive, hit.u, hit.v, ray.time, p);
+}
+
+void TriangleObject::tangents(SurfacePoint& p) const {
+  if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
+  const auto& t = mesh_.triangles[p.primitive];
+  const Point3& p0 = mesh_.positions[t[0]];
+  Vector3 e1 = mesh_.positions[t[1]] - p0, e2 = mesh_.positions[t[2]] - p0;
+  if (transform.animated()) {
+    const Transform moved = transform.at(p.time);
+    e1 = moved(e1);
+    e2 = moved(e2);
+  }
+  p.dpdu = e1;
+  p.dpdv = e2;
+  if (mesh_.uvs.empty()) return;
+  // e1 = du1 dpdu + dv1 dpdv and e2 = du2 dpdu + dv2 dpdv, solved.
+  const Vector2 d1 = mesh_.uvs[t[1]] - mesh_.uvs[t[0]], d2 = mesh_.uvs[t[2]] - mesh_.uvs[t[0]];
+  const float determinant = difference_of_products(d1.x, d2.y, d1.y, d2.x);
+  if (determinant != 0 && std::isfinite(1 / determinant)) {
+    p.dpdu = (d2.y * e1 - d1.y * e2) / determinant;
+    p.dpdv = (d1.x * e2 - d2.x * e1) / determinant;
+  } else {  // the uvs do not span the triangle: any basis
+    const Frame frame(p.normal);
+    p.dpdu = frame.s;
+    p.dpdv = frame.t;
+  }
+}
+
+float TriangleObject::area(float time) const {
+  if (!transform.animated()) return float(area_);
+  const Transform moved = transform.at(time);
+  if (const float s = similarity_scale(moved); s > 0) return float(area_) * s * s;
+  double sum = 0;
+  for (const auto& t : mesh_.triangles)
+    sum += 0.5 * double(length(area_vector(moved(mesh_.positions[t[0]]), moved(mesh_.positions[t[1]]), moved(mesh_.positions[t[2]]))));
+  return float(sum);
+}
+
+float TriangleObject::stored_area(std::uint32_t primitive) const {
+  const auto& t = mesh_.triangles[primitive];
+  return 0.5f * length(area_vector(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]));
+}
+
+std::uint32_t TriangleObject::choose(float& x, float other) const {
+  if (mesh_.triangles.size() == 1) return 0;
+  std::call_once(lazy_->table_made, [this] {
+    double sum = 0;
+    lazy_->cumulative.reserve(mesh_.triangles.size());
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i) lazy_->cumulative.push_back(sum += double(stored_area(std::uint32_t(i))));
+    for (double& c : lazy_->cumulative) c /= sum;
+  });
+  const std::vector<double>& table = lazy_->cumulative;
+  // A float has 24 bits, too few to choose among millions of triangles and a point in one: bits below them are filled
+  // by a hash of both numbers.
+  const std::uint64_t bits = (std::uint64_t(std::bit_cast<std::uint32_t>(x)) << 32) | std::bit_cast<std::uint32_t>(other);
+  const double fine = std::min(double(x) + double(mix_bits(bits + 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-77, 1 - 0x1p-53);
+  const size_t i = std::min(size_t(std::upper_bound(table.begin(), table.end(), fine) - table.begin()), table.size() - 1);
+  const double low = i > 0 ? table[i - 1] : 0, width = table[i] - low;
+  x = width > 0 ? clamp(float((fine - low) / width), 0, one_minus_epsilon) : 0;
+  return std::uint32_t(i);
+}
+
+SurfaceSample TriangleObject::sample_area(Point2 u, float time) const {
+  SurfaceSample s;
+  if (mesh_.triangles.empty()) return s;
+  const std::uint32_t primitive = choose(u.x, u.y);
+  const Point2 b = warp::triangle(u);
+  fill(primitive, b.x, b.y, time, s.point);
+  s.density = area_density(s.point);
+  return s;
+}
+
+float TriangleObject::area_density(const SurfacePoint& p) const {
+  if (!transform.animated()) return float(1 / area_);
+  const Corners c = corners(p.primitive, p.time);
+  return float(stored_area(p.primitive) / area_) / (0.5f * length(area_vector(c.p[0], c.p[1], c.p[2])));
+}
+
+namespace {
+
+/// Whether sampling by solid angle may pay, from the distance to the nearest corner or the centre.
+bool near(const Point3& from, const Point3 (&p)[3], float area) {
+  const Vector3 a = p[0] - from, b = p[1] - from, c = p[2] - from;
+  const float corner = std::min({length_squared(a), length_squared(b), length_squared(c)});
+  return area > worthwhile_solid_angle * std::min(corner, length_squared(a + b + c) * (1 / 9.0f));
+}
+
+}  // namespace
+
+SurfaceSample TriangleObject::sample_visible(const Point3& from, Point2 u, float time) const {
+  SurfaceSample s;
+  if (mesh_.triangles.empty()) return s;
+  const std::uint32_t primitive = choose(u.x, u.y);
+  const Corners c = corners(primitive, time);
+  const Vector3 e1 = c.p[1] - c.p[0], e2 = c.p[2] - c.p[0], n = cross(e1, e2);
+  const float area = 0.5f * length(n);
+  if (near(from, c.p, area)) {
+    const SphericalTriangle triangle(from, c.p[0], c.p[1], c.p[2]);
+    if (triangle.usable()) {
+      Ray ray;
+      ray.origin = from;
+      ray.direction = triangle.sample(u);
+      TriangleHit h;
+      intersect_triangle(ray, c.p[0], e1, e2, n, h);
+      h.u = clamp(h.u, 0, 1);  // rounding may put it just beside the triangle
+      h.v = clamp(h.v, 0, 1 - h.u);
+      const bool flipped = transform.animated() && transform.at(time).flips();
+      fill(primitive, flipped ? h.v : h.u, flipped ? h.u : h.v, time, s.point);
+      const float chance = mesh_.triangles.size() == 1 ? 1 : float(stored_area(primitive) / area_);
+      complete_by_angle(s, from, chance / triangle.solid_angle());
+      return s;
+    }
+  }
+  const Point2 b = warp::triangle(u);
+  fill(primitive, b.x, b.y, time, s.point);
+  complete_by_area(s, from, area_density(s.point));
+  return s;
+}
+
+float TriangleObject::visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
+  const Corners c = corners(p.primitive, p.time);
+  const float area = 0.5f * length(area_vector(c.p[0], c.p[1], c.p[2]));
+  if (near(from, c.p, area)) {
+    const SphericalTriangle triangle(from, c.p[0], c.p[1], c.p[2]);
+    if (triangle.usable()) {
+      const float chance = mesh_.triangles.size() == 1 ? 1 : float(stored_area(p.primitive) / area_);
+      return chance / triangle.solid_angle();
+    }
+  }
+  const float cosine = std::abs(dot(p.normal, direction));
+  return cosine > 0 ? area_density(p) * distance_squared(p.position, from) / cosine : 0;
+}
+
+bool TriangleObject::closed() const {
+  // In a closed and consistently oriented surface every directed edge meets its opposite, so this sum, to which an edge
+  // and its opposite contribute inverse terms, is zero; of an open surface it is so with probability 2^-64. Corners are
+  // told by position, not index: seams of texture coordinates are no holes.
+  std::call_once(lazy_->closed_known, [this] {
+    const auto corner = [this](std::uint32_t i) {
+      const Point3& p = mesh_.positions[i];
+      std::uint64_t h = std::bit_cast<std::uint32_t>(p.x + 0.0f);
+      h = mix_bits((h << 32 | std::bit_cast<std::uint32_t>(p.y + 0.0f)) + 0x9e3779b97f4a7c15ull);
+      return mix_bits(h ^ std::bit_cast<std::uint32_t>(p.z + 0.0f));
+    };
+    std::uint64_t sum = 0;
+    for (const auto& t : mesh_.triangles) {
+      const std::uint64_t h[3] = {corner(t[0]), corner(t[1]), corner(t[2])};
+      for (int i = 0; i < 3; ++i) {
+        const std::uint64_t a = h[i], b = h[(i + 1) % 3];
+        sum += mix_bits(3 * a + b) - mix_bits(3 * b + a);
+      }
+    }
+    lazy_->closed = sum == 0 && !mesh_.triangles.empty();
+  });
+  return lazy_->closed;
+}
+
+std::optional<TriangleView> TriangleObject::triangles() const {
+  if (transform.animated()) return std::nullopt;
+  return view();
+}
+
+}  // namespace etendue

@@ -1,0 +1,84 @@
+#include "outputs/encoded_image.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "etendue/error.h"
+#include "etendue/math.h"
+#include "outputs/whole_file.h"
+
+namespace etendue {
+namespace {
+
+std::array<size_t, 3> rgb_channels(const Image& image, const std::string& path) {
+  std::array<size_t, 3> at{};
+  const char* names[] = {"R", "G", "B"};
+  for (size_t c = 0; c < 3; ++c) {
+    const auto found = std::find(image.channels.begin(), image.channels.end(), names[c]);
+    if (found == image.channels.end())
+      throw Error(fmt::format("cannot write '{}': the format takes R G B and the picture has no {}; it was not tone mapped",
+                              path, names[c]));
+    at[c] = size_t(found - image.channels.begin());
+  }
+  return at;
+}
+
+template <class T>
+std::vector<T> quantized(const Image& image, const std::array<size_t, 3>& channels, bool dither) {
+  constexpr double maximum = double(std::numeric_limits<T>::max());
+  const size_t count = size_t(image.width) * size_t(image.height), stride = image.channels.size();
+  std::vector<T> out(3 * count);
+  for (size_t i = 0; i < out.size(); ++i) {
+    const double value = image.values[i / 3 * stride + channels[i % 3]];
+    double v = maximum * (value > 0 ? std::min(value, 1.0) : 0);  // not a number: 0
+    // Black and white stay what they are.
+    if (dither && v > 0 && v < maximum) v += double(to_unit_float(std::uint32_t(mix_bits(i + 1) >> 32))) - 0.5;
+    out[i] = T(std::clamp(v + 0.5, 0.0, maximum));
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_metadata(OIIO::ImageSpec& spec, const Image& image) {
+  for (const auto& [name, value] : image.metadata) spec.attribute(name, value);
+}
+
+void write_encoded(const std::string& path, const std::string& extension, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                   const void* pixels) {
+  const auto refuse = [&](const std::string& reason) {
+    throw Error(fmt::format("cannot write '{}': {}", path, reason.empty() ? "the image library gives no reason" : reason));
+  };
+  const std::string name = "picture" + extension;  // never opened: the bytes go to memory
+  std::unique_ptr<OIIO::ImageOutput> encoder = OIIO::ImageOutput::create(name);
+  if (!encoder) refuse(OIIO::geterror());
+  if (!encoder->supports("ioproxy")) refuse(fmt::format("this image library cannot make {} files in memory", extension));
+  OIIO::Filesystem::IOVecOutput memory;
+  if (!encoder->set_ioproxy(&memory) || !encoder->open(name, spec) || !encoder->write_image(type, pixels) || !encoder->close())
+    refuse(encoder->geterror());
+  encoder.reset();
+  write_whole_file(path, memory.buffer().data(), memory.buffer().size());
+}
+
+void write_display_image(const Image& image, const std::string& path, const std::string& extension, int bits, bool dither) {
+  const std::array<size_t, 3> channels = rgb_channels(image, path);
+  const OIIO::TypeDesc type = bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
+  OIIO::ImageSpec spec(image.width, image.height, 3, type);
+  add_metadata(spec, image);
+  const auto known = [&](const char* key) {
+    const auto found = image.metadata.find(key);
+    return found == image.metadata.end() ? std::string() : found->second;
+  };
+  if (known("transfer") == "linear")
+    spec.attribute("oiio:ColorSpace", "linear");
+  else if (known("transfer") == "srgb" && known("color_space") == "srgb")
+    spec.attribute("oiio:ColorSpace", "sRGB");
+  if (bits > 8)
+    write_encoded(path, extension, spec, type, quantized<std::uint16_t>(image, channels, dither).data());
+  else
+    write_encoded(path, extension, spec, type, quantized<std::uint8_t>(image, channels, dither).data());
+}
+
+}  // namespace etendue

@@ -1,0 +1,13 @@
+// What all samplers have in common: they have no members of their own.
+
+#include "etendue/sampler.h"
+
+namespace etendue {
+
+void Sampler::describe(Description<Sampler>& d) {
+  d.summary("Gives the numbers in [0, 1) a path is built from, by pixel, sample and dimension.");
+}
+
+static const Register<Sampler> registered;
+
+}  // namespace etendue

@@ -1,0 +1,90 @@
+// SobolSampler: Owen-scrambled Sobol points, two dimensions at a time.
+
+#include "etendue/sampler.h"
+
+namespace etendue {
+namespace {
+
+// Each pair of dimensions is the first two dimensions of Sobol's sequence, a (0,2)-sequence in base 2: the first 2^k
+// points (and every aligned block of 2^k) have one point in each elementary interval of area 2^-k. Pairs are made
+// independent of each other ("padding") by giving each its own order of the points and its own scrambling; both are
+// nested uniform permutations, which keep the blocks and the intervals (Burley 2020, "Practical hash-based Owen
+// scrambling", Journal of Computer Graphics Techniques 9(4)).
+
+constexpr std::uint32_t reverse(std::uint32_t x) {
+  x = __builtin_bswap32(x);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+  return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+}
+
+/// Both halves reversed at once: the upper half of the result is the lower one of x reversed, and the other way round.
+constexpr std::uint64_t reverse_both(std::uint64_t x) {
+  x = __builtin_bswap64(x);
+  x = ((x >> 4) & 0x0f0f0f0f0f0f0f0full) | ((x & 0x0f0f0f0f0f0f0f0full) << 4);
+  x = ((x >> 2) & 0x3333333333333333ull) | ((x & 0x3333333333333333ull) << 2);
+  return ((x >> 1) & 0x5555555555555555ull) | ((x & 0x5555555555555555ull) << 1);
+}
+
+/// A hash in which each bit depends on lower bits and itself alone (Laine & Karras 2011; constants of Burley 2020, listing
+/// 3). On reversed bits this is a nested uniform permutation.
+constexpr std::uint32_t permute_reversed(std::uint32_t x, std::uint32_t seed) {
+  x += seed;
+  x ^= x * 0x6c50b47cu;
+  x ^= x * 0xb82f1e52u;
+  x ^= x * 0xc7afe638u;
+  x ^= x * 0x8d22f6e6u;
+  return x;
+}
+
+/// The bit-reversed second Sobol coordinate of a point's index. Its generator matrix is Pascal's triangle modulo 2: digit i
+/// is the exclusive or of the index bits j with binomial(j, i) odd, which are those whose j has all bits of i (Lucas). The
+/// sum over such supersets takes one step for each of the five bits of j.
+constexpr std::uint32_t sobol_second_reversed(std::uint32_t x) {
+  x ^= (x >> 1) & 0x55555555u;
+  x ^= (x >> 2) & 0x33333333u;
+  x ^= (x >> 4) & 0x0f0f0f0fu;
+  x ^= (x >> 8) & 0x00ff00ffu;
+  x ^= x >> 16;
+  return x;
+}
+
+/// The place of a sample in this dimension's own order of the points.
+std::uint32_t shuffled(std::uint32_t sample, std::uint64_t hash) {
+  return reverse(permute_reversed(reverse(sample), std::uint32_t(hash)));
+}
+
+std::uint64_t hash(const SampleKey& key, std::uint32_t dimension) {
+  return mix_bits(key.pixel ^ ((std::uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull));
+}
+
+class SobolSampler final : public Sampler {
+ public:
+  static void describe(Description<SobolSampler>& d) {
+    d.summary(
+        "Owen-scrambled Sobol points, each pair of dimensions well spread over a pixel's samples; best with a power of two of "
+        "them.",
+        "Burley 2020, Practical hash-based Owen scrambling");
+  }
+
+  float number(const SampleKey& key, std::uint32_t dimension) const override {
+    const std::uint64_t h = hash(key, dimension);
+    const std::uint32_t index = shuffled(key.sample, h);
+    return to_unit_float(reverse(permute_reversed(index, std::uint32_t(h >> 32))));
+  }
+
+  Point2 pair(const SampleKey& key, std::uint32_t dimension) const override {
+    const std::uint64_t h = hash(key, dimension);
+    const std::uint32_t index = shuffled(key.sample, h);
+    const std::uint32_t second_seed = std::uint32_t((h * 0xd1342543de82ef95ull) >> 32);
+    const std::uint32_t x = permute_reversed(index, std::uint32_t(h >> 32));
+    const std::uint32_t y = permute_reversed(sobol_second_reversed(index), second_seed);
+    const std::uint64_t both = reverse_both((std::uint64_t(y) << 32) | x);
+    return {to_unit_float(std::uint32_t(both >> 32)), to_unit_float(std::uint32_t(both))};
+  }
+};
+
+const Register<SobolSampler> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,219 @@
+// BruteForceScene: tests everything. For a few dozen triangles the fastest, and for all others the one to compare with.
+
+#include "etendue/scene.h"
+#include "etendue/shader.h"
+
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
+namespace etendue {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr int lanes = 16;
+#elif defined(__AVX__)
+constexpr int lanes = 8;
+#else
+constexpr int lanes = 4;
+#endif
+using Floats = float __attribute__((vector_size(lanes * sizeof(float))));
+using Ints = std::int32_t __attribute__((vector_size(lanes * sizeof(std::int32_t))));
+
+inline bool any_of(const Ints& mask) {
+#if defined(__AVX512F__)
+  const __m512i m = std::bit_cast<__m512i>(mask);
+  return _mm512_test_epi32_mask(m, m) != 0;
+#else
+  std::int32_t all = 0;
+  for (int i = 0; i < lanes; ++i) all |= mask[i];
+  return all != 0;
+#endif
+}
+
+/// The lane of the smallest value, the first of several.
+inline int lowest_lane(const Floats& x) {
+  Ints lane;
+  for (int i = 0; i < lanes; ++i) lane[i] = i;
+  Floats lowest = x;
+  for (int step = lanes / 2; step > 0; step /= 2) {
+    const Floats other = __builtin_shuffle(lowest, lane ^ step);
+    lowest = other < lowest ? other : lowest;
+  }
+#if defined(__AVX512F__)
+  const __m512i equal = std::bit_cast<__m512i>(x == lowest);
+  return std::countr_zero(unsigned(_mm512_test_epi32_mask(equal, equal)));
+#else
+  for (int i = 0; i < lanes; ++i)
+    if (x[i] == lowest[i]) return i;
+  return 0;
+#endif
+}
+
+/// Some triangles side by side: a corner, two edges and their cross product. A triangle of zeros is never hit: its t is
+/// 0/0, which fails all comparisons.
+struct alignas(64) Block {
+  Floats vx, vy, vz, ax, ay, az, bx, by, bz, nx, ny, nz;
+};
+
+/// The ray in all lanes.
+struct WideRay {
+  Floats ox, oy, oz, dx, dy, dz;
+  explicit WideRay(const Ray& r)
+      : ox(Floats{} + r.origin.x), oy(Floats{} + r.origin.y), oz(Floats{} + r.origin.z),
+        dx(Floats{} + r.direction.x), dy(Floats{} + r.direction.y), dz(Floats{} + r.direction.z) {}
+};
+
+/// As in objects/triangle_test.h, for all lanes. Returns which are hit with t in (0, limit).
+inline Ints test(const Block& b, const WideRay& r, const Floats& limit, Floats& t, Floats& u, Floats& v) {
+  const Floats cx = b.vx - r.ox, cy = b.vy - r.oy, cz = b.vz - r.oz;
+  const Floats rx = cy * r.dz - cz * r.dy, ry = cz * r.dx - cx * r.dz, rz = cx * r.dy - cy * r.dx;
+  const Floats inverse = 1 / (b.nx * r.dx + b.ny * r.dy + b.nz * r.dz);
+  t = (b.nx * cx + b.ny * cy + b.nz * cz) * inverse;
+  u = (rx * b.bx + ry * b.by + rz * b.bz) * inverse;
+  v = -(rx * b.ax + ry * b.ay + rz * b.az) * inverse;
+  return (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & (t < limit);
+}
+
+}  // namespace
+
+class BruteForceScene final : public Scene {
+ public:
+  static void describe(Description<BruteForceScene>& d) {
+    d.summary("A scene that tests every object for every ray: triangles many at a time, the others one by one. The fastest "
+              "for a few dozen triangles, and what other structures are checked against.",
+              "triangle test: Moeller & Trumbore 1997");
+  }
+
+  bool nearest(const Ray& ray, Hit& hit) const override {
+    bool found = false;
+    Ray rest = ray;
+    if (!blocks_.empty()) {
+      const WideRay wide(ray);
+      Floats best = Floats{} + ray.maximum, best_u{}, best_v{};
+      Ints where = Ints{} - 1;
+      for (size_t i = 0; i < blocks_.size(); ++i) {
+        Floats t, u, v;
+        const Ints mask = test(blocks_[i], wide, best, t, u, v);
+        best = mask ? t : best;
+        best_u = mask ? u : best_u;
+        best_v = mask ? v : best_v;
+        where = mask ? Ints{} + std::int32_t(i) : where;
+      }
+      const int lane = lowest_lane(best);
+      if (where[lane] >= 0) {
+        const Slot& slot = slots_[size_t(where[lane]) * lanes + size_t(lane)];
+        hit.distance = best[lane];
+        hit.object = slot.object;
+        hit.primitive = slot.primitive;
+        hit.u = best_u[lane];
+        hit.v = best_v[lane];
+        hit.depth = 0;
+        rest.maximum = hit.distance;
+        found = true;
+      }
+    }
+    if (!others_.empty()) {
+      const Inverse inverse(ray);
+      for (const Other& other : others_)
+        if (inverse.meets(other.bounds, rest.maximum) && other.object->intersect(rest, hit)) {
+          rest.maximum = hit.distance;
+          found = true;
+        }
+    }
+    return found;
+  }
+
+  bool any(const Ray& ray) const override {
+    if (!blocks_.empty()) {
+      const WideRay wide(ray);
+      const Floats limit = Floats{} + ray.maximum;
+      for (const Block& block : blocks_) {
+        Floats t, u, v;
+        if (any_of(test(block, wide, limit, t, u, v))) return true;
+      }
+    }
+    if (!others_.empty()) {
+      const Inverse inverse(ray);
+      for (const Other& other : others_)
+        if (inverse.meets(other.bounds, ray.maximum) && other.object->occludes(ray)) return true;
+    }
+    return false;
+  }
+
+ protected:
+  void build(std::span<const SceneObject* const> finite) override {
+    blocks_.clear();
+    slots_.clear();
+    others_.clear();
+    for (const SceneObject* object : finite) {
+      const std::optional<TriangleView> view = object->triangles();
+      if (!view) {
+        others_.push_back({object, object->bounds()});
+        continue;
+      }
+      for (size_t i = 0; i < view->triangles.size(); ++i) {
+        const auto& t = view->triangles[i];
+        add(object, std::uint32_t(i), view->positions[t[0]], view->positions[t[1]], view->positions[t[2]]);
+      }
+    }
+  }
+
+ private:
+  struct Slot {
+    const SceneObject* object;
+    std::uint32_t primitive;
+  };
+  struct Other {
+    const SceneObject* object;
+    Bounds3 bounds;
+  };
+
+  /// For tests against boxes (Kay & Kajiya 1986). Rounding may make a box look smaller by a few units: it is widened.
+  struct Inverse {
+    Point3 origin;
+    Vector3 d;
+    explicit Inverse(const Ray& r) : origin(r.origin), d{1 / r.direction.x, 1 / r.direction.y, 1 / r.direction.z} {}
+    bool meets(const Bounds3& b, float maximum) const {
+      float near = 0, far = maximum;
+      for (int k = 0; k < 3; ++k) {
+        const float t0 = (b.low[k] - origin[k]) * d[k], t1 = (b.high[k] - origin[k]) * d[k];
+        // Written so that a NaN (a ray within a side's plane) limits nothing.
+        const float low = t0 < t1 ? t0 : t1, high = t0 < t1 ? t1 : t0;
+        if (low == low && high == high) {
+          near = std::max(near, low - 1e-6f * std::abs(low));
+          far = std::min(far, high + 1e-6f * std::abs(high));
+        }
+      }
+      return near <= far;
+    }
+  };
+
+  void add(const SceneObject* object, std::uint32_t primitive, const Point3& p, const Point3& q, const Point3& r) {
+    const size_t lane = slots_.size() % lanes;
+    if (lane == 0) blocks_.emplace_back();
+    slots_.push_back({object, primitive});
+    Block& b = blocks_.back();
+    const Vector3 e1 = q - p, e2 = r - p, n = cross(e1, e2);
+    b.vx[lane] = p.x;
+    b.vy[lane] = p.y;
+    b.vz[lane] = p.z;
+    b.ax[lane] = e1.x;
+    b.ay[lane] = e1.y;
+    b.az[lane] = e1.z;
+    b.bx[lane] = e2.x;
+    b.by[lane] = e2.y;
+    b.bz[lane] = e2.z;
+    b.nx[lane] = n.x;
+    b.ny[lane] = n.y;
+    b.nz[lane] = n.z;
+  }
+
+  std::vector<Block> blocks_;
+  std::vector<Slot> slots_;  // what stands in each lane, block after block
+  std::vector<Other> others_;
+};
+
+static const Register<BruteForceScene> registered;
+
+}  // namespace etendue

@@ -1,0 +1,80 @@
+#include "embree_device.h"
+
+namespace etendue {
+namespace {
+
+const char* reason(RTCError code) {
+  switch (code) {
+    case RTC_ERROR_INVALID_ARGUMENT: return "an argument is not valid";
+    case RTC_ERROR_INVALID_OPERATION: return "the operation is not allowed";
+    case RTC_ERROR_OUT_OF_MEMORY: return "not enough memory";
+    case RTC_ERROR_UNSUPPORTED_CPU: return "this processor is not supported";
+    case RTC_ERROR_CANCELLED: return "it was cancelled";
+    default: return "unknown error";
+  }
+}
+
+}  // namespace
+
+RTCDevice embree_device() {
+  // Never released: scenes may outlive any order in which a program's statics are destroyed.
+  static const RTCDevice device = [] {
+    RTCDevice d = rtcNewDevice(nullptr);
+    if (!d) throw Error(std::string("Embree cannot start: ") + reason(rtcGetDeviceError(nullptr)));
+    return d;
+  }();
+  return device;
+}
+
+void check_embree(const char* doing) {
+  const RTCError code = rtcGetDeviceError(embree_device());
+  if (code != RTC_ERROR_NONE) throw Error(std::string("Embree failed ") + doing + ": " + reason(code));
+}
+
+unsigned attach_triangles(RTCScene scene, const TriangleView& view, RTCBuildQuality quality) {
+  RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetGeometryBuildQuality(geometry, quality);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, view.positions.data(), 0, sizeof(Point3),
+                             view.positions.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, view.triangles.data(), 0,
+                             3 * sizeof(std::uint32_t), view.triangles.size());
+  rtcCommitGeometry(geometry);
+  const unsigned id = rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);  // the scene holds it
+  check_embree("taking in triangles");
+  return id;
+}
+
+EmbreeTriangles::EmbreeTriangles(const TriangleView& view) : scene_(rtcNewScene(embree_device())) {
+  check_embree("making a scene");
+  attach_triangles(scene_.get(), view, RTC_BUILD_QUALITY_MEDIUM);
+  rtcCommitScene(scene_.get());
+  check_embree("building over triangles");
+}
+
+bool EmbreeTriangles::nearest(const Ray& ray, float& t, std::uint32_t& triangle, float& u, float& v) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query;
+  set_embree_ray(query.ray, ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene_.get(), &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  t = query.ray.tfar;
+  triangle = query.hit.primID;
+  u = query.hit.u;
+  v = query.hit.v;
+  return true;
+}
+
+bool EmbreeTriangles::any(const Ray& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay query;
+  set_embree_ray(query, ray);
+  rtcOccluded1(scene_.get(), &context, &query);
+  return query.tfar < 0;
+}
+
+}  // namespace etendue

@@ -1,0 +1,99 @@
+// Scatter's public calls: side tests, lobe masks and the two corrections that make f depend on what is carried.
+//
+// Notation: light or importance is carried along a path that came from `out` and goes on to `in`. The renderer
+// multiplies f by |in . ns|, the cosine with the shading normal ns. ng is the geometric normal.
+//
+// Refraction (Veach 1997, section 5.2). A beam that is refracted keeps its power but not its spread:
+// n_o^2 cos_o dw_o = n_i^2 cos_i dw_i, so radiance that arrives in a medium of index n_i leaves into one of index n_o as
+// L_o = (1 - F) (n_o / n_i)^2 L_i (eq. 5.2). A path that carries radiance's adjoint from the camera looks from `out` to
+// where light comes from, `in`: n_o is the index on the side of `out`, n_i that on the side of `in`, and with
+// eta = n_i / n_o the factor is 1 / eta^2. A path from a light carries power: none of it is gained or lost by the change
+// of spread, f integrates over `in` to 1 - F, and there is no factor. Local functions are in this second convention.
+//
+// Shading normals (Veach 1997, section 5.3). Using f |in . ns| for radiance that arrives from `in` means a surface whose
+// true function is f |in . ns| / |in . ng|, a function of where light comes from. On a path from a light, light comes from
+// `out`: the true function is f |out . ns| / |out . ng|, and the true cosine |in . ng|. As the renderer multiplies by
+// |in . ns|, f must be multiplied by |out . ns| |in . ng| / (|out . ng| |in . ns|) (eq. 5.19). Radiance needs no factor.
+//
+// Sides. Whether a pair of directions is a reflection or a transmission is decided by ng, or light would leak through
+// surfaces; the local functions decide by ns. A direction on whose side the two normals disagree carries nothing, which
+// is the same for both roles of a direction, so reciprocity is kept.
+
+#include "etendue/shader.h"
+
+namespace etendue {
+namespace {
+
+/// Two directions in local coordinates, and their cosines with the geometric normal.
+struct Pair {
+  Vector3 out, in;
+  float out_geometric, in_geometric;
+
+  bool sides_agree() const { return out_geometric * out.z > 0 && in_geometric * in.z > 0; }
+  bool reflection() const { return out.z * in.z > 0; }
+  /// The shading-normal factor of importance.
+  float importance_factor() const { return std::abs(out.z * in_geometric / (out_geometric * in.z)); }
+};
+
+bool asked(const Pair& pair, Lobes which) {
+  return (which & smooth_lobes & (pair.reflection() ? reflection_lobes : transmission_lobes)) != 0;
+}
+
+}  // namespace
+
+float Scatter::relative_index(const Vector3&, const Vector3&) const { return 1; }
+
+Spectrum Scatter::evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
+  which &= lobes_;
+  const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
+  if (!pair.sides_agree() || !asked(pair, which)) return {};
+  const Spectrum value = local_evaluate(pair.out, pair.in, which);
+  if (transport == Transport::importance) return value * pair.importance_factor();
+  if (pair.reflection()) return value;
+  return value / square(relative_index(pair.out, pair.in));
+}
+
+float Scatter::density(const Vector3& out, const Vector3& in, Transport, Lobes which) const {
+  which &= lobes_;
+  const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
+  if (!pair.sides_agree() || !asked(pair, which)) return 0;
+  return local_density(pair.out, pair.in, which);
+}
+
+ScatterValue Scatter::value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
+  which &= lobes_;
+  const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
+  if (!pair.sides_agree() || !asked(pair, which)) return {};
+  const ScatterValue local = local_value_and_density(pair.out, pair.in, which);
+  float factor = 1;
+  if (transport == Transport::importance)
+    factor = pair.importance_factor();
+  else if (!pair.reflection())
+    factor = 1 / square(relative_index(pair.out, pair.in));
+  return {local.value * factor, local.density};
+}
+
+std::optional<ScatterSample> Scatter::sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                             Lobes which) const {
+  which &= lobes_;
+  Pair pair;
+  pair.out = frame_.to_local(out);
+  pair.out_geometric = dot(normal_, out);
+  if (which == no_lobes || !(pair.out_geometric * pair.out.z > 0)) return std::nullopt;
+
+  LocalSample local;
+  if (!local_sample(pair.out, choice, u, which, local) || !(local.density > 0)) return std::nullopt;
+  pair.in = local.in;
+  const Vector3 direction = frame_.to_world(local.in);
+  pair.in_geometric = dot(normal_, direction);
+  if (!pair.sides_agree()) return std::nullopt;
+
+  float factor = 1 / local.density;
+  if (transport == Transport::importance)
+    factor *= pair.importance_factor();
+  else if (!pair.reflection())
+    factor /= square(local.eta);
+  return ScatterSample{direction, local.value * factor, local.density, local.lobe, local.eta, local.dispersive};
+}
+
+}  // namespace etendue

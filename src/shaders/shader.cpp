@@ -1,0 +1,11 @@
+// What all shaders have in common: they have no members of their own.
+
+#include "etendue/shader.h"
+
+namespace etendue {
+
+void Shader::describe(Description<Shader>& d) { d.summary("How a surface scatters light (a material)."); }
+
+static const Register<Shader> registered;
+
+}  // namespace etendue

@@ -1,0 +1,45 @@
+#pragma once
+// Light that comes to a surface straight from luminaires.
+
+#include "etendue/light_sampler.h"
+#include "etendue/sampler.h"
+#include "etendue/scene.h"
+#include "etendue/shader.h"
+#include "transport/multiple_importance.h"
+
+namespace etendue {
+
+/// One sample of direct light by choosing a point on a luminaire. With out = direction the path came from, in = direction
+/// to the light, the reflected radiance is the integral over directions of f(out, in) L_e(in) V |cos(in)|. A luminaire is
+/// chosen with probability P and a point on it with solid-angle density p(in), so the estimate is
+///     w f L_e V |cos| / (P p),
+/// with the multiple-importance weight w of P p against the density with which the shader itself gives `in`.
+/// `shader_sampling` says whether that second strategy is used at all; if not, w = 1.
+inline Spectrum sample_direct_light(const Scene& scene, const LightSampler& lights, const SurfacePoint& point, const Scatter& scatter,
+                                    const Vector3& out, const Wavelengths& wavelengths, SampleStream& random, Heuristic heuristic,
+                                    bool shader_sampling = true) {
+  const float choice = random.next();
+  const Point2 u = random.next_pair();
+  const LightChoice light = lights.choose(point.position, point.normal, choice);
+  if (!light.luminaire) return {};
+  const SurfaceSample s = light.luminaire->sample_visible(point.position, u, point.time);
+  if (!(s.density > 0)) return {};
+  const ScatterValue f = scatter.value_and_density(out, s.direction, Transport::radiance, smooth_lobes);
+  if (f.value.black()) return {};
+  const Spectrum emitted = light.luminaire->emission->radiance(s.point, -s.direction, wavelengths);
+  if (emitted.black()) return {};
+  if (scene.any(s.infinite ? point.leave(s.direction) : point.towards(s.point.position, s.point.error))) return {};
+  const float density = light.probability * s.density;
+  const float weight = s.delta || !shader_sampling ? 1 : heuristic_weight(heuristic, density, f.density);
+  return f.value * emitted * (scatter.cosine(s.direction) * weight / density);
+}
+
+/// The solid-angle density [1/sr] with which the above would have given a point of a luminaire, seen from `from`.
+inline float direct_light_density(const LightSampler& lights, const Point3& from, const Normal3& normal, const Vector3& direction,
+                                  const SurfacePoint& on_luminaire) {
+  const SceneObject& luminaire = *on_luminaire.object;
+  const float probability = lights.probability(from, normal, luminaire);
+  return probability > 0 ? probability * luminaire.visible_density(from, direction, on_luminaire) : 0;
+}
+
+}  // namespace etendue

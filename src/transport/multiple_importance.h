@@ -1,0 +1,21 @@
+#pragma once
+// Weights for combining sampling strategies (Veach & Guibas 1995, "Optimally combining sampling techniques").
+
+#include "etendue/math.h"
+
+namespace etendue {
+
+/// balance: w = p/(p+q); power: w = p^2/(p^2+q^2); none: the strategy counts alone.
+enum class Heuristic : std::uint8_t { balance, power };
+
+/// The weight of a sample that the strategy with density p gave and the one with density q could have given; both in
+/// the same measure.
+inline float heuristic_weight(Heuristic heuristic, float p, float q) {
+  if (heuristic == Heuristic::balance) return p > 0 ? p / (p + q) : 0;
+  // As a ratio, so that large densities do not overflow.
+  if (!(p > 0)) return 0;
+  const float r = q / p;
+  return 1 / (1 + r * r);
+}
+
+}  // namespace etendue

@@ -1,0 +1,72 @@
+#include "transport/record.h"
+
+#include <algorithm>
+
+#include "etendue/color.h"
+
+namespace etendue {
+
+namespace {
+std::string name_of(const SceneObject& object) {
+  const std::string& name = object.class_info().name;
+  return object.origin && !object.origin->name.empty() ? object.origin->name + " (" + name + ")" : name;
+}
+}  // namespace
+
+std::string lobe_name(Lobe lobe) {
+  switch (lobe) {
+    case diffuse_reflection: return "diffuse reflection";
+    case diffuse_transmission: return "diffuse transmission";
+    case glossy_reflection: return "glossy reflection";
+    case glossy_transmission: return "glossy transmission";
+    case specular_reflection: return "specular reflection";
+    case specular_transmission: return "specular transmission";
+    case pass_through: return "pass through";
+  }
+  return "unknown";
+}
+
+void record_surface_slowly(PathRecord& record, const SurfacePoint& p, const Spectrum& throughput) {
+  PathRecord::Vertex v;
+  v.kind = "surface";
+  v.object = name_of(*p.object);
+  v.position = p.position;
+  v.normal = p.normal;
+  v.throughput = throughput;
+  record.vertices.push_back(std::move(v));
+}
+
+void record_escape_slowly(PathRecord& record, const SceneObject& far, const Ray& ray, const Spectrum& throughput, const Spectrum& light) {
+  PathRecord::Vertex v;
+  v.kind = "escaped";
+  v.object = name_of(far);
+  v.position = ray.origin;
+  v.normal = Normal3(ray.direction);
+  v.throughput = throughput;
+  v.emitted = light;
+  record.vertices.push_back(std::move(v));
+}
+
+void record_scatter_slowly(PathRecord& record, const ScatterSample& s) {
+  PathRecord::Vertex& v = record.vertices.back();
+  v.lobe = lobe_name(s.lobe);
+  v.density = s.density;
+  if (s.dispersive) v.note = "dispersion: only the hero wavelength goes on";
+}
+
+void note_features(Features& features, const Scene& scene, const SurfacePoint& point, const Hit& hit, const Scatter* scatter,
+                   const Vector3& out, const Wavelengths& wavelengths) {
+  features.normal = Vector3(dot(point.shading_normal, out) < 0 ? -point.shading_normal : point.shading_normal);
+  features.depth = hit.distance;
+  const SceneObject* top = hit.depth > 0 ? hit.scenes[hit.depth - 1] : hit.object;
+  const auto place = std::find_if(scene.objects.begin(), scene.objects.end(), [&](const Ref<SceneObject>& o) { return o.get() == top; });
+  features.object = int(place - scene.objects.begin()) + 1;
+  if (!scatter) return;
+  static const RgbSpace& srgb = rgb_space("srgb");
+  const Xyz c = to_xyz(scatter->albedo(out) * srgb.illuminant->evaluate(wavelengths, ColorUse::reflectance), wavelengths);
+  const auto& m = srgb.from_xyz;
+  features.albedo = {float(m[0] * c.x + m[1] * c.y + m[2] * c.z), float(m[3] * c.x + m[4] * c.y + m[5] * c.z),
+                     float(m[6] * c.x + m[7] * c.y + m[8] * c.z)};
+}
+
+}  // namespace etendue

@@ -1,0 +1,75 @@
+#include <array>
+#include <cmath>
+
+#include "etendue/wavelength_sampler.h"
+
+namespace etendue {
+
+/// A hero wavelength drawn afresh for each path and the others at equal distances in the cumulative distribution, so
+/// that each alone has the distribution's density (Wilkie et al. 2014, section 3).
+class HeroWavelengths final : public WavelengthSampler {
+  enum class Distribution { visible, uniform };
+
+  float low = wavelength_low;
+  float high = wavelength_high;
+  Distribution distribution = Distribution::visible;
+
+ public:
+  static void describe(Description<HeroWavelengths>& d) {
+    d.summary("A random hero wavelength per path and others at equal distances from it.",
+              "Wilkie et al. 2014, Hero Wavelength Spectral Sampling; Radziszewski et al. 2009, An Improved Technique for Full "
+              "Spectral Rendering")
+        .member<&HeroWavelengths::low>("low", "nm", "shortest wavelength; light below it is left out",
+                                       range(double(wavelength_low), double(wavelength_high)))
+        .member<&HeroWavelengths::high>("high", "nm", "longest wavelength; light above it is left out",
+                                        range(double(wavelength_low), double(wavelength_high)))
+        .member<&HeroWavelengths::distribution>(
+            "distribution", "", "visible: more where the eye is sensitive; uniform: all alike", choices("visible", "uniform"));
+  }
+
+  void prepare() override {
+    if (!(low < high)) fail("high", "must exceed low");
+    // visible: p(lambda) ~ 1 / cosh^2(a (lambda - b)), a = 0.0072 / nm, b = 538 nm (Radziszewski et al.), cut to the
+    // range. Its integral is tanh(a (lambda - b)) / a, so lambda(u) = b + atanh(t0 + u (t1 - t0)) / a with t = tanh at
+    // the ends. Between `cells` + 1 values of lambda(u) we draw linearly, and that is the distribution we state the
+    // density of: within a cell it is exactly 1 / (cells * width of the cell).
+    constexpr double a = 0.0072, b = 538;
+    const double t0 = std::tanh(a * (double(low) - b)), t1 = std::tanh(a * (double(high) - b));
+    const auto inverse = [&](double u) {
+      if (u <= 0) return double(low);
+      if (u >= 1) return double(high);
+      return distribution == Distribution::uniform ? double(low) + u * (double(high) - double(low))
+                                                   : b + std::atanh(t0 + u * (t1 - t0)) / a;
+    };
+    for (int i = 0; i < cells; ++i) {
+      const double from = inverse(double(i) / cells), to = inverse(double(i + 1) / cells);
+      cells_[size_t(i)] = {float(from), float(to - from), float(1 / (cells * (to - from)))};
+    }
+  }
+
+  Wavelengths sample(const SampleKey&, float u) const override {
+    // A distance of 1/size in u is a whole number of cells: all wavelengths share the fraction within theirs.
+    static_assert(cells % spectrum_size == 0);
+    const float position = clamp(u, 0, one_minus_epsilon) * float(cells);
+    const int cell = int(position);
+    const float fraction = position - float(cell);
+    Wavelengths result;
+    for (int i = 0; i < spectrum_size; ++i) {
+      const Cell& c = cells_[size_t((cell + i * (cells / spectrum_size)) % cells)];
+      result.place(i, std::min(c.low + fraction * c.width, high), c.density);
+    }
+    return result;
+  }
+
+ private:
+  static constexpr int cells = 1024;
+  struct Cell {
+    float low, width;  // nm
+    float density;     // 1/nm
+  };
+  std::array<Cell, size_t(cells)> cells_{};
+};
+
+static const Register<HeroWavelengths> registered;
+
+}  // namespace etendue

@@ -1,0 +1,52 @@
+// A shader in one file, out of tree: a rough-looking gold made of a mirror lobe over a diffuse one.
+#include "etendue/color.h"
+#include "etendue/description.h"
+#include "etendue/shader.h"
+
+using namespace etendue;
+
+class GoldScatter final : public Scatter {
+ public:
+  GoldScatter(const SurfacePoint& p, Spectrum color) : Scatter(p, diffuse_reflection), color_(color) {}
+
+ protected:
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? color_ * inverse_pi : Spectrum();
+  }
+  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
+  }
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
+    // Uniform points of the unit disc, lifted to the hemisphere: density cos/pi.
+    const float r = std::sqrt(u.x), phi = 2 * pi * u.y, z = safe_sqrt(1 - u.x);
+    s.in = {r * std::cos(phi), r * std::sin(phi), std::copysign(z, out.z)};
+    s.lobe = diffuse_reflection;
+    s.density = local_density(out, s.in, which);
+    s.value = color_ * s.density;
+    return true;
+  }
+  Spectrum local_albedo(const Vector3&, Lobes) const override { return color_; }
+
+ private:
+  Spectrum color_;
+};
+
+class GoldShader final : public Shader {
+  float purity = 1;
+  Color index = metal_index("Au");
+
+ public:
+  static void describe(Description<GoldShader>& d) {
+    d.summary("Gold leaf that has lost its shine: reflectance at normal incidence, scattered diffusely.")
+        .member<&GoldShader::purity>("purity", "1", "fraction that is gold; the rest is black", range(0, 1))
+        .member<&GoldShader::index>("index", "1", "complex refractive index of the metal");
+  }
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    const Spectrum n = index->evaluate(w, ColorUse::coefficient), k = index->imaginary()->evaluate(w, ColorUse::coefficient);
+    const Spectrum m = n - 1.0f, q = n + 1.0f;
+    return arena.make<GoldScatter>(p, purity * (m * m + k * k) / (q * q + k * k));
+  }
+  Lobes possible_lobes() const override { return diffuse_reflection; }
+};
+
+static const Register<GoldShader> registered;

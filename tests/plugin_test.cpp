@@ -1,0 +1,76 @@
+// Installs the package, builds a plugin against it out of tree with one CMake call, and renders with it.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "etendue/registry.h"
+
+namespace etendue {
+namespace {
+
+namespace fs = std::filesystem;
+
+int run(const std::string& command, std::string* output = nullptr) {
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::string text;
+  char buffer[4096];
+  for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) text.append(buffer, n);
+  const int status = pclose(pipe);
+  if (output) *output = text;
+  if (status != 0 && !output) ADD_FAILURE() << command << "\n" << text;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+class Plugin : public ::testing::Test {
+ protected:
+  fs::path folder = fs::temp_directory_path() / ("etendue-plugin-" + std::to_string(getpid()));
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+};
+
+TEST_F(Plugin, BuildsOutOfTreeAndRenders) {
+  const std::string f = folder.string(), source = ETENDUE_SOURCE_DIR "/tests/plugin";
+  ASSERT_EQ(run("cmake --install " ETENDUE_BINARY_DIR " --prefix " + f + "/installed"), 0);
+  ASSERT_EQ(run("cmake -S " + source + " -B " + f + "/build -DCMAKE_PREFIX_PATH=" + f + "/installed && cmake --build " + f + "/build"), 0);
+  const std::string library = f + "/build/libgold.so";
+  ASSERT_TRUE(fs::exists(library));
+
+  // The file names the plugin by a path relative to itself.
+  std::ofstream(f + "/gold.etd") << R"(plugin "build/libgold.so"
+Job { camera: PerspectiveCamera { from: [0, 0, -4], to: [0, 0, 0] }, image: ImageBuffer { width: 16, height: 16 }
+      scene: BruteForceScene { objects: [ Sphere { shader: GoldShader { purity: 0.9 } }, Environment { emission: DiffuseEmission { sides: both } } ] } })";
+  const std::string program = f + "/installed/bin/etendue";
+  std::string output;
+  EXPECT_EQ(run(program + " render " + f + "/gold.etd --samples 16 --quiet -o " + f + "/gold.npy", &output), 0) << output;
+  EXPECT_TRUE(fs::exists(f + "/gold.npy"));
+  // Plugins appear everywhere built-in parts do.
+  EXPECT_EQ(run(program + " --plugin " + library + " classes GoldShader", &output), 0) << output;
+  EXPECT_NE(output.find("purity"), std::string::npos) << output;
+  EXPECT_EQ(run(program + " render " + f + "/gold.etd --set 'scene.objects[0].shader.purity=2'", &output), 2);
+  EXPECT_NE(output.find("must be from 0 to 1"), std::string::npos) << output;
+}
+
+TEST_F(Plugin, RefusesWhatIsNone) {
+  const std::string f = folder.string();
+  std::ofstream(f + "/text.so") << "no library";
+  EXPECT_THROW(Registry::instance().load_plugin(f + "/text.so"), Error);
+  EXPECT_THROW(Registry::instance().load_plugin(f + "/missing.so"), Error);
+  // A library built for other interfaces is refused before anything in it is adopted.
+  std::ofstream(f + "/old.cpp") << "extern \"C\" const char* etendue_plugin_abi() { return \"interfaces 0\"; }";
+  ASSERT_EQ(run("c++ -shared -fPIC " + f + "/old.cpp -o " + f + "/old.so"), 0);
+  try {
+    Registry::instance().load_plugin(f + "/old.so");
+    ADD_FAILURE() << "was adopted";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("build it again"), std::string::npos) << e.what();
+  }
+  std::ofstream(f + "/none.cpp") << "int x;";
+  ASSERT_EQ(run("c++ -shared -fPIC " + f + "/none.cpp -o " + f + "/none.so"), 0);
+  EXPECT_THROW(Registry::instance().load_plugin(f + "/none.so"), Error);
+}
+
+}  // namespace
+}  // namespace etendue
