@@ -51,7 +51,8 @@ class Random {
   std::uniform_real_distribution<float> uniform_{0, 1};
 };
 
-inline Ref<SceneObject> object(const std::string& name, const std::vector<Setting>& settings = {}, const AnimatedTransform& transform = {}) {
+inline Ref<SceneObject> object(const std::string& name, const std::vector<Setting>& settings = {},
+                               const AnimatedTransform& transform = {}) {
   Ref<SceneObject> made = ref_cast<SceneObject>(Registry::instance().create(name));
   for (const Setting& s : settings) set(*made, s.member, s.value);
   made->transform = transform;
@@ -59,7 +60,8 @@ inline Ref<SceneObject> object(const std::string& name, const std::vector<Settin
   return made;
 }
 
-inline Ref<Scene> scene(const std::string& name, std::vector<Ref<SceneObject>> objects, const AnimatedTransform& transform = {}) {
+inline Ref<Scene> scene(const std::string& name, std::vector<Ref<SceneObject>> objects,
+                        const AnimatedTransform& transform = {}) {
   Ref<Scene> made = ref_cast<Scene>(Registry::instance().create(name));
   made->objects = std::move(objects);
   made->transform = transform;
@@ -70,7 +72,8 @@ inline Ref<Scene> scene(const std::string& name, std::vector<Ref<SceneObject>> o
 /// The surface of a cube from -1 to 1, facing out.
 inline std::vector<Setting> cube_settings() {
   return {{"positions", {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1}},
-          {"triangles", {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7}}};
+          {"triangles",
+           {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7}}};
 }
 inline std::vector<Setting> l_shape_settings() {  // concave, area 3
   return {{"points", {0, 0, 0, 2, 0, 0, 2, 1, 0, 1, 1, 0, 1, 2, 0, 0, 2, 0}}};

@@ -64,8 +64,9 @@ TEST(Transform, ErrorBoundHolds) {
 }
 
 TEST(AnimatedTransform, RotationKeepsSize) {
-  const AnimatedTransform a({{0, Transform::translate({1, 0, 0}) * Transform::scale({2, 2, 2})},
-                             {1, Transform::translate({5, 0, 0}) * Transform::rotate(2.5f, {1, 2, 3}) * Transform::scale({2, 2, 2})}});
+  const AnimatedTransform a(
+      {{0, Transform::translate({1, 0, 0}) * Transform::scale({2, 2, 2})},
+       {1, Transform::translate({5, 0, 0}) * Transform::rotate(2.5f, {1, 2, 3}) * Transform::scale({2, 2, 2})}});
   for (float time = 0; time <= 1; time += 0.01f) {
     const Transform t = a.at(time);
     EXPECT_NEAR(length(t(Vector3{1, 0, 0})), 2, 1e-5f);
@@ -82,7 +83,9 @@ TEST(AnimatedTransform, RotationKeepsSize) {
 }
 
 TEST(AnimatedTransform, SweepHoldsAllPositions) {
-  const AnimatedTransform a({{0, {}}, {1, Transform::translate({5, 1, 0}) * Transform::rotate(3, {0, 1, 0})}, {1.5f, Transform::translate({0, -4, 0})}});
+  const AnimatedTransform a({{0, {}},
+                             {1, Transform::translate({5, 1, 0}) * Transform::rotate(3, {0, 1, 0})},
+                             {1.5f, Transform::translate({0, -4, 0})}});
   Bounds3 box;
   box.add(Point3{-1, -1, -2});
   box.add(Point3{1, 1, 2});
@@ -117,10 +120,10 @@ TEST(Objects, Areas) {
 }
 
 TEST(Objects, HostileMembersAreRefused) {
-  EXPECT_THROW(object("Polygon", {{"points", {0, 0, 0, 1, 0, 0}}}), Error);                                 // two points
-  EXPECT_THROW(object("Polygon", {{"points", {0, 0, 0, 1, 0, 0, 2, 0, 0}}}), Error);                        // no area
-  EXPECT_THROW(object("Polygon", {{"points", {0, 0, 0, 1, 0, 0, 1, 1, 0.1, 0, 1, 0}}}), Error);             // not planar
-  EXPECT_THROW(object("Polygon", {{"points", {0, 0, 0, 4, 0, 0, 4, 3, 0, 1, -1, 0, 0, 3, 0}}}), Error);     // crosses itself
+  EXPECT_THROW(object("Polygon", {{"points", {0, 0, 0, 1, 0, 0}}}), Error);                              // two points
+  EXPECT_THROW(object("Polygon", {{"points", {0, 0, 0, 1, 0, 0, 2, 0, 0}}}), Error);                     // no area
+  EXPECT_THROW(object("Polygon", {{"points", {0, 0, 0, 1, 0, 0, 1, 1, 0.1, 0, 1, 0}}}), Error);          // not planar
+  EXPECT_THROW(object("Polygon", {{"points", {0, 0, 0, 4, 0, 0, 4, 3, 0, 1, -1, 0, 0, 3, 0}}}), Error);  // crosses itself
   EXPECT_NO_THROW(object("Polygon", {{"points", {0, 0, 0, 1, 0, 0, 1, 1, 1e-5, 0, 1, 0}}}));
   EXPECT_THROW(object("Rectangle", {{"edge_v", {2, 0, 0}}}), Error);
   EXPECT_THROW(object("Sphere", {{"radius", 0}}), Error);
@@ -152,174 +155,6 @@ TEST(Objects, ConcavePolygonIsFilledOnce) {
   EXPECT_LE(differ, 2);  // on an edge
 }
 
-// ---- all shapes, still, stretched, mirrored and moving ------------------------------------------------------------------
-
-struct Case {
-  std::string name;
-  Ref<SceneObject> object;
-  float time = 0;
-};
-
-std::vector<Case> cases() {
-  const Transform place = Transform::translate({0.3f, -0.2f, 0.1f}) * Transform::rotate(0.7f, {1, 1, 0});
-  const AnimatedTransform moving({{0, place}, {1, Transform::translate({0.5f, 0.5f, 0}) * Transform::rotate(2, {0, 1, 1})}});
-  const Transform stretched = place * Transform::scale({1.5f, 0.7f, 1}), mirrored = place * Transform::scale({-1, 1, 1});
-  const std::vector<Setting> slanted{{"corner", {-0.5, -0.5, 0}}, {"edge_u", {1, 0, 0}}, {"edge_v", {0.5, 1, 0}}};
-  std::vector<Case> list;
-  const auto add = [&](const std::string& what, const std::vector<Setting>& settings) {
-    list.push_back({what, object(what, settings), 0});
-    list.push_back({what + " placed", object(what, settings, place), 0});
-    list.push_back({what + " stretched", object(what, settings, stretched), 0});
-    list.push_back({what + " mirrored", object(what, settings, mirrored), 0});
-    list.push_back({what + " moving", object(what, settings, moving), 0.4f});
-  };
-  add("Sphere", {{"radius", 0.8}, {"center", {0.1, 0, 0}}});
-  add("Disc", {});
-  add("Rectangle", {});
-  add("Rectangle", slanted);
-  add("Polygon", l_shape_settings());
-  add("TriangleMesh", cube_settings());
-  return list;
-}
-
-TEST(Objects, SurfacePointsAgreeWithRays) {
-  Random random(3);
-  for (const Case& c : cases()) {
-    SCOPED_TRACE(c.name);
-    int hits = 0;
-    for (int i = 0; i < 3000; ++i) {
-      const Point3 origin = random.in_box(3);
-      const Ray r = ray(origin, normalize(random.in_box(1) - origin), c.time);
-      Hit hit;
-      if (!c.object->intersect(r, hit)) {
-        EXPECT_FALSE(c.object->occludes(r));
-        continue;
-      }
-      ++hits;
-      EXPECT_TRUE(c.object->occludes(r));
-      ASSERT_EQ(hit.object, c.object.get());
-      SurfacePoint p;
-      c.object->surface_point(r, hit, p);
-      EXPECT_LT(distance(p.position, r(hit.distance)), 2e-5f);
-      EXPECT_NEAR(length(Vector3(p.normal)), 1, 1e-5f);
-      EXPECT_GE(dot(p.normal, p.shading_normal), 0);
-      const Transform t = c.object->transform.at(c.time);
-      EXPECT_LT(distance(t(p.object_position), p.position), 2e-5f);
-      EXPECT_NEAR(dot(normalize(t(p.object_normal)), p.normal), 1, 1e-4f);
-      EXPECT_EQ(p.time, c.time);
-      // Tangents: p(u + h, v) by a second ray to where the tangent says it is.
-      c.object->tangents(p);
-      EXPECT_NEAR(dot(p.normal, normalize(p.dpdu)), 0, 1e-3f);
-      EXPECT_NEAR(dot(p.normal, normalize(p.dpdv)), 0, 1e-3f);
-      const float h = 2e-3f;
-      const Point3 aside = p.position + h * p.dpdu;
-      const Ray second = ray(aside + 0.01f * Vector3(p.normal), Vector3(-p.normal), c.time);
-      Hit hit2;
-      SurfacePoint p2;
-      if (!c.object->intersect(second, hit2) || hit2.primitive != hit.primitive || hit2.distance > 0.02f) continue;
-      c.object->surface_point(second, hit2, p2);
-      float du = p2.uv.x - p.uv.x;
-      du -= std::round(du);
-      if (c.name.starts_with("Sphere") && (p.uv.y < 0.1f || p.uv.y > 0.9f)) continue;  // u is no good coordinate at the poles
-      EXPECT_NEAR(du, h, 0.1f * h);
-      EXPECT_NEAR(p2.uv.y, p.uv.y, 0.1f * h);
-    }
-    EXPECT_GT(hits, 100);
-    const Bounds3 box = c.object->bounds();
-    for (int i = 0; i < 1000; ++i) {
-      const SurfaceSample s = c.object->sample_area(random.pair(), c.time);
-      for (int k = 0; k < 3; ++k) {
-        EXPECT_GE(s.point.position[k], box.low[k] - 1e-6f);
-        EXPECT_LE(s.point.position[k], box.high[k] + 1e-6f);
-      }
-    }
-  }
-}
-
-TEST(Objects, AreaSamplingMatchesItsDensity) {
-  // The mean of 1/density is the area; the mean of position/density its first moment, compared with hits of parallel
-  // rays (which see each piece of area under its cosine). 5 standard errors.
-  Random random(4);
-  for (const Case& c : cases()) {
-    SCOPED_TRACE(c.name);
-    Mean area;
-    for (int i = 0; i < 20000; ++i) {
-      const SurfaceSample s = c.object->sample_area(random.pair(), c.time);
-      ASSERT_GT(s.density, 0);
-      ASSERT_EQ(s.point.object, c.object.get());
-      EXPECT_NEAR(c.object->area_density(s.point) / s.density, 1, 1e-4f);
-      area.add(1 / double(s.density));
-    }
-    EXPECT_NEAR(area.value(), c.object->area(c.time), 5 * area.error() + 1e-4 * area.value());
-  }
-}
-
-/// All surface points of an object along a ray.
-template <class F>
-void for_all_hits(const SceneObject& object, Ray r, const F& call) {
-  for (int i = 0; i < 16; ++i) {
-    Hit hit;
-    if (!object.intersect(r, hit)) return;
-    SurfacePoint p;
-    object.surface_point(r, hit, p);
-    call(p);
-    r.origin = p.position + (p.error + 1e-5f) * r.direction;
-  }
-}
-
-TEST(Objects, VisibleSamplingMatchesItsDensity) {
-  // Against uniform directions: the density integrates to one, and so do its products with three functions of direction
-  // agree with means over samples. 5 standard errors; fixed seeds.
-  Random random(5);
-  const Point3 places[] = {{0, 0, 2.5f}, {1.1f, 1.5f, 0.8f}, {-1.2f, 0.3f, -0.9f}, {0.35f, -0.15f, 0.45f}};
-  for (const Case& c : cases())
-    for (const Point3& from : places) {
-      SCOPED_TRACE(c.name + " seen from z = " + std::to_string(from.z));
-      Mean sampled[3], integral[4];
-      for (int i = 0; i < 12000; ++i) {
-        const SurfaceSample s = c.object->sample_visible(from, random.pair(), c.time);
-        if (s.density == 0) continue;
-        ASSERT_TRUE(std::isfinite(s.density));
-        EXPECT_LT(length(from + s.distance * s.direction - s.point.position), 1e-4f);
-        EXPECT_NEAR(length(s.direction), 1, 1e-5f);
-        if (std::abs(dot(s.point.normal, s.direction)) > 1e-3f) {
-          EXPECT_NEAR(c.object->visible_density(from, s.direction, s.point) / s.density, 1, 1e-4f);
-        }
-        for (int k = 0; k < 3; ++k) sampled[k].add(double(s.direction[k]));
-      }
-      for (int i = 0; i < 40000; ++i) {
-        const Vector3 d = random.direction();
-        double density = 0;
-        for_all_hits(*c.object, ray(from, d, c.time), [&](const SurfacePoint& p) {
-          // The singular rim of by-area densities carries nothing in the samples' products with the cosine.
-          density += double(c.object->visible_density(from, d, p)) * 4 * double(pi);
-        });
-        for (int k = 0; k < 3; ++k) integral[k].add(density * double(d[k]));
-        integral[3].add(density);
-      }
-      EXPECT_NEAR(integral[3].value(), 1, 5 * integral[3].error() + 1e-3);
-      for (int k = 0; k < 3; ++k)
-        EXPECT_NEAR(sampled[k].value(), integral[k].value(), 5 * (sampled[k].error() + integral[k].error()) + 1e-3);
-    }
-}
-
-TEST(Objects, SolidAngleDensities) {
-  // A unit square seen from a height h above its centre: 4 asin(1 / (1 + 4 h^2)). The sphere: 2 pi (1 - cos).
-  const Ref<SceneObject> square = object("Rectangle"), sphere = object("Sphere"), slanted = object("Rectangle", {{"edge_u", {1, 0, 0}}, {"edge_v", {1e-4, 1, 0}}});
-  for (float h : {0.2f, 0.5f, 1.0f, 1.9f}) {
-    const double omega = 4 * std::asin(1 / (1 + 4 * double(h) * h));
-    EXPECT_NEAR(square->sample_visible({0, 0, h}, {0.3f, 0.6f}, 0).density * omega, 1, 2e-4) << h;
-    Mean mean;
-    Random random(6);
-    for (int i = 0; i < 4000; ++i) mean.add(1 / double(slanted->sample_visible({0, 0, h}, random.pair(), 0).density));
-    EXPECT_NEAR(mean.value() / omega, 1, 3e-3) << h;
-  }
-  for (double d : {1.2, 3.0, 1000.0}) {
-    const double sine2 = 1 / (d * d), omega = 2 * double(pi) * sine2 / (1 + std::sqrt(1 - sine2));
-    EXPECT_NEAR(sphere->sample_visible({float(d), 0, 0}, {0.3f, 0.6f}, 0).density * omega, 1, 1e-5) << d;
-  }
-}
-
 // ---- closed forms: irradiance from luminaires of radiance 1 --------------------------------------------------------------
 
 /// One sample of the irradiance at a point with a normal, from the front of a luminaire.
@@ -340,7 +175,8 @@ double form_factor(const SceneObject& receiver, const SceneObject& light, int sa
   return mean.value() / double(pi);
 }
 
-const std::vector<Setting> square_mesh{{"positions", {-0.5, -0.5, 0, 0.5, -0.5, 0, 0.5, 0.5, 0, -0.5, 0.5, 0}}, {"triangles", {0, 1, 2, 0, 2, 3}}};
+const std::vector<Setting> square_mesh{{"positions", {-0.5, -0.5, 0, 0.5, -0.5, 0, 0.5, 0.5, 0, -0.5, 0.5, 0}},
+                                       {"triangles", {0, 1, 2, 0, 2, 3}}};
 
 TEST(ClosedForm, ParallelSquares) {
   const Transform above = Transform::translate({0, 0, 1}) * Transform::rotate(pi, {1, 0, 0});
@@ -350,7 +186,8 @@ TEST(ClosedForm, ParallelSquares) {
 }
 
 TEST(ClosedForm, PerpendicularSquares) {
-  const Ref<SceneObject> floor = object("Rectangle", {{"corner", {0, 0, 0}}}), wall = object("Rectangle", {{"corner", {0, 0, 0}}, {"edge_u", {0, 1, 0}}, {"edge_v", {0, 0, 1}}});
+  const Ref<SceneObject> floor = object("Rectangle", {{"corner", {0, 0, 0}}}),
+                         wall = object("Rectangle", {{"corner", {0, 0, 0}}, {"edge_u", {0, 1, 0}}, {"edge_v", {0, 0, 1}}});
   EXPECT_NEAR(form_factor(*floor, *wall, 200000) / 0.200044, 1, 5e-3);
 }
 
@@ -377,10 +214,12 @@ TEST(ClosedForm, RectangleAbovePoint) {
 TEST(ClosedForm, SphereAboveAndHalfBelowTheHorizon) {
   const Ref<SceneObject> sphere = object("Sphere", {}, Transform::translate({3, 0, 0}));
   EXPECT_NEAR(point_irradiance(*sphere, {0, 0, 0}, {1, 0, 0}, 20000) / (double(pi) / 9), 1, 5e-3);
-  EXPECT_NEAR(point_irradiance(*sphere, {0, 0, 0}, {0, 0, 1}, 200000) / (std::atan(1 / std::sqrt(8.0)) - std::sqrt(8.0) / 9), 1, 5e-3);
+  EXPECT_NEAR(point_irradiance(*sphere, {0, 0, 0}, {0, 0, 1}, 200000) / (std::atan(1 / std::sqrt(8.0)) - std::sqrt(8.0) / 9), 1,
+              5e-3);
 }
 
-// ---- rays leave surfaces ------------------------------------------------------------------------------------------------------
+// ---- rays leave surfaces
+// ------------------------------------------------------------------------------------------------------
 
 /// How many of the rays that leave an object's surface to a side where nothing of it lies meet it again.
 int met_again(const SceneObject& object, const Scene& scene, bool both_sides, int rays, Random& random) {
@@ -410,12 +249,15 @@ TEST(Objects, LeavingRaysDoNotReturn) {
     for (float size : {1e-3f, 1.0f, 1e5f})
       for (float away : {0.0f, 3.0f, 1000.0f}) {  // in sizes
         SCOPED_TRACE(std::string(structure) + ", size " + std::to_string(size) + ", away " + std::to_string(away));
-        const auto test = [&](const std::string& name, const std::vector<Setting>& settings, bool both_sides, const AnimatedTransform& place) {
+        const auto test = [&](const std::string& name, const std::vector<Setting>& settings, bool both_sides,
+                              const AnimatedTransform& place) {
           const Ref<SceneObject> o = object(name, settings, place);
           EXPECT_EQ(met_again(*o, *scene(structure, {o}), both_sides, 400, random), 0) << name;
         };
         for (int i = 0; i < 6; ++i) {
-          const Transform place = Transform::translate(away * size * random.direction()) * Transform::rotate(random.between(0, 6), random.direction()) * Transform::scale({size, size, size});
+          const Transform place = Transform::translate(away * size * random.direction()) *
+                                  Transform::rotate(random.between(0, 6), random.direction()) *
+                                  Transform::scale({size, size, size});
           const Transform there = Transform::translate(size * random.direction()) * place * Transform::rotate(1, {0, 1, 0});
           const AnimatedTransform moving({{0, place}, {1, there}});
           for (const AnimatedTransform& t : {AnimatedTransform(place), moving}) {

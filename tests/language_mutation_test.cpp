@@ -105,11 +105,17 @@ void mutate(Sequence& s, const Item& inserted, std::mt19937& random) {
   }
 }
 
-TEST(LanguageMutation, ExamplesLoad) {
+TEST(LanguageMutation, ExamplesLoadAndReadBackAsTheyWere) {
   for (const Example& example : examples()) {
     if (example.name == "built-in") continue;  // it has deliberate mistakes
     try {
-      load_job_text(example.text, example.name, example.folder);
+      const Ref<Job> job = load_job_text(example.text, example.name, example.folder);
+      for (const bool all : {false, true}) {
+        const std::string written = write_description(*job, all, example.folder);
+        const Ref<Job> again = load_job_text(written, example.name + " written", example.folder);
+        EXPECT_TRUE(equal(Value(Ref<Component>(job)), Value(Ref<Component>(again)))) << written;
+        EXPECT_EQ(write_description(*again, all, example.folder), written);
+      }
     } catch (const Errors& e) {
       for (const Error& error : e.errors) ADD_FAILURE() << show(error);
     }
@@ -117,9 +123,41 @@ TEST(LanguageMutation, ExamplesLoad) {
 }
 
 TEST(LanguageMutation, MutantsLoadOrAreRejectedWithAPlace) {
-  static constexpr const char* inserted[] = {"{",  "}", "[", "]",  "(",        ")",       ":",   ",",    "=",      ";",    "-", "/", "*", "\"", "#",
-                                             "\n", "m", "K", "nm", "1e999",    "1e-400",  "0",   "none", "true",   "Job",  "x", "é", "\\", "include \"x\"\n",
-                                             "param ", "rgb(", "\xFF", "[[1,2],[3,4]]", "pi", "spectrum(\"/\")"};
+  static constexpr const char* inserted[] = {"{",
+                                             "}",
+                                             "[",
+                                             "]",
+                                             "(",
+                                             ")",
+                                             ":",
+                                             ",",
+                                             "=",
+                                             ";",
+                                             "-",
+                                             "/",
+                                             "*",
+                                             "\"",
+                                             "#",
+                                             "\n",
+                                             "m",
+                                             "K",
+                                             "nm",
+                                             "1e999",
+                                             "1e-400",
+                                             "0",
+                                             "none",
+                                             "true",
+                                             "Job",
+                                             "x",
+                                             "é",
+                                             "\\",
+                                             "include \"x\"\n",
+                                             "param ",
+                                             "rgb(",
+                                             "\xFF",
+                                             "[[1,2],[3,4]]",
+                                             "pi",
+                                             "spectrum(\"/\")"};
   std::mt19937 random(20021101);
   testing::internal::CaptureStderr();  // warnings of unused names
   int rejected = 0, all = 0;
@@ -168,7 +206,8 @@ TEST(LanguageMutation, UnknownNamesAreNeverAccepted) {
       std::vector<std::string> changed = parts;
       changed[i] += "_unknown";
       const std::string text = joined(changed);
-      EXPECT_EQ(load(example, text), Outcome::rejected) << parts[i] << " of " << example.name << " was accepted as " << changed[i];
+      EXPECT_EQ(load(example, text), Outcome::rejected)
+          << parts[i] << " of " << example.name << " was accepted as " << changed[i];
     }
     EXPECT_GT(renamed, 0) << example.name;
   }

@@ -3,6 +3,7 @@
 #include "etendue/language.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -78,7 +79,9 @@ class LanguageConstant final : public LanguagePart {
  public:
   float value = 0;
   static void describe(Description<LanguageConstant>& d) {
-    d.summary("A number as a part, for tests.").member<&LanguageConstant::value>("value", "1", "the number", range(-10, 10)).literal("value");
+    d.summary("A number as a part, for tests.")
+        .member<&LanguageConstant::value>("value", "1", "the number", range(-10, 10))
+        .literal("value");
   }
 };
 static const Register<LanguageConstant> constant_registered;
@@ -87,7 +90,8 @@ class LanguageNeedy final : public LanguagePart {
  public:
   FilePath source;
   static void describe(Description<LanguageNeedy>& d) {
-    d.summary("A part with a required member, for tests.").member<&LanguageNeedy::source>("source", "", "must be there", required);
+    d.summary("A part with a required member, for tests.")
+        .member<&LanguageNeedy::source>("source", "", "must be there", required);
   }
 };
 static const Register<LanguageNeedy> needy_registered;
@@ -134,9 +138,7 @@ std::string job_errors(const std::string& text, const LoadOptions& options = {})
 }
 
 /// A Job that is complete enough to be loaded.
-std::string job_with(const std::string& members) {
-  return "Job { camera: none, scene: none, " + members + " }";
-}
+std::string job_with(const std::string& members) { return "Job { camera: none, scene: none, " + members + " }"; }
 
 double number(const std::string& text) {
   try {
@@ -152,7 +154,9 @@ double number(const std::string& text) {
 /// A folder of files that is removed in the end.
 class Folder {
  public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("etendue_language_" + std::to_string(std::hash<const void*>()(this) ^ size_t(getpid())))) {
+  Folder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("etendue_language_" + std::to_string(std::hash<const void*>()(this) ^ size_t(getpid())))) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_ / "sub");
   }
@@ -222,9 +226,23 @@ TEST(Language, ReadsEveryKindOfMember) {
 }
 
 TEST(Language, UnitsAreInBaseUnits) {
-  const std::pair<const char*, double> known[] = {{"m", 1},      {"cm", 0.01}, {"mm", 1e-3}, {"km", 1e3},  {"um", 1e-6}, {"nm", 1e-9},
-                                                  {"rad", 1},    {"K", 1},     {"W", 1},     {"mW", 1e-3}, {"kW", 1e3},  {"lm", 1},
-                                                  {"cd", 1},     {"lx", 1},    {"s", 1},     {"ms", 1e-3}, {"deg", 3.14159265358979323846 / 180}};
+  const std::pair<const char*, double> known[] = {{"m", 1},
+                                                  {"cm", 0.01},
+                                                  {"mm", 1e-3},
+                                                  {"km", 1e3},
+                                                  {"um", 1e-6},
+                                                  {"nm", 1e-9},
+                                                  {"rad", 1},
+                                                  {"K", 1},
+                                                  {"W", 1},
+                                                  {"mW", 1e-3},
+                                                  {"kW", 1e3},
+                                                  {"lm", 1},
+                                                  {"cd", 1},
+                                                  {"lx", 1},
+                                                  {"s", 1},
+                                                  {"ms", 1e-3},
+                                                  {"deg", 3.14159265358979323846 / 180}};
   for (const auto& [unit, factor] : known) {
     EXPECT_DOUBLE_EQ(number(std::string("2 ") + unit), 2 * factor) << unit;
     EXPECT_DOUBLE_EQ(number(std::string("2") + unit), 2 * factor) << unit;
@@ -272,7 +290,8 @@ TEST(Language, Arithmetic) {
 }
 
 TEST(Language, ColoursAndIndices) {
-  for (const char* text : {"rgb(0.5, 0.2, 0.1)", "blackbody(2856 K)", "illuminant(\"D65\")", "glass(\"N-BK7\")", "metal(\"Au\")"}) {
+  for (const char* text :
+       {"rgb(0.5, 0.2, 0.1)", "blackbody(2856 K)", "illuminant(\"D65\")", "glass(\"N-BK7\")", "metal(\"Au\")"}) {
     const Value v = parse_value(text);
     ASSERT_TRUE(v.as<Color>()) << text;
     EXPECT_EQ((*v.as<Color>())->expression(), text);
@@ -286,18 +305,23 @@ TEST(Language, ColoursAndIndices) {
   parse_value("rgb(\"rec2020\", 0.1, 0.2, 0.3)");
   parse_value("xyz(0.1, 0.2, 0.3)");
 
-  EXPECT_EQ(value_errors("rgb(1, 2)"), "1:1: expects rgb(red, green, blue) or rgb(\"space\", red, green, blue); 2 arguments were given");
-  EXPECT_EQ(value_errors("blackbody(\"hot\")"), "1:11: expects blackbody(temperature): argument 1 must be a temperature, not a string");
-  EXPECT_EQ(value_errors("blackbody(10 m)"), "1:11: expects blackbody(temperature): argument 1 must be a temperature, not a length");
+  EXPECT_EQ(value_errors("rgb(1, 2)"),
+            "1:1: expects rgb(red, green, blue) or rgb(\"space\", red, green, blue); 2 arguments were given");
+  EXPECT_EQ(value_errors("blackbody(\"hot\")"),
+            "1:11: expects blackbody(temperature): argument 1 must be a temperature, not a string");
+  EXPECT_EQ(value_errors("blackbody(10 m)"),
+            "1:11: expects blackbody(temperature): argument 1 must be a temperature, not a length");
   EXPECT_EQ(value_errors("srgb(\"ff8000\")"), "1:6: expects a colour such as \"#ff8000\", not \"ff8000\"");
   EXPECT_EQ(value_errors("rbg(1, 2, 3)"), "1:1: there is no function 'rbg' (did you mean 'rgb'?)");
   EXPECT_EQ(value_errors("glass(\"N-BK8\")").substr(0, 5), "1:7: ");
   EXPECT_NE(value_errors("glass(\"N-BK8\")").find("N-BK7"), std::string::npos);
   EXPECT_NE(value_errors("spectrum(\"no such.csv\")").find("No such file"), std::string::npos);
   EXPECT_EQ(value_errors("LanguagePart(1)"), "1:1: 'LanguagePart' is a class: write LanguagePart { … }");
-  EXPECT_EQ(value_errors("sin(1)"), "1:5: expects sin(angle): argument 1 must be an angle with its unit, deg or rad, not a number");
+  EXPECT_EQ(value_errors("sin(1)"),
+            "1:5: expects sin(angle): argument 1 must be an angle with its unit, deg or rad, not a number");
   EXPECT_EQ(value_errors("sqrt(-1)"), "1:6: the root of a negative number");
-  EXPECT_EQ(value_errors("max(1, 2 m)"), "1:8: expects max(number, number, …): argument 2 must be a plain number, not a length");
+  EXPECT_EQ(value_errors("max(1, 2 m)"),
+            "1:8: expects max(number, number, …): argument 2 must be a plain number, not a length");
 }
 
 TEST(Language, Transforms) {
@@ -357,6 +381,23 @@ TEST(Language, ListsArePackedWhenTheyCanBe) {
   EXPECT_EQ(part("LanguagePart { points: [1,2,3, 4,5,6] cm }")->points[1], (Point3{0.04f, 0.05f, 0.06f}));
 }
 
+TEST(Language, NewLinesSeparateItemsOfLists) {
+  EXPECT_EQ(part("LanguagePart { parts: [\n LanguagePart {}\n LanguagePart {}, LanguagePart {}\n] }")->parts.size(), 3u);
+  EXPECT_EQ(part_errors("LanguagePart { parts: [LanguagePart {} LanguagePart {}] }"),
+            "1:40: expected ',' or ']', not 'LanguagePart'");
+  const auto list = [](const char* text) {
+    const Value v = parse_value(text);
+    return v.as<Numbers>() ? v.as<Numbers>()->values : std::vector<double>();
+  };
+  EXPECT_EQ(list("[1\n-2]"), (std::vector<double>{1, -2}));      // packed
+  EXPECT_EQ(list("[1\n-2 * 1]"), (std::vector<double>{1, -2}));  // not packed
+  EXPECT_EQ(list("[1 -\n2]"), (std::vector<double>{-1}));
+  EXPECT_EQ(list("[(1\n-2)]"), (std::vector<double>{-1}));
+  EXPECT_EQ(list("[[1, 2]\n [3\n 4]]"), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(value_errors("[1 2]"), "1:4: expected ',' or ']', not '2'");
+  EXPECT_EQ(value_errors("max(1\n2)"), "2:1: expected ',' or ')', not '2'");
+}
+
 TEST(Language, LiteralsStandForComponents) {
   const auto p = part("LanguagePart { child: 0.5, parts: [1, 2, LanguageConstant { value: 3 }, none] }");
   ASSERT_TRUE(ref_cast<LanguageConstant>(p->child));
@@ -389,13 +430,15 @@ TEST(Language, ChoicesComeBeforeNames) {
 }
 
 TEST(Language, NameErrors) {
-  EXPECT_EQ(part_errors("white = 1\nLanguagePart { count: whit + white }"), "2:23: 'whit' is not defined (did you mean 'white'?)");
+  EXPECT_EQ(part_errors("white = 1\nLanguagePart { count: whit + white }"),
+            "2:23: 'whit' is not defined (did you mean 'white'?)");
   EXPECT_EQ(part_errors("a = 1\n  a = 2\nLanguagePart { count: a }"), "2:3: 'a' is already defined at line 1:1");
   EXPECT_EQ(part_errors("a = b\nb = c\nc = a\nLanguagePart { count: b }"), "1:5: 'b' is defined by itself: b → c → a → b");
   EXPECT_EQ(part_errors("a = LanguagePart { child: a }\nLanguagePart { child: a }"), "1:27: 'a' is defined by itself: a → a");
   EXPECT_EQ(part_errors("a = 1 m + 1\nLanguagePart { count: a, length: a }"), "1:9: cannot add a length to a plain number");
   EXPECT_EQ(part_errors("pi = 3\nLanguagePart {}"), "1:1: 'pi' has a fixed meaning and cannot be defined");
-  EXPECT_EQ(part_errors("LanguagePart { child: LanguageConstant }"), "1:23: 'LanguageConstant' is a class: write LanguageConstant {}");
+  EXPECT_EQ(part_errors("LanguagePart { child: LanguageConstant }"),
+            "1:23: 'LanguageConstant' is a class: write LanguageConstant {}");
   EXPECT_EQ(part_errors("LanguagePart { color: rgb }"), "1:23: 'rgb' is a function: write rgb(…)");
 }
 
@@ -469,7 +512,8 @@ TEST(Language, FindsManyErrorsInOneRun) {
 
 TEST(Language, SyntaxErrors) {
   EXPECT_EQ(part_errors("LanguagePart { count: 1 length: 2 }"), "1:25: expected ',' or a new line before 'length'");
-  EXPECT_EQ(part_errors("LanguagePart { flag: true count: 2 }"), "1:27: expected ',' or a new line before the next member, not 'count'");
+  EXPECT_EQ(part_errors("LanguagePart { flag: true count: 2 }"),
+            "1:27: expected ',' or a new line before the next member, not 'count'");
   EXPECT_EQ(part_errors("LanguagePart { count: }"), "1:23: expected a value, not '}'");
   EXPECT_EQ(part_errors("LanguagePart {\n count: 1"), "1:14: '{' is never closed");
   EXPECT_EQ(part_errors("LanguagePart {\n indices: [1, 2"), "2:11: '[' is never closed");
@@ -478,8 +522,10 @@ TEST(Language, SyntaxErrors) {
   EXPECT_EQ(part_errors("LanguagePart { title: \"ä\\q\" }"), "1:25: unknown escape in a string; there are \\\" \\\\ \\n \\t");
   EXPECT_EQ(part_errors("pram x = 1\nLanguagePart { count: x }"),
             "1:1: unknown statement 'pram' (did you mean 'param'?)\n2:23: 'x' is not defined");
-  EXPECT_EQ(part_errors("white LanguagePart {}\nLanguagePart { child: white }"), "1:7: expected '=' or '{' after 'white', not 'LanguagePart'");
-  EXPECT_EQ(part_errors("3\nLanguagePart {}"), "1:1: expected a statement (name = value, param, include, plugin or a component), not '3'");
+  EXPECT_EQ(part_errors("white LanguagePart {}\nLanguagePart { child: white }"),
+            "1:7: expected '=' or '{' after 'white', not 'LanguagePart'");
+  EXPECT_EQ(part_errors("3\nLanguagePart {}"),
+            "1:1: expected a statement (name = value, param, include, plugin or a component), not '3'");
   EXPECT_EQ(part_errors("include 3\nLanguagePart {}"), "1:9: expected the file to include, in quotes, not '3'");
   EXPECT_EQ(value_errors("1 2"), "1:3: expected the end of the expression, not '2'");
   EXPECT_EQ(value_errors(""), "1:1: expected a value, not the end of the text");
@@ -503,7 +549,8 @@ TEST(Language, JobErrors) {
 TEST(Language, TextIsUtf8) {
   EXPECT_EQ(part("\xEF\xBB\xBFLanguagePart { title: \"日本\" }")->title, "日本");
   EXPECT_EQ(part_errors("\xEF\xBB\xBFx"), "1:2: expected '=' or '{' after 'x', not the end of the text");
-  EXPECT_EQ(part_errors("LanguagePart { title: \"日本\", cout: 1 }"), "1:29: LanguagePart has no member 'cout' (did you mean 'count'?)");
+  EXPECT_EQ(part_errors("LanguagePart { title: \"日本\", cout: 1 }"),
+            "1:29: LanguagePart has no member 'cout' (did you mean 'count'?)");
   EXPECT_EQ(part_errors("\nä\xFF"), "2:2: the text is not valid UTF-8: byte 0xFF");
   for (const char* wrong : {"\x80", "\xC0\xAF", "\xE0\x80\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xE2\x82"})
     EXPECT_NE(part_errors(std::string("# ") + wrong).find("not valid UTF-8"), std::string::npos);
@@ -539,7 +586,8 @@ TEST(Language, IncludesShareOneNamespace) {
   const auto p = part(text, folder.path());
   EXPECT_EQ(p->child->count, 5);
   EXPECT_EQ(p->file.resolved(), folder.path() + "/me.ply");
-  EXPECT_EQ(std::filesystem::path(p->child->file.resolved()).lexically_normal(), std::filesystem::path(folder.path()) / "sub/red.ply");
+  EXPECT_EQ(std::filesystem::path(p->child->file.resolved()).lexically_normal(),
+            std::filesystem::path(folder.path()) / "sub/red.ply");
 
   folder.write("a.etd", "include \"b.etd\"\n" + job_with("seed: 1"));
   folder.write("b.etd", "\n  include \"a.etd\"\n");
@@ -557,7 +605,8 @@ TEST(Language, IncludesShareOneNamespace) {
 
 TEST(Language, FileErrors) {
   const Folder folder;
-  EXPECT_EQ(errors_of([&] { load_job(folder.path() + "/none.etd"); }), "cannot read '" + folder.path() + "/none.etd': No such file or directory");
+  EXPECT_EQ(errors_of([&] { load_job(folder.path() + "/none.etd"); }),
+            "cannot read '" + folder.path() + "/none.etd': No such file or directory");
   EXPECT_EQ(errors_of([&] { load_job(folder.path()); }), "cannot read '" + folder.path() + "': Is a directory");
   EXPECT_EQ(errors_of([&] { parse_component("include \"none.etd\"\nLanguagePart { count: unknown }", "text", folder.path()); }),
             "1:9: cannot read '" + folder.path() + "/none.etd': No such file or directory");
@@ -581,8 +630,10 @@ TEST(Language, ShowsTheLineWithACaret) {
     return std::string();
   };
   EXPECT_EQ(shown("\n\tLanguagePart { cout: 4 }\r\n"),
-            "shown.etd:2:17: LanguagePart has no member 'cout' (did you mean 'count'?)\n    2 |  LanguagePart { cout: 4 }\n      |                 ^");
-  const std::string long_line = shown("LanguagePart { title: \"" + std::string(500, 'x') + "é\", cout: 4, title: \"" + std::string(500, 'y') + "\" }");
+            "shown.etd:2:17: LanguagePart has no member 'cout' (did you mean 'count'?)\n    2 |  LanguagePart { cout: 4 }\n    "
+            "  |                 ^");
+  const std::string long_line =
+      shown("LanguagePart { title: \"" + std::string(500, 'x') + "é\", cout: 4, title: \"" + std::string(500, 'y') + "\" }");
   const size_t line = long_line.find("\n    1 | …");
   ASSERT_NE(line, std::string::npos) << long_line;
   EXPECT_LT(long_line.size(), 500u);
@@ -599,7 +650,9 @@ TEST(Language, ShowsTheLineWithACaret) {
 // ---- setting by path --------------------------------------------------------------------------------------------------
 
 TEST(Language, SetsByPath) {
-  const auto p = part("LanguagePart { child: LanguagePart {}, parts: [LanguagePart {}, LanguagePart {}], points: [[1,2,3],[4,5,6]], from: [1,2,3] }");
+  const auto p = part(
+      "LanguagePart { child: LanguagePart {}, parts: [LanguagePart {}, LanguagePart {}], points: [[1,2,3],[4,5,6]], from: "
+      "[1,2,3] }");
   set_path(*p, "count", "2 * 4");
   EXPECT_EQ(p->count, 8);
   set_path(*p, "child.length", "3 cm");
@@ -636,13 +689,16 @@ TEST(Language, SetsByPath) {
   EXPECT_EQ(wrong("child..count", "1"), "1:7: expected the name of a member, not ''");
   EXPECT_EQ(wrong("count", "4000"), "1:7: LanguagePart.count must be from 0 to 1000, not 4000");
   EXPECT_EQ(wrong("count", "1 +"), "1:10: expected a value, not the end of the text");
-  EXPECT_EQ(wrong("mode", "visble"), "1:6: LanguagePart.mode has no choice 'visble' (did you mean 'visible'?); known are visible, hidden");
+  EXPECT_EQ(wrong("mode", "visble"),
+            "1:6: LanguagePart.mode has no choice 'visble' (did you mean 'visible'?); known are visible, hidden");
   EXPECT_EQ(p->count, 8);  // nothing half-set
   try {
     set_path(*p, "child.count", "many");
     ADD_FAILURE();
   } catch (const Error& e) {
-    EXPECT_EQ(show(e), "--set child.count:1:13: LanguagePart.count expects a whole number, not a string\n    1 | child.count=many\n      |             ^");
+    EXPECT_EQ(show(e),
+              "--set child.count:1:13: LanguagePart.count expects a whole number, not a string\n    1 | child.count=many\n     "
+              " |             ^");
   }
 }
 
@@ -657,15 +713,17 @@ void expect_round_trip(const Ref<LanguagePart>& p, bool all, const std::string& 
 
 TEST(Language, WritesOnlyWhatDiffers) {
   EXPECT_EQ(write_description(*part("LanguagePart { count: 3, length: 50 cm }")), "LanguagePart {}\n");
-  EXPECT_EQ(write_description(*part("LanguagePart { length: 10 cm, angle: 39.3, wavelength: 632.8 nm, mode: hidden, from: [1, 2, -3] cm, child: 0.25 }")),
-            "LanguagePart {\n"
-            "    length: 0.1 m\n"
-            "    angle: 39.3 deg\n"
-            "    wavelength: 632.8 nm\n"
-            "    mode: hidden\n"
-            "    from: [0.01, 0.02, -0.03] m\n"
-            "    child: 0.25\n"
-            "}\n");
+  EXPECT_EQ(
+      write_description(*part(
+          "LanguagePart { length: 10 cm, angle: 39.3, wavelength: 632.8 nm, mode: hidden, from: [1, 2, -3] cm, child: 0.25 }")),
+      "LanguagePart {\n"
+      "    length: 0.1 m\n"
+      "    angle: 39.3 deg\n"
+      "    wavelength: 632.8 nm\n"
+      "    mode: hidden\n"
+      "    from: [0.01, 0.02, -0.03] m\n"
+      "    child: 0.25\n"
+      "}\n");
   EXPECT_EQ(write_description(*part("LanguagePart { child: LanguagePart { count: 4 }, parts: [1, LanguagePart {}] }")),
             "LanguagePart { child: LanguagePart { count: 4 }, parts: [1, LanguagePart {}] }\n");
   EXPECT_EQ(write_description(*part("white = LanguagePart { count: 4 }\nLanguagePart { child: white }")),
@@ -714,7 +772,8 @@ TEST(Language, RoundTripOfEveryKind) {
     })");
   expect_round_trip(p, false);
   expect_round_trip(p, true);
-  for (const Member& m : p->class_info().members) EXPECT_FALSE(equal(m.get(*p, m), m.default_value)) << m.name << " is not tested";
+  for (const Member& m : p->class_info().members)
+    EXPECT_FALSE(equal(m.get(*p, m), m.default_value)) << m.name << " is not tested";
 }
 
 TEST(Language, RoundTripOfRandomNumbers) {
@@ -756,16 +815,18 @@ TEST(Language, PathsAreWrittenRelativeToTheFolder) {
   const Folder folder;
   folder.write("sub/paint.csv", "nm,value\n400,0.1\n700,0.9\n");
   const auto p = part("LanguagePart { file: \"sub/x.ply\", color: 2 * spectrum(\"sub/paint.csv\") }", folder.path());
-  EXPECT_EQ(write_description(*p, false, folder.path()), "LanguagePart { file: \"sub/x.ply\", color: 2 * spectrum(\"sub/paint.csv\") }\n");
-  EXPECT_EQ(write_description(*p, false, folder.path() + "/sub"), "LanguagePart { file: \"x.ply\", color: 2 * spectrum(\"paint.csv\") }\n");
+  EXPECT_EQ(write_description(*p, false, folder.path()),
+            "LanguagePart { file: \"sub/x.ply\", color: 2 * spectrum(\"sub/paint.csv\") }\n");
+  EXPECT_EQ(write_description(*p, false, folder.path() + "/sub"),
+            "LanguagePart { file: \"x.ply\", color: 2 * spectrum(\"paint.csv\") }\n");
   EXPECT_NE(write_description(*p).find("file: \"" + folder.path() + "/sub/x.ply\""), std::string::npos);
   expect_round_trip(p, false, folder.path());
   expect_round_trip(part("LanguagePart { file: \"/absolute/x.ply\" }"), false, folder.path());
 }
 
 TEST(Language, WritesValues) {
-  for (const char* text : {"true", "none", "\"a\\n\"", "[1, 2, 3]", "[[1, 2], [3, 4]]", "[\"a\", true]", "0.25 m", "[1, 2] K", "blackbody(2856 K)",
-                           "matrix(1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3)", "LanguagePart { count: 4 }"}) {
+  for (const char* text : {"true", "none", "\"a\\n\"", "[1, 2, 3]", "[[1, 2], [3, 4]]", "[\"a\", true]", "0.25 m", "[1, 2] K",
+                           "blackbody(2856 K)", "matrix(1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3)", "LanguagePart { count: 4 }"}) {
     EXPECT_EQ(write_value(parse_value(text)), text);
   }
 }

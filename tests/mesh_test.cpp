@@ -1,5 +1,6 @@
 // Mesh files: PLY and OBJ, sound and hostile.
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -25,10 +26,13 @@ std::string ply_grid(const std::string& format, int n) {
   const bool text = format == "ascii", swap = format == "binary_big_endian";
   int faces = 0;
   for (int y = 0; y < n; ++y) faces += (y % 2 == 0 ? 2 : 1) * n;
-  std::string s = "ply\nformat " + format + " 1.0\ncomment a test\nobj_info none\nelement camera 1\nproperty list ushort double view\n";
-  s += "element vertex " + std::to_string((n + 1) * (n + 1)) + "\nproperty uchar red\nproperty float x\nproperty double y\nproperty float z\n";
+  std::string s =
+      "ply\nformat " + format + " 1.0\ncomment a test\nobj_info none\nelement camera 1\nproperty list ushort double view\n";
+  s += "element vertex " + std::to_string((n + 1) * (n + 1)) +
+       "\nproperty uchar red\nproperty float x\nproperty double y\nproperty float z\n";
   s += "property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nproperty short extra\n";
-  s += "element face " + std::to_string(faces) + "\nproperty list uint8 float weights\nproperty list uchar int vertex_indices\nproperty int tag\nend_header\n";
+  s += "element face " + std::to_string(faces) +
+       "\nproperty list uint8 float weights\nproperty list uchar int vertex_indices\nproperty int tag\nend_header\n";
   const auto number = [&](auto v) {
     if (text)
       s += std::to_string(v) + " ";
@@ -96,7 +100,9 @@ TEST(Ply, ThreeFormatsGiveTheSame) {
 }
 
 TEST(Ply, CommonLayoutIsReadInOnePiece) {
-  std::string s = "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 4\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nelement face 3\r\nproperty list uchar uint vertex_index\r\nend_header\r\n";
+  std::string s =
+      "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 4\r\nproperty float x\r\nproperty float y\r\nproperty float "
+      "z\r\nelement face 3\r\nproperty list uchar uint vertex_index\r\nend_header\r\n";
   for (float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f}) put(s, f, false);
   const auto face = [&](std::initializer_list<std::uint32_t> corners) {
     put(s, std::uint8_t(corners.size()), false);
@@ -145,8 +151,14 @@ TEST(Ply, HostileFilesAreRefused) {
   EXPECT_NE(message(head + faces + "3 0 x 2\n").find("number"), std::string::npos);
   EXPECT_NE(message(head + faces + "300000000 0 1 2\n").find("more than the file holds"), std::string::npos);
   EXPECT_NE(message(head + faces).find("the file"), std::string::npos);
-  EXPECT_NE(message("ply\nformat ascii 1.0\nelement vertex 99999999999999\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n").find("more than the file holds"), std::string::npos);
-  EXPECT_NE(message("ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n").find("more than the file holds"), std::string::npos);
+  EXPECT_NE(message("ply\nformat ascii 1.0\nelement vertex 99999999999999\nproperty float x\nproperty float y\nproperty float "
+                    "z\nend_header\n0 0 0\n")
+                .find("more than the file holds"),
+            std::string::npos);
+  EXPECT_NE(message("ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float "
+                    "y\nproperty float z\nend_header\n")
+                .find("more than the file holds"),
+            std::string::npos);
   EXPECT_NE(message("ply\nelement vertex 0\nend_header\n"), "");
   EXPECT_NE(message(head + "end_header\n0 0 0\n1 0 0\n0 1 0\n").find("no faces"), std::string::npos);
 }
@@ -199,12 +211,14 @@ class MeshFiles : public testing::Test {
     std::ofstream(path, std::ios::binary) << contents;
     return path;
   }
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("etendue_mesh_test_" + std::to_string(std::random_device()()));
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("etendue_mesh_test_" + std::to_string(std::random_device()()));
 };
 
 TEST_F(MeshFiles, MeshFromFile) {
   const Ref<SceneObject> a = object("TriangleMesh", {{"file", file("grid.ply", ply_grid("ascii", 4))}});
-  const Ref<SceneObject> b = object("TriangleMesh", {{"file", file("grid2.ply", ply_grid("binary_big_endian", 4))}}, Transform::scale({2, 2, 2}));
+  const Ref<SceneObject> b =
+      object("TriangleMesh", {{"file", file("grid2.ply", ply_grid("binary_big_endian", 4))}}, Transform::scale({2, 2, 2}));
   EXPECT_NEAR(4 * a->area(0), b->area(0), 1e-3f);
   Hit hit;
   const Ray down = ray({1.3f, 2.2f, 9}, {0, 0, -1});
@@ -241,8 +255,10 @@ TEST_F(MeshFiles, ErrorsNameTheFile) {
 }
 
 TEST_F(MeshFiles, UnusableTrianglesAreLeftOut) {
-  const Ref<SceneObject> m = object("TriangleMesh", {{"file", file("some.obj",
-      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv inf 0 0\nv 1e300 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 2 2\nf 1 1 1\n")}});
+  const Ref<SceneObject> m = object(
+      "TriangleMesh",
+      {{"file",
+        file("some.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv inf 0 0\nv 1e300 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 2 2\nf 1 1 1\n")}});
   EXPECT_EQ(m->triangles()->triangles.size(), 1u);
   EXPECT_NEAR(m->area(0), 0.5f, 1e-6f);
   EXPECT_TRUE(is_finite(m->bounds().high));

@@ -67,7 +67,7 @@ TEST(ReflectionTest, a_class_in_json_says_what_its_description_says) {
 
   const std::string text = class_text(info);
   EXPECT_EQ(text.find("default"), std::string::npos) << text;  // it is abstract
-  for (const char* word : {"MadePart", "A part.", "nobody 1999", "weight", "more than 0", "\"front\"", "must be given"})
+  for (const char* word : {"MadePart", "A part.", "nobody 1999", "weight", "more than 0", "both, front", "must be given"})
     EXPECT_NE(text.find(word), std::string::npos) << word << " is not in\n" << text;
 }
 
@@ -97,7 +97,7 @@ std::string problem(const Json& schema, const Json& value, const Json& root, con
     for (const Json& one : schema["anyOf"]) {
       const std::string p = problem(one, value, root, at);
       if (p.empty()) return {};
-      all += p + "\n";
+      all.append(p).append("\n");
     }
     return all;
   }

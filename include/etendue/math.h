@@ -61,6 +61,26 @@ inline float difference_of_products(float a, float b, float c, float d) {
   return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
+/// Sine and cosine of (pi/4) t for t in [-1, 1], to about 1e-7: minimax polynomials (coefficients of S. Moshier's Cephes
+/// library, sinf.c). No range reduction, no call: directions are made from these for every sample.
+inline void sin_cos_eighth(float t, float& sine, float& cosine) {
+  const float x = (pi / 4) * t, z = x * x;
+  sine = x + x * z * (-1.6666654611e-1f + z * (8.3321608736e-3f + z * -1.9515295891e-4f));
+  cosine = 1 - 0.5f * z + z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
+}
+
+/// Sine and cosine of 2 pi u for u in [0, 1], to about 1e-7.
+inline void sin_cos_turn(float u, float& sine, float& cosine) {
+  const float quarter = float(int(4 * u + 0.5f));  // the nearest multiple of a quarter turn
+  float s = 0, c = 0;
+  sin_cos_eighth(2 * (4 * u - quarter), s, c);
+  const int k = int(quarter);
+  sine = (k & 1) ? c : s;
+  cosine = (k & 1) ? s : c;
+  if (k & 2) sine = -sine;
+  if ((k + 1) & 2) cosine = -cosine;
+}
+
 /// A hash of 64 bits to 64 bits (the finaliser of splitmix64, Steele et al. 2014).
 constexpr std::uint64_t mix_bits(std::uint64_t v) {
   v ^= v >> 30;

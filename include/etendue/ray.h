@@ -59,27 +59,26 @@ struct SurfacePoint {
   /// A ray that leaves the surface without meeting it again: the origin is moved along the normal beyond the error.
   Ray leave(const Vector3& direction) const {
     Ray ray;
-    ray.origin = offset(direction);
+    ray.origin = exit(direction);
     ray.direction = direction;
     ray.time = time;
     return ray;
   }
+  /// Where such a ray begins.
+  Point3 exit(const Vector3& direction) const {
+    const float side = dot(normal, direction) < 0 ? -error : error;
+    return position + side * Vector3(normal);
+  }
   /// A ray to another point; directions are not normalised: the other point is at t = 1, and the ray ends just before.
   Ray towards(const Point3& p, float error_there) const {
     Ray ray;
-    ray.origin = offset(p - position);
+    ray.origin = exit(p - position);
     ray.direction = p - ray.origin;
     const float reach = length(ray.direction);
     ray.direction = ray.direction / reach;
     ray.maximum = reach * (1 - 1e-4f) - 2 * error_there;
     ray.time = time;
     return ray;
-  }
-
- private:
-  Point3 offset(const Vector3& direction) const {
-    const float side = dot(normal, direction) < 0 ? -error : error;
-    return position + side * Vector3(normal);
   }
 };
 

@@ -42,6 +42,8 @@ class SampleStream {
     dimension_ += 2;
     return p;
   }
+  /// Passes over one number that will not be looked at; those that follow are the same as if it had been taken.
+  void skip() { ++dimension_; }
   std::uint32_t dimension() const { return dimension_; }
   /// Continues at a given dimension, so that parts of a path keep their dimensions whatever went before.
   void jump(std::uint32_t dimension) { dimension_ = dimension; }

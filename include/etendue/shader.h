@@ -77,6 +77,8 @@ class Scatter {
   /// The lobes present at this point.
   Lobes lobes() const { return lobes_; }
   bool has(Lobes any) const { return (lobes_ & any) != 0; }
+  /// Whether `sample` looks at its `choice`; parts that never do may say so, which saves drawing a number.
+  bool has_choice() const { return has_choice_; }
   /// |cos| of the angle between a direction and the shading normal: the cosine that goes with f.
   float cosine(const Vector3& v) const { return std::abs(dot(frame_.n, v)); }
   const Frame& frame() const { return frame_; }
@@ -112,6 +114,7 @@ class Scatter {
   Frame frame_;
   Normal3 normal_;
   Lobes lobes_;
+  bool has_choice_ = true;
 };
 
 class Shader : public Component {

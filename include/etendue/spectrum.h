@@ -2,6 +2,7 @@
 // The light a path carries: values at the path's few wavelengths.
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -45,11 +46,7 @@ class Spectrum {
   Spectrum& operator*=(float s) { v_ *= s; return *this; }
   Spectrum& operator/=(float s) { v_ *= 1 / s; return *this; }
 
-  bool black() const {
-    for (int i = 0; i < spectrum_size; ++i)
-      if (v_[i] != 0) return false;
-    return true;
-  }
+  bool black() const { return none(v_ != detail::Lanes{}); }
   float maximum() const {
     float m = v_[0];
     for (int i = 1; i < spectrum_size; ++i) m = std::max(m, v_[i]);
@@ -65,13 +62,16 @@ class Spectrum {
     for (int i = 0; i < spectrum_size; ++i) sum += v_[i];
     return sum / spectrum_size;
   }
-  bool finite() const {
-    for (int i = 0; i < spectrum_size; ++i)
-      if (!std::isfinite(v_[i])) return false;
-    return true;
-  }
+  /// Neither infinite nor not-a-number: x - x is 0 for numbers only.
+  bool finite() const { return none((v_ - v_) != detail::Lanes{}); }
 
  private:
+  static bool none(const detail::IntLanes& mask) {
+    std::uint64_t all = 0;
+    for (const std::uint64_t part : std::bit_cast<std::array<std::uint64_t, spectrum_size / 2>>(mask)) all |= part;
+    return all == 0;
+  }
+
   detail::Lanes v_;
 };
 

@@ -31,23 +31,29 @@ inline float cosine_hemisphere_density(float cosine) {
 
 /// A unit direction, uniform over the sphere; density 1/(4 pi) [1/sr].
 inline Vector3 sphere(Point2 u) {
-  const float z = 1 - 2 * u.x, r = safe_sqrt(1 - z * z), phi = 2 * pi * u.y;
-  return {r * std::cos(phi), r * std::sin(phi), z};
+  const float z = 1 - 2 * u.x, r = safe_sqrt(1 - z * z);
+  float sine = 0, cosine = 0;
+  sin_cos_turn(u.y, sine, cosine);
+  return {r * cosine, r * sine, z};
 }
 inline constexpr float sphere_density = 1 / (4 * pi);
 
 /// A unit direction, uniform over the hemisphere z >= 0; density 1/(2 pi) [1/sr].
 inline Vector3 hemisphere(Point2 u) {
-  const float r = safe_sqrt(1 - u.x * u.x), phi = 2 * pi * u.y;
-  return {r * std::cos(phi), r * std::sin(phi), u.x};
+  const float r = safe_sqrt(1 - u.x * u.x);
+  float sine = 0, cosine = 0;
+  sin_cos_turn(u.y, sine, cosine);
+  return {r * cosine, r * sine, u.x};
 }
 inline constexpr float hemisphere_density = 1 / (2 * pi);
 
 /// A unit direction uniform in the cone around +z whose 1 - cos(half angle) is given (so that narrow cones stay exact).
 inline Vector3 cone(Point2 u, float one_minus_cosine) {
   const float h = u.x * one_minus_cosine;  // 1 - cos(theta)
-  const float r = safe_sqrt(h * (2 - h)), phi = 2 * pi * u.y;
-  return {r * std::cos(phi), r * std::sin(phi), 1 - h};
+  const float r = safe_sqrt(h * (2 - h));
+  float sine = 0, cosine = 0;
+  sin_cos_turn(u.y, sine, cosine);
+  return {r * cosine, r * sine, 1 - h};
 }
 /// [1/sr]
 inline float cone_density(float one_minus_cosine) {
@@ -56,8 +62,10 @@ inline float cone_density(float one_minus_cosine) {
 
 /// A unit direction with density (n + 1)/(2 pi) cos(theta)^n [1/sr] around +z.
 inline Vector3 power_cosine(Point2 u, float n) {
-  const float z = std::pow(u.x, 1 / (n + 1)), r = safe_sqrt(1 - z * z), phi = 2 * pi * u.y;
-  return {r * std::cos(phi), r * std::sin(phi), z};
+  const float z = std::pow(u.x, 1 / (n + 1)), r = safe_sqrt(1 - z * z);
+  float sine = 0, cosine = 0;
+  sin_cos_turn(u.y, sine, cosine);
+  return {r * cosine, r * sine, z};
 }
 inline float power_cosine_density(float cosine, float n) {
   return cosine > 0 ? (n + 1) / (2 * pi) * std::pow(cosine, n) : 0;

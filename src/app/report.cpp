@@ -36,6 +36,7 @@ std::string meant(const CLI::App* command, const std::string& given) {
     const std::string bare = given.substr(0, given.find('='));
     for (const CLI::Option* option : command->get_options())
       for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    if (std::ranges::find(known, bare) != known.end()) return " before the command; write it after";
     return suggestion(bare, known);
   }
   for (const CLI::App* other : command->get_subcommands({})) known.push_back(other->get_name());

@@ -49,11 +49,7 @@ std::string wrapped(const std::string& text, size_t indent, size_t width = 110) 
 }
 
 std::string range_text(const Member& member) {
-  if (!member.choices.empty()) {
-    std::vector<std::string> quoted;
-    for (const std::string& choice : member.choices) quoted.push_back('"' + choice + '"');
-    return fmt::format("{}", fmt::join(quoted, ", "));
-  }
+  if (!member.choices.empty()) return fmt::format("{}", fmt::join(member.choices, ", "));
   return member.range ? member.range->text() : "";
 }
 

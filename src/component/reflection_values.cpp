@@ -153,7 +153,7 @@ std::string value_text(const Value& value, const Member& member) {
   if (const auto* flag = value.as<bool>()) return *flag ? "true" : "false";
   if (const auto* number = value.as<Number>())
     return with_unit(number_text(in_unit(number->value, number->dimension, member)), number->dimension, member);
-  if (const auto* text = value.as<std::string>()) return quoted(*text);
+  if (const auto* text = value.as<std::string>()) return member.kind == Kind::choice ? *text : quoted(*text);
   if (const auto* numbers = value.as<Numbers>()) return rows_text(*numbers, member);
   if (const auto* file = value.as<FilePath>()) return quoted(file->text);
   if (const auto* color = value.as<Color>()) return *color ? (*color)->expression() : "none";

@@ -15,9 +15,7 @@ namespace {
   throw Error(fmt::format("cannot {} {} {} {}", verb, a.kind(), preposition, b.kind()), at);
 }
 
-std::string words(Dimension d) {
-  return d == Dimension::none ? "a plain number" : "a " + std::string(name(d));
-}
+std::string words(Dimension d) { return d == Dimension::none ? "a plain number" : "a " + std::string(name(d)); }
 
 double finite(double x, Location at) {
   if (!std::isfinite(x)) throw Error("the result is too large for a number", at);
@@ -34,7 +32,9 @@ Value sum(const Value& a, const Value& b, double sign, Location at) {
   const char* verb = sign > 0 ? "add" : "combine";
   const char* preposition = sign > 0 ? "to" : "by '-' with";
   const auto *x = a.as<Number>(), *y = b.as<Number>();
-  if (x && y) return Value(Number{finite(x->value + sign * y->value, at), common(x->dimension, y->dimension, verb, preposition, at)}, a.location);
+  if (x && y)
+    return Value(Number{finite(x->value + sign * y->value, at), common(x->dimension, y->dimension, verb, preposition, at)},
+                 a.location);
   const auto *u = a.as<Numbers>(), *v = b.as<Numbers>();
   if (!u || !v || u->width != v->width || u->values.size() != v->values.size()) meaningless(verb, preposition, a, b, at);
   Numbers result = *u;
@@ -65,13 +65,9 @@ Dimension quotient(Dimension a, Dimension b, Location at) {
 
 }  // namespace
 
-Value add(const Value& a, const Value& b, Location at) {
-  return sum(a, b, 1, at);
-}
+Value add(const Value& a, const Value& b, Location at) { return sum(a, b, 1, at); }
 
-Value subtract(const Value& a, const Value& b, Location at) {
-  return sum(a, b, -1, at);
-}
+Value subtract(const Value& a, const Value& b, Location at) { return sum(a, b, -1, at); }
 
 Value multiply(const Value& a, const Value& b, Location at) {
   const auto *x = a.as<Number>(), *y = b.as<Number>();
@@ -93,7 +89,8 @@ Value divide(const Value& a, const Value& b, Location at) {
   const auto* y = b.as<Number>();
   if (!y) meaningless("divide", "by", a, b, at);
   if (y->value == 0) throw Error("division by zero", at);
-  if (const auto* x = a.as<Number>()) return Value(Number{finite(x->value / y->value, at), quotient(x->dimension, y->dimension, at)});
+  if (const auto* x = a.as<Number>())
+    return Value(Number{finite(x->value / y->value, at), quotient(x->dimension, y->dimension, at)});
   if (const auto* numbers = a.as<Numbers>()) {
     Numbers result = *numbers;
     result.dimension = quotient(numbers->dimension, y->dimension, at);
@@ -146,7 +143,8 @@ struct Merged {
     } else {
       dimension = d;
     }
-    if (plain && dimension != Dimension::none) throw Error(fmt::format("a list cannot mix a plain number and {}: give each its unit", words(dimension)), at);
+    if (plain && dimension != Dimension::none)
+      throw Error(fmt::format("a list cannot mix a plain number and {}: give each its unit", words(dimension)), at);
   }
 };
 
@@ -164,7 +162,9 @@ Value packed(Value::List items, Location at) {
   for (const Value& item : items) {
     if (item.as<Number>()) ++numbers;
     const auto* row = item.as<Numbers>();
-    if (row && row->width == 1 && row->values.size() >= 2 && row->values.size() <= 4 && first_row && row->values.size() == first_row->values.size()) ++rows;
+    if (row && row->width == 1 && row->values.size() >= 2 && row->values.size() <= 4 && first_row &&
+        row->values.size() == first_row->values.size())
+      ++rows;
   }
   if (items.empty() || (numbers != items.size() && rows != items.size())) return Value(std::move(items), at);
   Numbers result;

@@ -38,7 +38,8 @@ bool Evaluator::set_members(Component& made, Node& node) {
     if (!member) {
       std::vector<std::string> known;
       for (const Member& m : info.members) known.push_back(m.name);
-      diagnostics_.add(Error(fmt::format("{} has no member '{}'{}", info.name, label.text, suggestion(label.text, known)), label.at));
+      diagnostics_.add(
+          Error(fmt::format("{} has no member '{}'{}", info.name, label.text, suggestion(label.text, known)), label.at));
       evaluate(child, {nullptr, false, true});
       good = false;
       continue;

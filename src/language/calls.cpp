@@ -9,12 +9,15 @@ namespace etendue::language {
 
 void Arguments::wrong_count() const {
   // Where there are too many, the first superfluous one is not known for calls of several forms: the call is pointed at.
-  throw Error(fmt::format("expects {}; {} given", usage_, values_.size() == 1 ? "1 argument was" : fmt::format("{} arguments were", values_.size())), at_);
+  throw Error(fmt::format("expects {}; {} given", usage_,
+                          values_.size() == 1 ? "1 argument was" : fmt::format("{} arguments were", values_.size())),
+              at_);
 }
 
 void Arguments::wrong(size_t i, const std::string& expected) const {
   if (i >= values_.size()) wrong_count();
-  throw Error(fmt::format("expects {}: argument {} must be {}, not {}", usage_, i + 1, expected, values_[i].kind()), values_[i].location);
+  throw Error(fmt::format("expects {}: argument {} must be {}, not {}", usage_, i + 1, expected, values_[i].kind()),
+              values_[i].location);
 }
 
 void Arguments::fail(size_t i, const std::string& message) const {
@@ -49,8 +52,10 @@ const Numbers& Arguments::numbers(size_t i) const {
 
 Vector3 Arguments::vector(size_t i, Dimension dimension) const {
   const auto* n = as<Numbers>(i);
-  const std::string expected = dimension == Dimension::none ? "3 plain numbers in brackets" : fmt::format("3 numbers [{}] in brackets", name(dimension));
-  if (!n || n->width != 1 || n->values.size() != 3 || (n->dimension != Dimension::none && n->dimension != dimension)) wrong(i, expected);
+  const std::string expected =
+      dimension == Dimension::none ? "3 plain numbers in brackets" : fmt::format("3 numbers [{}] in brackets", name(dimension));
+  if (!n || n->width != 1 || n->values.size() != 3 || (n->dimension != Dimension::none && n->dimension != dimension))
+    wrong(i, expected);
   for (const double x : n->values)
     if (std::abs(x) > double(std::numeric_limits<float>::max())) fail(i, "is too large");
   return {float(n->values[0]), float(n->values[1]), float(n->values[2])};
@@ -73,9 +78,7 @@ const Function* find_function(const std::string& name) {
 
 }  // namespace
 
-bool is_function(const std::string& name) {
-  return find_function(name) != nullptr;
-}
+bool is_function(const std::string& name) { return find_function(name) != nullptr; }
 
 Value call(const std::string& function, const std::vector<Value>& values, Location at, bool allow_files) {
   if (const Function* f = find_function(function)) return f->call(Arguments(values, f->usage, at, allow_files));

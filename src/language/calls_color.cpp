@@ -108,8 +108,6 @@ constexpr Function functions[] = {
 
 }  // namespace
 
-std::span<const Function> color_functions() {
-  return functions;
-}
+std::span<const Function> color_functions() { return functions; }
 
 }  // namespace etendue::language

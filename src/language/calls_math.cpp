@@ -40,7 +40,8 @@ Value extreme(const Arguments& a, Better better) {
   Number best = any_number(a, 0);
   for (size_t i = 1; i < a.count(); ++i) {
     const Number& n = any_number(a, i);
-    if (n.dimension != best.dimension) a.wrong(i, best.dimension == Dimension::none ? "a plain number" : "a " + std::string(name(best.dimension)));
+    if (n.dimension != best.dimension)
+      a.wrong(i, best.dimension == Dimension::none ? "a plain number" : "a " + std::string(name(best.dimension)));
     if (better(n.value, best.value)) best = n;
   }
   return Value(best);
@@ -70,8 +71,6 @@ constexpr Function functions[] = {
 
 }  // namespace
 
-std::span<const Function> math_functions() {
-  return functions;
-}
+std::span<const Function> math_functions() { return functions; }
 
 }  // namespace etendue::language

@@ -13,16 +13,15 @@ Value checked(const Arguments& a, const Transform& t) {
   return Value(t);
 }
 
-Value translate(const Arguments& a) {
-  return checked(a, Transform::translate(a.vector_or_three(Dimension::length)));
-}
+Value translate(const Arguments& a) { return checked(a, Transform::translate(a.vector_or_three(Dimension::length))); }
 
 Value rotate(const Arguments& a) {
   if (a.count() != 2) a.wrong_count();
   const double angle = a.angle(0);
   Vector3 axis;
   if (const auto* letter = a.as<std::string>(1)) {
-    if (*letter != "x" && *letter != "y" && *letter != "z") a.fail(1, fmt::format("the axis must be \"x\", \"y\", \"z\" or a vector, not \"{}\"", *letter));
+    if (*letter != "x" && *letter != "y" && *letter != "z")
+      a.fail(1, fmt::format("the axis must be \"x\", \"y\", \"z\" or a vector, not \"{}\"", *letter));
     axis[letter->front() - 'x'] = 1;
   } else {
     if (!a.as<Numbers>(1)) a.wrong(1, "a vector or \"x\", \"y\", \"z\"");
@@ -52,7 +51,8 @@ Value look_at(const Arguments& a) {
   const Point3 from = point(0), to = point(1);
   const Vector3 up = a.vector(2);
   const Vector3 side = cross(up, to - from);
-  if (!(length_squared(side) > 0)) a.fail(a.count(), from == to ? "look_at: from and to are the same point" : "look_at: up points along the view");
+  if (!(length_squared(side) > 0))
+    a.fail(a.count(), from == to ? "look_at: from and to are the same point" : "look_at: up points along the view");
   return checked(a, Transform::look_at(from, to, up));
 }
 
@@ -100,8 +100,6 @@ constexpr Function functions[] = {
 
 }  // namespace
 
-std::span<const Function> transform_functions() {
-  return functions;
-}
+std::span<const Function> transform_functions() { return functions; }
 
 }  // namespace etendue::language

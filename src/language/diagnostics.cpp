@@ -48,9 +48,7 @@ void Diagnostics::raise() {
   throw Errors(std::move(errors_));
 }
 
-Error located(const Error& error, Location fallback) {
-  return error.location.known() ? error : Error(error.what(), fallback);
-}
+Error located(const Error& error, Location fallback) { return error.location.known() ? error : Error(error.what(), fallback); }
 
 std::string read_text_file(const std::string& path, Location at) {
   const auto fail = [&] { throw Error(fmt::format("cannot read '{}': {}", path, std::strerror(errno)), at); };
@@ -85,9 +83,7 @@ Texts& texts() {
   return all;
 }
 
-bool continues_character(char c) {
-  return (static_cast<unsigned char>(c) & 0xC0) == 0x80;
-}
+bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
 /// A part of a line around a column, and at which character of it the column is.
 struct Excerpt {
@@ -184,7 +180,9 @@ std::optional<size_t> invalid_utf8(const std::string& text) {
       code = code << 6 | (s[i + k] & 0x3Fu);
     }
     // Overlong forms, halves of surrogate pairs and numbers past the last character are no UTF-8 either.
-    if ((length == 3 && code < 0x800) || (length == 4 && code < 0x10000) || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000)) return i;
+    if ((length == 3 && code < 0x800) || (length == 4 && code < 0x10000) || code > 0x10FFFF ||
+        (code >= 0xD800 && code < 0xE000))
+      return i;
     i += length;
   }
   return std::nullopt;
@@ -204,7 +202,8 @@ std::string show(const Error& error) {
   std::string result = fmt::format("{}:{}:{}: {}", at.file, at.line, at.column, error.what());
   if (const auto found = language::excerpt(at)) {
     const std::string number = std::to_string(at.line);
-    result += fmt::format("\n    {} | {}\n    {} | {}^", number, found->text, std::string(number.size(), ' '), std::string(size_t(found->caret), ' '));
+    result += fmt::format("\n    {} | {}\n    {} | {}^", number, found->text, std::string(number.size(), ' '),
+                          std::string(size_t(found->caret), ' '));
   }
   return result;
 }

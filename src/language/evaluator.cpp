@@ -118,7 +118,8 @@ void Evaluator::define(Definition definition) {
   const Label label = definition.name;
   if (const Entry* first = find(label.text)) {
     if (definition.value.type != NodeType::bad)
-      diagnostics_.add(Error(fmt::format("'{}' is already defined at {}", label.text, place(first->definition.name.at, label.at)), label.at));
+      diagnostics_.add(Error(
+          fmt::format("'{}' is already defined at {}", label.text, place(first->definition.name.at, label.at)), label.at));
     return;
   }
   entries_.emplace_back().definition = std::move(definition);

@@ -22,13 +22,9 @@ Node Parser::chain(NodeType type, char first, char second, Node (Parser::*operan
   return node;
 }
 
-Node Parser::sum() {
-  return chain(NodeType::sum, '+', '-', &Parser::product);
-}
+Node Parser::sum() { return chain(NodeType::sum, '+', '-', &Parser::product); }
 
-Node Parser::product() {
-  return chain(NodeType::product, '*', '/', &Parser::unary);
-}
+Node Parser::product() { return chain(NodeType::product, '*', '/', &Parser::unary); }
 
 Node Parser::unary() {
   if (!token_.is('-')) return postfix();
@@ -121,10 +117,12 @@ Node Parser::list() {
   return node;
 }
 
-// Items between brackets, the opening one being taken already.
+// Items between brackets, the opening one being taken already. In a list a new line separates as a comma does, so that
+// [1 (new line) -2] has two items; between the arguments of a call new lines mean nothing.
 void Parser::items(Node& node, char close, const Location& opened) {
-  const char opening = close == ']' ? '[' : '(';
-  const Lines lines(*this, true);
+  const bool is_list = close == ']';
+  const char opening = is_list ? '[' : '(';
+  const Lines lines(*this, !is_list);
   open_ += opening;
   while (!token_.is(close)) {
     if (token_.type == TokenType::end) not_closed(opening, opened);
@@ -133,8 +131,7 @@ void Parser::items(Node& node, char close, const Location& opened) {
       take();
     } else if (token_.type == TokenType::end) {
       not_closed(opening, opened);
-    } else if (!token_.is(close) && !(close == ']' && token_.first_in_line && token_.type != TokenType::symbol)) {
-      // In a list a new line separates as a comma does, where it cannot be the rest of a sum.
+    } else if (!token_.is(close) && !(is_list && token_.first_in_line)) {
       unexpected(fmt::format("',' or '{}'", close));
     }
   }

@@ -8,15 +8,9 @@ namespace etendue::language {
 
 namespace {
 
-bool letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-bool digit(char c) {
-  return c >= '0' && c <= '9';
-}
-bool symbol(char c) {
-  return c != 0 && std::string_view("{}[](),:;=+-*/").find(c) != std::string_view::npos;
-}
+bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool digit(char c) { return c >= '0' && c <= '9'; }
+bool symbol(char c) { return c != 0 && std::string_view("{}[](),:;=+-*/").find(c) != std::string_view::npos; }
 
 }  // namespace
 
@@ -95,7 +89,8 @@ Token Lexer::next() {
     const size_t begin = s_.position++;
     while (!at_end() && (static_cast<unsigned char>(peek()) & 0xC0) == 0x80) ++s_.position;
     const auto code = static_cast<unsigned char>(c);
-    const std::string shown = code < 0x20 || code == 0x7F ? fmt::format("U+{:04X}", code) : fmt::format("'{}'", text_.substr(begin, s_.position - begin));
+    const std::string shown = code < 0x20 || code == 0x7F ? fmt::format("U+{:04X}", code)
+                                                          : fmt::format("'{}'", text_.substr(begin, s_.position - begin));
     diagnostics_.add(Error("unexpected character " + shown, token.at));
     token.type = TokenType::bad;
   }
@@ -145,6 +140,17 @@ void Lexer::read_string(Token& token) {
   ++s_.position;
 }
 
+// After an item of a list: a comma, or a new line, or the end of the list (which stays).
+bool Lexer::skip_separator() {
+  const int line = s_.line;
+  skip_blanks();
+  if (peek() == ',') {
+    ++s_.position;
+    return true;
+  }
+  return peek() == ']' || s_.line != line;
+}
+
 bool Lexer::read_row(std::vector<double>& out, int& count) {
   for (count = 0;;) {
     skip_blanks();
@@ -162,10 +168,7 @@ bool Lexer::read_row(std::vector<double>& out, int& count) {
     s_.position += size_t(end - begin);
     out.push_back(negative ? -value : value);
     if (count < 5) ++count;  // more than a row can have is all that matters
-    skip_blanks();
-    if (peek() == ']') break;
-    if (peek() != ',') return false;
-    ++s_.position;
+    if (!skip_separator()) return false;
   }
   ++s_.position;
   return true;
@@ -191,11 +194,7 @@ bool Lexer::read_numbers(Numbers& numbers) {
       ++s_.position;
       if (!read_row(numbers.values, count) || count < 2 || count > 4) return nothing();
       if (numbers.width == 0) numbers.width = count;
-      if (numbers.width != count) return nothing();
-      skip_blanks();
-      if (peek() == ']') break;
-      if (peek() != ',') return nothing();
-      ++s_.position;
+      if (numbers.width != count || !skip_separator()) return nothing();
     }
     ++s_.position;
   }

@@ -59,6 +59,7 @@ class Lexer {
   Location location();
   void read_string(Token&);
   void read_number(Token&);
+  bool skip_separator();
   bool read_row(std::vector<double>&, int& count);
 
   const Source& source_;

@@ -19,9 +19,7 @@ std::string canonical(const std::string& path) {
   return error ? path : found.string();
 }
 
-Location start_of(const std::string& path) {
-  return {intern(path), 0, 0};
-}
+Location start_of(const std::string& path) { return {intern(path), 0, 0}; }
 
 }  // namespace
 
@@ -134,9 +132,12 @@ Node* Loader::root(bool job) {
   for (Node& node : components_) {
     if (job && node.text != "Job") {
       const std::string near = suggestion(node.text, {"Job"});
-      diagnostics_.add(Error(fmt::format("only the Job stands for itself{}; give this a name to use it by: name = {} {{ … }}", near, node.text), node.at));
+      diagnostics_.add(Error(
+          fmt::format("only the Job stands for itself{}; give this a name to use it by: name = {} {{ … }}", near, node.text),
+          node.at));
     } else if (found) {
-      diagnostics_.add(Error(fmt::format("there is {} already, at {}", job ? "a Job" : "a component", place(found->at, node.at)), node.at));
+      diagnostics_.add(
+          Error(fmt::format("there is {} already, at {}", job ? "a Job" : "a component", place(found->at, node.at)), node.at));
     } else {
       found = &node;
     }
@@ -172,7 +173,8 @@ Ref<Job> load_job(const std::string& path, const LoadOptions& options) {
   return ref_cast<Job>(loader.result(true));
 }
 
-Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder, const LoadOptions& options) {
+Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder,
+                       const LoadOptions& options) {
   language::Loader loader(options);
   loader.add_text(text, name, folder);
   return ref_cast<Job>(loader.result(true));

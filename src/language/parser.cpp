@@ -173,7 +173,8 @@ void Parser::member(Node& component, std::unordered_map<std::string, Location>& 
   if (token_.type != TokenType::name) unexpected("a member name or '}'");
   const Token name = take();
   const auto [first, fresh] = seen.emplace(name.text, name.at);
-  if (!fresh) diagnostics_.add(Error(fmt::format("'{}' is already set at {}", name.text, place(first->second, name.at)), name.at));
+  if (!fresh)
+    diagnostics_.add(Error(fmt::format("'{}' is already set at {}", name.text, place(first->second, name.at)), name.at));
   Node value;
   value.type = NodeType::bad;
   size_t index = component.children.size();
@@ -198,9 +199,7 @@ Node Parser::lone_expression() {
   return node;
 }
 
-Document parse_document(const Source& source, Diagnostics& diagnostics) {
-  return Parser(source, diagnostics).document();
-}
+Document parse_document(const Source& source, Diagnostics& diagnostics) { return Parser(source, diagnostics).document(); }
 
 std::unique_ptr<Node> parse_expression(const Source& source, Diagnostics& diagnostics, size_t begin) {
   try {

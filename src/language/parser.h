@@ -51,7 +51,7 @@ class Parser {
   [[noreturn]] void unexpected(const std::string& expected);
   /// For an opening bracket that the text ends before closing.
   [[noreturn]] void not_closed(char bracket, const Location& opened);
-  /// Whether the current token goes on with the expression before it: inside brackets ends of lines mean nothing.
+  /// Whether the current token goes on with the expression before it: inside parentheses ends of lines mean nothing.
   bool continues() const { return bracketed_ || !token_.first_in_line; }
 
   /// Counts nesting while it lives.

@@ -34,7 +34,8 @@ class Path {
         size_t place = 0;
         const auto [end, error] = std::from_chars(text.data() + i + 1, text.data() + text.size(), place);
         const size_t close = size_t(end - text.data());
-        if (error != std::errc() || close >= text.size() || text[close] != ']') fail("expected a place in the list such as [0]", at(i));
+        if (error != std::errc() || close >= text.size() || text[close] != ']')
+          fail("expected a place in the list such as [0]", at(i));
         step.places.push_back(place);
         i = close + 1;
       }
@@ -64,7 +65,8 @@ const Member& find_member(const Component& component, const Step& step) {
 }
 
 void check_place(const std::string& name, size_t count, size_t place, Location at) {
-  if (place >= count) Path::fail(fmt::format("{} has {} {}: there is no [{}]", name, count, count == 1 ? "entry" : "entries", place), at);
+  if (place >= count)
+    Path::fail(fmt::format("{} has {} {}: there is no [{}]", name, count, count == 1 ? "entry" : "entries", place), at);
 }
 
 /// The component that a step leads to.
@@ -104,7 +106,9 @@ Value replaced(Value whole, const Value& entry, size_t place, const Step& step, 
     row = *given;
   }
   if (row.values.size() != size_t(numbers->width))
-    Path::fail(fmt::format("an entry of {} is {}, not {}", step.name, numbers->width == 1 ? "a number" : fmt::format("{} numbers", numbers->width), entry.kind()), entry.location);
+    Path::fail(fmt::format("an entry of {} is {}, not {}", step.name,
+                           numbers->width == 1 ? "a number" : fmt::format("{} numbers", numbers->width), entry.kind()),
+               entry.location);
   // Lists of numbers are read back plain, in the member's unit; vectors in base units.
   const Unit* unit = find_unit(member.unit);
   if (row.dimension != Dimension::none && (!unit || unit->dimension != row.dimension))
@@ -116,7 +120,8 @@ Value replaced(Value whole, const Value& entry, size_t place, const Step& step, 
   return whole;
 }
 
-Value read_expression(const std::string& path, const std::string& expression, const char* source, const Member& member, bool entry) {
+Value read_expression(const std::string& path, const std::string& expression, const char* source, const Member& member,
+                      bool entry) {
   const Location at{source, 1, int(path.size()) + 2};
   const bool text = member.kind == Kind::string || member.kind == Kind::file;
   const size_t first = expression.find_first_not_of(" \t\r\n");

@@ -15,7 +15,8 @@ namespace etendue::language {
 std::string number_text(double value, double factor, bool whole) {
   if (!std::isfinite(value)) throw Error("a number that is not finite cannot be written");
   const double x = value / factor;
-  if (x == std::floor(x) && std::abs(x) < (whole ? 0x1p53 : 1e9) && x * factor == value) return fmt::format("{}", std::int64_t(x));
+  if (x == std::floor(x) && std::abs(x) < (whole ? 0x1p53 : 1e9) && x * factor == value)
+    return fmt::format("{}", std::int64_t(x));
   const auto narrow = float(x);
   if (std::isfinite(narrow) && double(narrow) * factor == value) {
     const std::string text = etendue::number_text(narrow);
@@ -113,7 +114,8 @@ std::string color_text(const SpectralFunction& color, const std::string& folder)
     const std::filesystem::path here = absolute(folder), relative = absolute(path).lexically_relative(here);
     const auto up = std::count(relative.begin(), relative.end(), "..");
     const bool near = !relative.empty() && up < std::distance(here.begin(), here.end()) - 1;
-    result += expression.substr(done, begin - 1 - done) + etendue::quoted(path.starts_with('/') && near ? relative.string() : path);
+    result +=
+        expression.substr(done, begin - 1 - done) + etendue::quoted(path.starts_with('/') && near ? relative.string() : path);
     done = std::min(end + 1, expression.size());
   }
   return result + expression.substr(done);

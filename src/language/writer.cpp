@@ -135,7 +135,8 @@ bool Writer::literal(const Component& c, const Member* member, std::string& text
   if (v.none() || v.as<Ref<Component>>() || v.as<Value::List>()) return false;
   try {
     const Ref<Component> read = detail::to_component(v, *member);
-    if (!read || &read->class_info() != &info || !equal(read->class_info().find(info.literal)->get(*read, only), v)) return false;
+    if (!read || &read->class_info() != &info || !equal(read->class_info().find(info.literal)->get(*read, only), v))
+      return false;
   } catch (const Error&) {
     return false;
   }
@@ -172,7 +173,8 @@ std::string Writer::value(const Value& v, const Member* member, int indent, int 
   if (const auto* still = v.as<Transform>()) return matrix(*still);
   if (const auto* moving = v.as<AnimatedTransform>()) {
     std::vector<std::string> keys;
-    for (const auto& key : moving->keys()) keys.push_back(fmt::format("{} s, {}", number_text(double(key.time), 1, false), matrix(key.transform)));
+    for (const auto& key : moving->keys())
+      keys.push_back(fmt::format("{} s, {}", number_text(double(key.time), 1, false), matrix(key.transform)));
     const std::string separator = ",\n" + std::string(size_t(indent + step), ' ');
     return fmt::format("keyframes({})", fmt::join(keys, separator));
   }
@@ -201,8 +203,6 @@ std::string write_description(const Component& component, bool all, const std::s
   return language::Writer(all, folder).description(component);
 }
 
-std::string write_value(const Value& value) {
-  return language::Writer(false, {}).value(value, nullptr, 0, 0);
-}
+std::string write_value(const Value& value) { return language::Writer(false, {}).value(value, nullptr, 0, 0); }
 
 }  // namespace etendue

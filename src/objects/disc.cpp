@@ -101,7 +101,8 @@ class Disc final : public SceneObject {
     const Vector3 a = abs(w.axis_u), b = abs(w.axis_v), extent = a + b;
     const Vector3 x{a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
     const Vector3 furthest = Vector3{std::abs(w.centre.x), std::abs(w.centre.y), std::abs(w.centre.z)} + extent;
-    w.error = along(w.normal, rounding_bound(4) * furthest + rounding_bound(8) * extent) + rounding_bound(3) * dot(x, extent) / l;
+    w.error =
+        along(w.normal, rounding_bound(4) * furthest + rounding_bound(8) * extent) + rounding_bound(3) * dot(x, extent) / l;
     return w;
   }
 

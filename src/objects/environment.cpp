@@ -8,8 +8,9 @@ namespace etendue {
 class Environment final : public SceneObject {
  public:
   static void describe(Description<Environment>& d) {
-    d.summary("A sphere at infinity around the scene, which carries an emission shader; its transform turns it. Its +y axis is up; "
-              "u runs from -z by +x around it, v from the pole at -y to that at +y.");
+    d.summary(
+        "A sphere at infinity around the scene, which carries an emission shader; its transform turns it. Its +y axis is up; "
+        "u runs from -z by +x around it, v from the pole at -y to that at +y.");
   }
 
   void prepare() override {
@@ -30,7 +31,9 @@ class Environment final : public SceneObject {
   bool occludes(const Ray&) const override { return false; }
 
   /// Where a ray that left the scene meets it: far outside the scene, facing the ray.
-  void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override { fill(ray.origin, normalize(ray.direction), ray.time, p); }
+  void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override {
+    fill(ray.origin, normalize(ray.direction), ray.time, p);
+  }
 
   void tangents(SurfacePoint& p) const override {
     if (p.dpdu != Vector3{}) return;

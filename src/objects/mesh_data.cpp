@@ -18,7 +18,7 @@ namespace etendue {
 MappedFile::MappedFile(const std::string& path) {
   const int handle = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (handle < 0) throw Error(std::string("cannot open: ") + std::strerror(errno));
-  struct stat status {};
+  struct stat status{};
   if (::fstat(handle, &status) != 0 || !S_ISREG(status.st_mode)) {
     const std::string reason = S_ISDIR(status.st_mode) ? "it is a folder" : "it is no regular file";
     ::close(handle);
@@ -96,7 +96,8 @@ void drop_unusable(MeshData& mesh, const std::string& whose) {
                 std::to_string(not_finite) + " with coordinates that are not finite, " + std::to_string(without_area) +
                 " without area)");
   mesh.triangles.resize(kept);
-  if (not_finite > 0) warn(whose + ": left out " + std::to_string(not_finite) + " triangles with coordinates that are not finite");
+  if (not_finite > 0)
+    warn(whose + ": left out " + std::to_string(not_finite) + " triangles with coordinates that are not finite");
   if (without_area > 0) warn(whose + ": left out " + std::to_string(without_area) + " triangles without area");
 }
 

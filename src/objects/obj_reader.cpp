@@ -129,7 +129,8 @@ std::uint32_t read_index(Lines& lines, size_t so_far, size_t all, const char* wh
   const std::int64_t index = given < 0 ? std::int64_t(so_far) + given : given - 1;
   if (given == 0) lines.error(std::string("the index of a ") + what + " is 0; they count from 1");
   if (index < 0 || index >= std::int64_t(all))
-    lines.error(std::string("refers to ") + what + " " + std::to_string(given) + " of " + std::to_string(given < 0 ? so_far : all));
+    lines.error(std::string("refers to ") + what + " " + std::to_string(given) + " of " +
+                std::to_string(given < 0 ? so_far : all));
   return std::uint32_t(index);
 }
 
@@ -139,10 +140,11 @@ MeshData read_obj(std::string_view file) {
   const Counts all = count(file);
   if (all.positions == 0) throw Error("it has no vertices");
   if (all.faces == 0) throw Error("it has no faces");
-  if (all.positions >= Vertices::none || all.uvs >= Vertices::none || all.normals >= Vertices::none) throw Error("more than 2^32 vertices");
+  if (all.positions >= Vertices::none || all.uvs >= Vertices::none || all.normals >= Vertices::none)
+    throw Error("more than 2^32 vertices");
   const bool plain = all.uvs == 0 && all.normals == 0;
 
-  MeshData mesh;  // as in the file until all is read
+  MeshData mesh;                              // as in the file until all is read
   mesh.positions.reserve(all.positions + 1);  // one more, for the padding the object adds
   mesh.uvs.reserve(all.uvs);
   mesh.normals.reserve(all.normals);
@@ -164,7 +166,8 @@ MeshData read_obj(std::string_view file) {
       face.positions.push_back(mesh.positions[p]);
     }
     append_polygon(face, order.data(), order.size());
-    for (const auto& t : face.triangles) mesh.triangles.push_back({polygon.corners[t[0]], polygon.corners[t[1]], polygon.corners[t[2]]});
+    for (const auto& t : face.triangles)
+      mesh.triangles.push_back({polygon.corners[t[0]], polygon.corners[t[1]], polygon.corners[t[2]]});
   };
   for (Lines lines(file); lines.next();) {
     const std::string_view word = lines.keyword();

@@ -2,58 +2,15 @@
 
 #include <charconv>
 #include <cstring>
-#include <optional>
 
 #include "etendue/error.h"
 #include "mesh_data.h"
+#include "ply_header.h"
 
 namespace etendue {
 namespace {
 
-enum class Type : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-size_t size_of(Type t) {
-  constexpr size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[size_t(t)];
-}
-
-std::optional<Type> find_type(std::string_view name) {
-  constexpr std::string_view names[] = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64",
-                                        "char", "uchar", "short", "ushort", "int",   "uint",   "float",   "double"};
-  for (size_t i = 0; i < 16; ++i)
-    if (names[i] == name) return Type(i % 8);
-  return {};
-}
-
-struct Property {
-  std::string name;
-  Type type = Type::float32;
-  bool list = false;
-  Type count_type = Type::uint8;
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-  /// Bytes one of them takes at least.
-  size_t least_size(bool text) const {
-    size_t n = 0;
-    for (const Property& p : properties) n += text ? 2 : (p.list ? size_of(p.count_type) : size_of(p.type));
-    return n;
-  }
-  bool fixed_size() const {
-    for (const Property& p : properties)
-      if (p.list) return false;
-    return true;
-  }
-  int find(std::initializer_list<std::string_view> names) const {
-    for (std::string_view wanted : names)
-      for (size_t i = 0; i < properties.size(); ++i)
-        if (properties[i].name == wanted) return int(i);
-    return -1;
-  }
-};
+using namespace ply;
 
 template <class T>
 T load(const char* at, bool swap) {
@@ -107,7 +64,8 @@ class Body {
     const double n = number(p.count_type);
     if (!(n >= 0 && n <= 4294967295.0) || n != std::floor(n)) error("a list of " + p.name + " has no valid length");
     const std::uint64_t needed = std::uint64_t(n) * (text_ ? 1 : size_of(p.type));
-    if (needed > left()) error("a list of " + p.name + " claims " + std::to_string(std::uint64_t(n)) + " entries, more than the file holds");
+    if (needed > left())
+      error("a list of " + p.name + " claims " + std::to_string(std::uint64_t(n)) + " entries, more than the file holds");
     return std::uint64_t(n);
   }
 
@@ -144,83 +102,6 @@ class Body {
   const char *begin_, *at_, *end_;
   bool text_, swap_;
 };
-
-struct Header {
-  bool text = false, swap = false;
-  std::vector<Element> elements;
-  size_t size = 0;  // bytes up to the body
-};
-
-/// Text for a message: what is not printable becomes '?'.
-std::string shown(std::string_view s) {
-  std::string t(s.substr(0, 40));
-  for (char& c : t)
-    if (c < 32 || c > 126) c = '?';
-  return "'" + t + "'";
-}
-
-Header read_header(std::string_view file) {
-  Header header;
-  size_t at = 0;
-  bool format_known = false;
-  for (int line_number = 1;; ++line_number) {
-    const auto fail = [&](const std::string& message) { throw Error("line " + std::to_string(line_number) + ": " + message); };
-    if (at >= file.size()) fail("the file ends within the header");
-    size_t end = file.find('\n', at);
-    if (end == std::string_view::npos) end = file.size();
-    std::string_view line = file.substr(at, std::min<size_t>(end - at, 4096));
-    at = std::min(end + 1, file.size());
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    std::vector<std::string_view> words;
-    for (size_t i = 0; i < line.size();) {
-      const size_t begin = line.find_first_not_of(" \t", i);
-      if (begin == std::string_view::npos) break;
-      const size_t stop = std::min(line.find_first_of(" \t", begin), line.size());
-      words.push_back(line.substr(begin, stop - begin));
-      i = stop;
-    }
-    if (line_number == 1) {
-      if (words.size() != 1 || words[0] != "ply") fail("a PLY file must begin with 'ply'");
-      continue;
-    }
-    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
-    if (words[0] == "end_header") break;
-    if (words[0] == "format") {
-      const std::string_view kind = words.size() > 1 ? words[1] : "";
-      header.text = kind == "ascii";
-      header.swap = kind == (std::endian::native == std::endian::little ? "binary_big_endian" : "binary_little_endian");
-      if (!header.text && kind != "binary_little_endian" && kind != "binary_big_endian") fail("unknown format " + shown(kind));
-      format_known = true;
-    } else if (words[0] == "element") {
-      Element element;
-      if (words.size() != 3) fail("an element needs a name and a count");
-      element.name = words[1];
-      const auto [stop, code] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
-      if (code != std::errc() || stop != words[2].data() + words[2].size()) fail("no valid count of " + shown(words[1]) + ": " + shown(words[2]));
-      for (const Element& other : header.elements)
-        if (other.name == element.name) fail("element " + shown(words[1]) + " is declared twice");
-      header.elements.push_back(std::move(element));
-    } else if (words[0] == "property") {
-      if (header.elements.empty()) fail("a property before any element");
-      Property property;
-      property.list = words.size() == 5 && words[1] == "list";
-      if (!property.list && words.size() != 3) fail("a property needs a type and a name");
-      const std::optional<Type> type = find_type(words[property.list ? 3 : 1]);
-      const std::optional<Type> count = property.list ? find_type(words[2]) : Type::uint8;
-      if (!type || !count) fail("unknown type in property " + shown(words.back()));
-      if (property.list && (*count == Type::float32 || *count == Type::float64)) fail("the length of a list must be an integer");
-      property.type = *type;
-      property.count_type = *count;
-      property.name = words.back();
-      header.elements.back().properties.push_back(std::move(property));
-    } else {
-      fail("unknown header word " + shown(words[0]));
-    }
-  }
-  if (!format_known) throw Error("the header names no format");
-  header.size = at;
-  return header;
-}
 
 void read_vertices(const Element& e, Body& body, MeshData& mesh) {
   const int x = e.find({"x"}), y = e.find({"y"}), z = e.find({"z"});
@@ -296,12 +177,14 @@ void read_faces(const Element& e, Body& body, MeshData& mesh) {
   const std::uint64_t vertices = mesh.positions.size();
   mesh.triangles.reserve(size_t(e.count));
   const auto out_of_range = [&](std::uint64_t face, double index) {
-    body.error("face " + std::to_string(face) + " refers to vertex " + std::to_string(std::int64_t(clamp(float(index), -9e18f, 9e18f))) +
-               " of " + std::to_string(vertices) + " (counting from 0)");
+    body.error("face " + std::to_string(face) + " refers to vertex " +
+               std::to_string(std::int64_t(clamp(float(index), -9e18f, 9e18f))) + " of " + std::to_string(vertices) +
+               " (counting from 0)");
   };
   const Property& list = e.properties[size_t(indices)];
   std::uint64_t face = 0;
-  if (!body.text() && e.properties.size() == 1 && size_of(list.count_type) == 1 && size_of(list.type) == 4 && list.type != Type::float32) {
+  if (!body.text() && e.properties.size() == 1 && size_of(list.count_type) == 1 && size_of(list.type) == 4 &&
+      list.type != Type::float32) {
     // The common layout: a byte and that many 32-bit indices. Triangles are taken here, anything else below.
     const char* at = body.at();
     const char* const end = at + body.left();
@@ -345,7 +228,8 @@ MeshData read_ply(std::string_view file) {
     if (e.properties.empty() || e.count == 0) continue;
     // Nothing is reserved for a count that the rest of the file cannot hold (the last number of a text needs no space).
     if (e.count > (body.left() + 1) / e.least_size(header.text))
-      throw Error("the header claims " + std::to_string(e.count) + " of element " + shown(e.name) + ", more than the file holds");
+      throw Error("the header claims " + std::to_string(e.count) + " of element " + shown(e.name) +
+                  ", more than the file holds");
     if (e.name == "vertex") {
       if (e.count > 0xffffffffu) throw Error("more than 2^32 vertices");
       read_vertices(e, body, mesh);

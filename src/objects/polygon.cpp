@@ -10,8 +10,10 @@ class Polygon final : public TriangleObject {
 
  public:
   static void describe(Description<Polygon>& d) {
-    d.summary("A planar polygon that does not cross itself; it may be concave.", "ear clipping: Meisters 1975; normal: Newell's method")
-        .member<&Polygon::points>("points", "m", "the corners in order, counter-clockwise seen from the front", Effect::rebuild);
+    d.summary("A planar polygon that does not cross itself; it may be concave.",
+              "ear clipping: Meisters 1975; normal: Newell's method")
+        .member<&Polygon::points>("points", "m", "the corners in order, counter-clockwise seen from the front",
+                                  Effect::rebuild);
   }
 
   void prepare() override {
@@ -31,7 +33,8 @@ class Polygon final : public TriangleObject {
     for (size_t i = 0; i < points.size(); ++i) {
       const float height = std::abs(dot(n, points[i] - centre) - float(mean));
       if (height > 1e-4f * size)
-        fail("points", "the polygon is not planar: point " + std::to_string(i) + " is " + std::to_string(height) + " m off its plane");
+        fail("points",
+             "the polygon is not planar: point " + std::to_string(i) + " is " + std::to_string(height) + " m off its plane");
     }
     MeshData mesh;
     mesh.positions.reserve(points.size() + 1);

@@ -16,7 +16,8 @@ class Rectangle final : public SceneObject {
               "solid-angle sampling: Urena, Fajardo & King 2013")
         .member<&Rectangle::corner>("corner", "m", "one of its corners", Effect::rebuild)
         .member<&Rectangle::edge_u>("edge_u", "m", "from the corner along u", Effect::rebuild)
-        .member<&Rectangle::edge_v>("edge_v", "m", "from the corner along v; the front is on the side of edge_u x edge_v", Effect::rebuild);
+        .member<&Rectangle::edge_v>("edge_v", "m", "from the corner along v; the front is on the side of edge_u x edge_v",
+                                    Effect::rebuild);
   }
 
   void prepare() override {
@@ -39,7 +40,7 @@ class Rectangle final : public SceneObject {
   Bounds3 bounds() const override { return bounds_; }
 
   bool intersect(const Ray& ray, Hit& hit) const override {
-    World scratch;
+    std::optional<World> scratch;
     const World& w = world(ray.time, scratch);
     const Vector3 c = w.corner - ray.origin, r = cross(c, ray.direction), n = w.scaled_normal;
     const float inverse = 1 / dot(n, ray.direction);
@@ -53,7 +54,7 @@ class Rectangle final : public SceneObject {
   }
 
   void surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const override {
-    World scratch;
+    std::optional<World> scratch;
     const World& w = world(ray.time, scratch);
     // Barycentric coordinates of the triangle (0, u, u+v) or (0, u+v, v).
     const Point2 uv = hit.primitive == 0 ? Point2{hit.u + hit.v, hit.v} : Point2{hit.u, hit.u + hit.v};
@@ -65,20 +66,20 @@ class Rectangle final : public SceneObject {
 
   void tangents(SurfacePoint& p) const override {
     if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
-    World scratch;
+    std::optional<World> scratch;
     const World& w = world(p.time, scratch);
     p.dpdu = w.edge_u;
     p.dpdv = w.edge_v;
   }
 
   float area(float time) const override {
-    World scratch;
+    std::optional<World> scratch;
     return world(time, scratch).area;
   }
   float area_density(const SurfacePoint& p) const override { return 1 / area(p.time); }
 
   SurfaceSample sample_area(Point2 u, float time) const override {
-    World scratch;
+    std::optional<World> scratch;
     const World& w = world(time, scratch);
     SurfaceSample s;
     fill_part(w, u, time, s.point);
@@ -87,7 +88,7 @@ class Rectangle final : public SceneObject {
   }
 
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
-    World scratch;
+    std::optional<World> scratch;
     const World& w = world(time, scratch);
     SurfaceSample s;
     Vector3 seen_corner;
@@ -96,7 +97,8 @@ class Rectangle final : public SceneObject {
         const SphericalRectangle r = w.seen(seen_corner);
         if (r.usable()) {
           const Point2 at = r.sample(u);
-          fill_part(w, {clamp((at.x - seen_corner.x) / w.length_u, 0, 1), clamp((at.y - seen_corner.y) / w.length_v, 0, 1)}, time, s.point);
+          fill_part(w, {clamp((at.x - seen_corner.x) / w.length_u, 0, 1), clamp((at.y - seen_corner.y) / w.length_v, 0, 1)},
+                    time, s.point);
           complete_by_angle(s, from, 1 / r.solid_angle());
           return s;
         }
@@ -110,7 +112,7 @@ class Rectangle final : public SceneObject {
   }
 
   float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
-    World scratch;
+    std::optional<World> scratch;
     const World& w = world(p.time, scratch);
     Vector3 seen_corner;
     if (w.near(from, seen_corner)) {
@@ -180,15 +182,15 @@ class Rectangle final : public SceneObject {
     const Vector3 a = abs(w.edge_u), b = abs(w.edge_v), extent = a + b;
     const Vector3 x{a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
     const Vector3 furthest = Vector3{std::abs(w.corner.x), std::abs(w.corner.y), std::abs(w.corner.z)} + extent;
-    w.error = along(w.normal, rounding_bound(4) * furthest + rounding_bound(8) * extent) + rounding_bound(3) * dot(x, extent) / w.area;
+    w.error = along(w.normal, rounding_bound(4) * furthest + rounding_bound(8) * extent) +
+              rounding_bound(3) * dot(x, extent) / w.area;
     return w;
   }
 
-  const World& world(float time, World& scratch) const {
+  const World& world(float time, std::optional<World>& scratch) const {
     if (!transform.animated()) [[likely]]
       return still_;
-    scratch = at(transform.at(time));
-    return scratch;
+    return scratch.emplace(at(transform.at(time)));
   }
 
   template <class Part>  // a Hit or a SurfacePoint
@@ -208,8 +210,10 @@ class Rectangle final : public SceneObject {
     p.dpdv = {};
     p.time = time;
     p.object = this;
-    Transform scratch;
-    fill_object_coordinates(placed(transform, time, scratch), p);
+    if (!transform.animated()) [[likely]]
+      fill_object_coordinates(transform.still(), p);
+    else
+      fill_object_coordinates(transform.at(time), p);
   }
   void fill_part(const World& w, Point2 uv, float time, SurfacePoint& p) const {
     fill(w, uv, time, p);

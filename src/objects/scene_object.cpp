@@ -13,7 +13,8 @@ void SceneObject::describe(Description<SceneObject>& d) {
       .member<&SceneObject::shader>("shader", "", "how its surface scatters light; none: black")
       .member<&SceneObject::emission>("emission", "", "how it emits light; none: it does not", Effect::rebuild)
       .member<&SceneObject::interior>("interior", "", "the medium inside; none: vacuum", Effect::rebuild)
-      .member<&SceneObject::sides>("sides", "", "which sides scatter light; the other absorbs it", choices("front", "back", "both"))
+      .member<&SceneObject::sides>("sides", "", "which sides scatter light; the other absorbs it",
+                                   choices("front", "back", "both"))
       .member<&SceneObject::priority>("priority", "1", "where objects overlap, the one of highest priority fills the space");
 }
 

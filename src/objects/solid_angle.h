@@ -56,7 +56,8 @@ class SphericalTriangle {
 /// rectangle is [x0, x1] x [y0, y1] at height z0.
 class SphericalRectangle {
  public:
-  SphericalRectangle(float x0, float x1, float y0, float y1, float z0) : x0_(x0), x1_(x1), y0_(y0), y1_(y1), z0_(-std::abs(z0)) {
+  SphericalRectangle(float x0, float x1, float y0, float y1, float z0)
+      : x0_(x0), x1_(x1), y0_(y0), y1_(y1), z0_(-std::abs(z0)) {
     // The planes through the origin and the four edges have normals whose z components are n0 .. n3; the interior angle
     // between planes i and j is pi/2 + asin(ni nj), since their normals agree in no other component. The solid angle is
     // the sum of the interior angles minus 2 pi: the sum of the arcsines alone.

@@ -18,7 +18,8 @@ class Sphere final : public SceneObject {
   }
 
   void prepare() override {
-    if (!is_finite(center) || !(radius > 0 && radius < infinity)) fail("radius", "centre and radius must be finite, the radius positive");
+    if (!is_finite(center) || !(radius > 0 && radius < infinity))
+      fail("radius", "centre and radius must be finite, the radius positive");
     const float scale = transform.animated() ? 0 : similarity_scale(transform.still());
     round_ = scale > 0;
     ball_ = round_ ? Ball{transform.still()(center), scale * radius} : Ball{center, radius};
@@ -117,9 +118,11 @@ class Sphere final : public SceneObject {
     const float d = length(to), sin_max = ball.radius / d;
     const float h = u.x * one_minus_cosine, sin2 = h * (2 - h), cos_theta = 1 - h;
     const float cos_alpha = std::min(1.0f, sin2 / sin_max + cos_theta * safe_sqrt(1 - sin2 / (sin_max * sin_max)));
-    const float sin_alpha = safe_sqrt(1 - cos_alpha * cos_alpha), phi = 2 * pi * u.y;
+    const float sin_alpha = safe_sqrt(1 - cos_alpha * cos_alpha);
+    float sine = 0, cosine = 0;
+    sin_cos_turn(u.y, sine, cosine);
     const Frame axis(Normal3(to / d));
-    const Vector3 out = sin_alpha * (std::cos(phi) * axis.s + std::sin(phi) * axis.t) - cos_alpha * Vector3(axis.n);
+    const Vector3 out = sin_alpha * (cosine * axis.s + sine * axis.t) - cos_alpha * Vector3(axis.n);
     SurfaceSample s;
     if (round_)
       fill(out, time, s.point);
@@ -147,7 +150,8 @@ class Sphere final : public SceneObject {
     /// The smallest t > 0, or infinity. In double: the discriminant of a small or far sphere is a difference of large
     /// numbers. q is the half of the root that does not cancel, c / q the other (Hearn & Baker 2004).
     float nearest(const Ray& ray) const {
-      const double ox = double(ray.origin.x) - center.x, oy = double(ray.origin.y) - center.y, oz = double(ray.origin.z) - center.z;
+      const double ox = double(ray.origin.x) - center.x, oy = double(ray.origin.y) - center.y,
+                   oz = double(ray.origin.z) - center.z;
       const double dx = ray.direction.x, dy = ray.direction.y, dz = ray.direction.z;
       const double a = dx * dx + dy * dy + dz * dz, b = ox * dx + oy * dy + oz * dz;
       const double c = ox * ox + oy * oy + oz * oz - double(radius) * radius;

@@ -21,9 +21,7 @@ Matrix3 inverse_of(const Matrix3& a) {
           s * (a[3] * a[7] - a[4] * a[6]), s * (a[1] * a[6] - a[0] * a[7]), s * (a[0] * a[4] - a[1] * a[3])};
 }
 
-Matrix3 linear_part(const Transform::Matrix& m) {
-  return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
-}
+Matrix3 linear_part(const Transform::Matrix& m) { return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}; }
 
 /// The product of the lengths of the columns: the largest determinant columns of these lengths can have.
 double column_product(const Matrix3& a) {
@@ -52,9 +50,8 @@ std::array<double, 4> quaternion_of(const Matrix3& r) {
 
 Matrix3 rotation_of(const std::array<double, 4>& q) {
   const double x = q[0], y = q[1], z = q[2], w = q[3];
-  return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
-          2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-          2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
+  return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 2 * (x * y + z * w),    1 - 2 * (x * x + z * z),
+          2 * (y * z - x * w),     2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)};
 }
 
 double dot4(const std::array<float, 4>& a, const std::array<float, 4>& b) {
@@ -102,22 +99,19 @@ Transform::Transform(const Matrix& matrix) : m_(matrix) {
   for (float x : inverse_) valid_ = valid_ && std::isfinite(x);
 }
 
-Transform Transform::translate(const Vector3& by) {
-  return Transform(Matrix{1, 0, 0, by.x, 0, 1, 0, by.y, 0, 0, 1, by.z});
-}
+Transform Transform::translate(const Vector3& by) { return Transform(Matrix{1, 0, 0, by.x, 0, 1, 0, by.y, 0, 0, 1, by.z}); }
 
 Transform Transform::rotate(float angle, const Vector3& axis) {
   // Rodrigues' formula.
   const double n = std::sqrt(double(axis.x) * axis.x + double(axis.y) * axis.y + double(axis.z) * axis.z);
-  const double x = axis.x / n, y = axis.y / n, z = axis.z / n, c = std::cos(double(angle)), s = std::sin(double(angle)), d = 1 - c;
+  const double x = axis.x / n, y = axis.y / n, z = axis.z / n, c = std::cos(double(angle)), s = std::sin(double(angle)),
+               d = 1 - c;
   return Transform(Matrix{float(c + x * x * d), float(x * y * d - z * s), float(x * z * d + y * s), 0,  //
                           float(y * x * d + z * s), float(c + y * y * d), float(y * z * d - x * s), 0,  //
                           float(z * x * d - y * s), float(z * y * d + x * s), float(c + z * z * d), 0});
 }
 
-Transform Transform::scale(const Vector3& by) {
-  return Transform(Matrix{by.x, 0, 0, 0, 0, by.y, 0, 0, 0, 0, by.z, 0});
-}
+Transform Transform::scale(const Vector3& by) { return Transform(Matrix{by.x, 0, 0, 0, 0, by.y, 0, 0, 0, 0, by.z, 0}); }
 
 Transform Transform::look_at(const Point3& from, const Point3& to, const Vector3& up) {
   // Where the direction or the left axis vanishes the columns stay zero, and the transform is not valid.

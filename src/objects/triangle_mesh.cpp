@@ -15,13 +15,17 @@ class TriangleMesh final : public TriangleObject {
  public:
   static void describe(Description<TriangleMesh>& d) {
     d.summary("Triangles, from a file or written out.")
-        .member<&TriangleMesh::file>("file", "", "a PLY file (text or binary) or an OBJ file; none: the lists below", Effect::rebuild)
+        .member<&TriangleMesh::file>("file", "", "a PLY file (text or binary) or an OBJ file; none: the lists below",
+                                     Effect::rebuild)
         .member<&TriangleMesh::positions>("positions", "m", "the vertices, when there is no file", Effect::rebuild)
-        .member<&TriangleMesh::triangles>("triangles", "1", "three vertices, counting from 0, for each triangle; counter-clockwise seen from the front",
-                                          Effect::rebuild)
+        .member<&TriangleMesh::triangles>(
+            "triangles", "1", "three vertices, counting from 0, for each triangle; counter-clockwise seen from the front",
+            Effect::rebuild)
         .member<&TriangleMesh::normals>("normals", "1", "a normal for each vertex, or none", Effect::rebuild)
-        .member<&TriangleMesh::uvs>("uvs", "1", "surface coordinates for each vertex; none: those within each triangle", Effect::rebuild)
-        .member<&TriangleMesh::flat>("flat", "", "ignores normals of vertices: the surface is shaded as it is", Effect::rebuild);
+        .member<&TriangleMesh::uvs>("uvs", "1", "surface coordinates for each vertex; none: those within each triangle",
+                                    Effect::rebuild)
+        .member<&TriangleMesh::flat>("flat", "", "ignores normals of vertices: the surface is shaded as it is",
+                                     Effect::rebuild);
   }
 
   void prepare() override {
@@ -47,10 +51,12 @@ class TriangleMesh final : public TriangleObject {
     const size_t n = positions.size();
     if (n == 0) fail("", "a mesh needs either a file or positions and triangles");
     if (triangles.empty()) fail("triangles", "there are positions but no triangles");
-    if (triangles.size() % 3 != 0) fail("triangles", "three indices make a triangle, but " + std::to_string(triangles.size()) + " are given");
+    if (triangles.size() % 3 != 0)
+      fail("triangles", "three indices make a triangle, but " + std::to_string(triangles.size()) + " are given");
     if (!normals.empty() && normals.size() != n)
       fail("normals", std::to_string(normals.size()) + " normals for " + std::to_string(n) + " positions");
-    if (!uvs.empty() && uvs.size() != n) fail("uvs", std::to_string(uvs.size()) + " surface coordinates for " + std::to_string(n) + " positions");
+    if (!uvs.empty() && uvs.size() != n)
+      fail("uvs", std::to_string(uvs.size()) + " surface coordinates for " + std::to_string(n) + " positions");
     MeshData mesh;
     mesh.positions.reserve(n + 1);
     mesh.positions = positions;

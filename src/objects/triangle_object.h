@@ -47,12 +47,13 @@ class TriangleObject : public SceneObject {
   /// Chooses a triangle by its area in the stored coordinates; `x` becomes a fresh number in [0, 1).
   std::uint32_t choose(float& x, float other) const;
   float stored_area(std::uint32_t primitive) const;
+  const std::vector<double>& cumulative_areas() const;
   const EmbreeTriangles& accelerator() const;
   TriangleView view() const { return {{mesh_.positions.data(), vertices_}, mesh_.triangles}; }
 
-  MeshData mesh_;        // its positions have one more at the end: padding, which Embree asks for
+  MeshData mesh_;  // its positions have one more at the end: padding, which Embree asks for
   size_t vertices_ = 0;
-  double area_ = 0;      // in the stored coordinates [m^2]
+  double area_ = 0;  // in the stored coordinates [m^2]
   Bounds3 bounds_, stored_bounds_;
 
   // Made when first asked for: few objects need them.

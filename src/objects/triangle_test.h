@@ -5,6 +5,9 @@
 
 namespace etendue {
 
+/// Twice a triangle's area times its normal.
+inline Vector3 area_vector(const Point3& a, const Point3& b, const Point3& c) { return cross(b - a, c - a); }
+
 struct TriangleHit {
   float t, u, v;
 };

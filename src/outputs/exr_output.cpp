@@ -56,6 +56,7 @@ class ExrOutput final : public Output {
     for (size_t j = 0; j < 2; ++j) chromaticities[6 + j] = float(space.white[j]);
     spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // else the library writes the time, and equal pictures differ
     add_metadata(spec, image);
     place(spec, image);
 

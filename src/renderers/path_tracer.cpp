@@ -72,8 +72,7 @@ class PathTracer final : public Renderer {
       if (track_media) {
         if (hidden_by_priority(media, *point.object)) {
           cross_boundary(media, *point.object, point.normal, ray.direction);
-          const Ray onward = point.leave(ray.direction);
-          ray.origin = onward.origin;
+          ray.origin = point.exit(ray.direction);
           --depth;
           continue;
         }
@@ -100,7 +99,11 @@ class PathTracer final : public Renderer {
         record_direct(sample.record, light);
       }
 
-      const float choice = sample.random.next();
+      float choice = 0;
+      if (scatter->has_choice())
+        choice = sample.random.next();
+      else
+        sample.random.skip();
       const Point2 u = sample.random.next_pair();
       const std::optional<ScatterSample> next = scatter->sample(out, choice, u);
       if (!next) break;
@@ -122,11 +125,12 @@ class PathTracer final : public Renderer {
       from_normal = point.normal;
       direction_density = next->density;
       specular = next->specular();
-      const float width = point.footprint;
-      const float spread = specular ? ray.spread : std::max(ray.spread, diffuse_spread);
-      ray = point.leave(next->direction);
-      ray.width = width;
-      ray.spread = spread;
+      // Member by member: copying a ray just written stalls for its parts to reach memory.
+      ray.origin = point.exit(next->direction);
+      ray.direction = next->direction;
+      ray.maximum = infinity;
+      ray.width = point.footprint;
+      if (!specular) ray.spread = std::max(ray.spread, diffuse_spread);
     }
     return radiance;
   }

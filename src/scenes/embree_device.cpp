@@ -1,5 +1,7 @@
 #include "embree_device.h"
 
+#include <tbb/task_arena.h>
+
 namespace etendue {
 namespace {
 
@@ -48,7 +50,8 @@ unsigned attach_triangles(RTCScene scene, const TriangleView& view, RTCBuildQual
 EmbreeTriangles::EmbreeTriangles(const TriangleView& view) : scene_(rtcNewScene(embree_device())) {
   check_embree("making a scene");
   attach_triangles(scene_.get(), view, RTC_BUILD_QUALITY_MEDIUM);
-  rtcCommitScene(scene_.get());
+  // Isolated: a thread that waits here within a parallel loop must not take up another part of that loop.
+  tbb::this_task_arena::isolate([this] { rtcCommitScene(scene_.get()); });
   check_embree("building over triangles");
 }
 

@@ -17,9 +17,10 @@ class EmbreeScene final : public Scene {
   static void describe(Description<EmbreeScene>& d) {
     d.summary("A scene searched by Embree's bounding volume hierarchies: the fastest for all but a handful of triangles.",
               "Wald et al. 2014, \"Embree: a kernel framework for efficient CPU ray tracing\"")
-        .member<&EmbreeScene::quality>("quality", "", "effort spent on the hierarchy: high takes longest to build", choices("low", "medium", "high"),
-                                       Effect::rebuild)
-        .member<&EmbreeScene::robust>("robust", "", "no ray slips between triangles that share an edge; slower", Effect::rebuild)
+        .member<&EmbreeScene::quality>("quality", "", "effort spent on the hierarchy: high takes longest to build",
+                                       choices("low", "medium", "high"), Effect::rebuild)
+        .member<&EmbreeScene::robust>("robust", "", "no ray slips between triangles that share an edge; slower",
+                                      Effect::rebuild)
         .member<&EmbreeScene::compact>("compact", "", "less memory, slower", Effect::rebuild);
   }
 

@@ -10,9 +10,7 @@
 namespace etendue {
 namespace {
 
-const Scene* as_scene(const SceneObject* object) {
-  return dynamic_cast<const Scene*>(object);
-}
+const Scene* as_scene(const SceneObject* object) { return dynamic_cast<const Scene*>(object); }
 
 /// How many scenes lie in one another, this one not counted.
 int nesting(const Scene& scene) {
@@ -36,8 +34,10 @@ void for_nested(const Scene& scene, bool own, const F& call) {
 }  // namespace
 
 void Scene::describe(Description<Scene>& d) {
-  d.summary("Objects, and a structure that finds what a ray meets. A scene is itself an object: scenes nest, and one that "
-            "stands in several places is stored once. A nested scene's own shader, emission, interior, sides and priority say nothing.")
+  d.summary(
+       "Objects, and a structure that finds what a ray meets. A scene is itself an object: scenes nest, and one that "
+       "stands in several places is stored once. A nested scene's own shader, emission, interior, sides and priority say "
+       "nothing.")
       .member<&Scene::objects>("objects", "", "what is in it", Effect::rebuild);
 }
 
@@ -55,7 +55,8 @@ void Scene::prepare() {
       fail("objects", (name.empty() ? "object " + std::to_string(i + 1) : "'" + name + "'") +
                           " stands twice in the same scene; put it into scenes of its own, with their own transforms");
     }
-    if (!objects[i]->transform.valid()) objects[i]->fail("transform", "the transform is singular, or mirrors at some of its times only");
+    if (!objects[i]->transform.valid())
+      objects[i]->fail("transform", "the transform is singular, or mirrors at some of its times only");
   }
   if (nesting(*this) > Hit::deepest_nesting)
     fail("objects", "scenes nest more than " + std::to_string(Hit::deepest_nesting) + " deep");
@@ -92,9 +93,7 @@ void Scene::prepare() {
   build(finite);
 }
 
-Bounds3 Scene::bounds() const {
-  return bounds_.empty() ? bounds_ : swept(transform, bounds_);
-}
+Bounds3 Scene::bounds() const { return bounds_.empty() ? bounds_ : swept(transform, bounds_); }
 
 bool Scene::intersect(const Ray& ray, Hit& hit) const {
   Transform scratch;
@@ -110,9 +109,7 @@ bool Scene::occludes(const Ray& ray) const {
   return any(t.identity() ? ray : ray_into(t, ray));
 }
 
-void Scene::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
-  locate_nested(ray, hit, point);
-}
+void Scene::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& point) const { locate_nested(ray, hit, point); }
 
 void Scene::locate_nested(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
   Ray local = ray;

@@ -11,7 +11,9 @@ namespace {
 // cos / pi, so f cos / density = rho for every sample.
 class LambertianScatter final : public Scatter {
  public:
-  LambertianScatter(const SurfacePoint& p, Spectrum reflectance) : Scatter(p, diffuse_reflection), reflectance_(reflectance) {}
+  LambertianScatter(const SurfacePoint& p, Spectrum reflectance) : Scatter(p, diffuse_reflection), reflectance_(reflectance) {
+    has_choice_ = false;
+  }
 
  protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {

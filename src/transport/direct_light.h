@@ -18,7 +18,11 @@ namespace etendue {
 inline Spectrum sample_direct_light(const Scene& scene, const LightSampler& lights, const SurfacePoint& point, const Scatter& scatter,
                                     const Vector3& out, const Wavelengths& wavelengths, SampleStream& random, Heuristic heuristic,
                                     bool shader_sampling = true) {
-  const float choice = random.next();
+  float choice = 0;
+  if (scene.luminaires().size() > 1)
+    choice = random.next();
+  else
+    random.skip();
   const Point2 u = random.next_pair();
   const LightChoice light = lights.choose(point.position, point.normal, choice);
   if (!light.luminaire) return {};

@@ -31,7 +31,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size) {
     if (!job) stop("neither a job nor an error", text);
     const std::string written = write_description(*job);
     const Ref<Job> again = load_job_text(written, "written", {}, options);
-    if (!equal(Value(Ref<Component>(job)), Value(Ref<Component>(again)))) stop("does not read back as it was", text + "\n---\n" + written);
+    if (!equal(Value(Ref<Component>(job)), Value(Ref<Component>(again))))
+      stop("does not read back as it was", text + "\n---\n" + written);
   } catch (const Errors& e) {
     if (e.errors.empty()) stop("no errors in Errors", text);
     for (const Error& error : e.errors) check(error, text);

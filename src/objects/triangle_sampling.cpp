@@ -1,0 +1,123 @@
+// Areas of objects made of triangles, and points chosen on them.
+
+#include "etendue/warp.h"
+#include "geometry.h"
+#include "solid_angle.h"
+#include "triangle_object.h"
+#include "triangle_test.h"
+
+namespace etendue {
+
+float TriangleObject::area(float time) const {
+  if (!transform.animated()) return float(area_);
+  const Transform moved = transform.at(time);
+  if (const float s = similarity_scale(moved); s > 0) return float(area_) * s * s;
+  double sum = 0;
+  for (const auto& t : mesh_.triangles)
+    sum +=
+        0.5 *
+        double(length(area_vector(moved(mesh_.positions[t[0]]), moved(mesh_.positions[t[1]]), moved(mesh_.positions[t[2]]))));
+  return float(sum);
+}
+
+float TriangleObject::stored_area(std::uint32_t primitive) const {
+  const auto& t = mesh_.triangles[primitive];
+  return 0.5f * length(area_vector(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]));
+}
+
+const std::vector<double>& TriangleObject::cumulative_areas() const {
+  std::call_once(lazy_->table_made, [this] {
+    double sum = 0;
+    lazy_->cumulative.reserve(mesh_.triangles.size());
+    for (size_t i = 0; i < mesh_.triangles.size(); ++i)
+      lazy_->cumulative.push_back(sum += double(stored_area(std::uint32_t(i))));
+    for (double& c : lazy_->cumulative) c /= sum;
+  });
+  return lazy_->cumulative;
+}
+
+std::uint32_t TriangleObject::choose(float& x, float other) const {
+  if (mesh_.triangles.size() == 1) return 0;
+  const std::vector<double>& table = cumulative_areas();
+  // A float has 24 bits, too few to choose among millions of triangles and a point in one: bits below them are filled
+  // by a hash of both numbers.
+  const std::uint64_t bits = (std::uint64_t(std::bit_cast<std::uint32_t>(x)) << 32) | std::bit_cast<std::uint32_t>(other);
+  const double fine = std::min(double(x) + double(mix_bits(bits + 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-77, 1 - 0x1p-53);
+  const size_t i = std::min(size_t(std::upper_bound(table.begin(), table.end(), fine) - table.begin()), table.size() - 1);
+  const double low = i > 0 ? table[i - 1] : 0, width = table[i] - low;
+  x = width > 0 ? clamp(float((fine - low) / width), 0, one_minus_epsilon) : 0;
+  return std::uint32_t(i);
+}
+
+SurfaceSample TriangleObject::sample_area(Point2 u, float time) const {
+  SurfaceSample s;
+  if (mesh_.triangles.empty()) return s;
+  const std::uint32_t primitive = choose(u.x, u.y);
+  const Point2 b = warp::triangle(u);
+  fill(primitive, b.x, b.y, time, s.point);
+  s.density = area_density(s.point);
+  return s;
+}
+
+float TriangleObject::area_density(const SurfacePoint& p) const {
+  if (!transform.animated()) return float(1 / area_);
+  const Corners c = corners(p.primitive, p.time);
+  return float(stored_area(p.primitive) / area_) / (0.5f * length(area_vector(c.p[0], c.p[1], c.p[2])));
+}
+
+namespace {
+
+/// Whether sampling by solid angle may pay, from the distance to the nearest corner or the centre.
+bool near(const Point3& from, const Point3 (&p)[3], float area) {
+  const Vector3 a = p[0] - from, b = p[1] - from, c = p[2] - from;
+  const float corner = std::min({length_squared(a), length_squared(b), length_squared(c)});
+  return area > worthwhile_solid_angle * std::min(corner, length_squared(a + b + c) * (1 / 9.0f));
+}
+
+}  // namespace
+
+SurfaceSample TriangleObject::sample_visible(const Point3& from, Point2 u, float time) const {
+  SurfaceSample s;
+  if (mesh_.triangles.empty()) return s;
+  const std::uint32_t primitive = choose(u.x, u.y);
+  const Corners c = corners(primitive, time);
+  const Vector3 e1 = c.p[1] - c.p[0], e2 = c.p[2] - c.p[0], n = cross(e1, e2);
+  const float area = 0.5f * length(n);
+  if (near(from, c.p, area)) {
+    const SphericalTriangle triangle(from, c.p[0], c.p[1], c.p[2]);
+    if (triangle.usable()) {
+      Ray ray;
+      ray.origin = from;
+      ray.direction = triangle.sample(u);
+      TriangleHit h;
+      intersect_triangle(ray, c.p[0], e1, e2, n, h);
+      h.u = clamp(h.u, 0, 1);  // rounding may put it just beside the triangle
+      h.v = clamp(h.v, 0, 1 - h.u);
+      const bool flipped = transform.animated() && transform.at(time).flips();
+      fill(primitive, flipped ? h.v : h.u, flipped ? h.u : h.v, time, s.point);
+      const float chance = mesh_.triangles.size() == 1 ? 1 : float(stored_area(primitive) / area_);
+      complete_by_angle(s, from, chance / triangle.solid_angle());
+      return s;
+    }
+  }
+  const Point2 b = warp::triangle(u);
+  fill(primitive, b.x, b.y, time, s.point);
+  complete_by_area(s, from, area_density(s.point));
+  return s;
+}
+
+float TriangleObject::visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
+  const Corners c = corners(p.primitive, p.time);
+  const float area = 0.5f * length(area_vector(c.p[0], c.p[1], c.p[2]));
+  if (near(from, c.p, area)) {
+    const SphericalTriangle triangle(from, c.p[0], c.p[1], c.p[2]);
+    if (triangle.usable()) {
+      const float chance = mesh_.triangles.size() == 1 ? 1 : float(stored_area(p.primitive) / area_);
+      return chance / triangle.solid_angle();
+    }
+  }
+  const float cosine = std::abs(dot(p.normal, direction));
+  return cosine > 0 ? area_density(p) * distance_squared(p.position, from) / cosine : 0;
+}
+
+}  // namespace etendue
