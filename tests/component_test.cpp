@@ -113,9 +113,11 @@ TEST(Set, ChecksTypesRangesAndChoices) {
   EXPECT_EQ(error_of(w, "count", number(1.5)), "Widget.count expects a whole number, not 1.5");
   EXPECT_EQ(error_of(w, "weight", number(std::numeric_limits<double>::quiet_NaN())), "Widget.weight must be a finite number");
   EXPECT_EQ(error_of(w, "flag", number(1)), "Widget.flag expects true or false, not a number");
-  EXPECT_EQ(error_of(w, "mood", Value(std::string("wyld"))), "Widget.mood has no choice 'wyld' (did you mean 'wild'?); known are calm, wild");
+  EXPECT_EQ(error_of(w, "mood", Value(std::string("wyld"))),
+            "Widget.mood has no choice 'wyld' (did you mean 'wild'?); known are calm, wild");
   EXPECT_EQ(error_of(w, "widht", number(1)), "Widget has no member 'widht' (did you mean 'width'?)");
-  EXPECT_EQ(error_of(w, "place", Value(Numbers{{1, 2}, 1, {}})), "Widget.place expects 3 numbers in brackets, not a list of 2 numbers");
+  EXPECT_EQ(error_of(w, "place", Value(Numbers{{1, 2}, 1, {}})),
+            "Widget.place expects 3 numbers in brackets, not a list of 2 numbers");
   EXPECT_EQ(error_of(w, "points", Value(Numbers{{1, 2, 3, 4}, 1, {}})),
             "Widget.points expects a list of rows of 3 numbers; 4 numbers are no multiple of 3");
   Transform flat = Transform::scale({1, 0, 1});

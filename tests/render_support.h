@@ -9,8 +9,8 @@
 namespace etendue::test {
 
 struct Measured {
-  Xyz mean;             ///< over all pixels
-  double error = 0;     ///< standard error of the mean Y, from the samples' variance
+  Xyz mean;          ///< over all pixels
+  double error = 0;  ///< standard error of the mean Y, from the samples' variance
   std::uint64_t bad = 0;
 };
 
@@ -18,7 +18,8 @@ inline Measured measure(const Ref<Job>& job) {
   job->image->layers = {"variance"};
   job->render();
   const Image image = job->picture();
-  const size_t variance = size_t(std::find(image.channels.begin(), image.channels.end(), "variance.Y") - image.channels.begin());
+  const size_t variance =
+      size_t(std::find(image.channels.begin(), image.channels.end(), "variance.Y") - image.channels.begin());
   Measured m;
   double sum = 0;
   const double pixels = double(image.width) * image.height;
@@ -33,15 +34,14 @@ inline Measured measure(const Ref<Job>& job) {
   return m;
 }
 
-inline Measured measure(const std::string& text) {
-  return measure(load_job_text(text, "test.etd"));
-}
+inline Measured measure(const std::string& text) { return measure(load_job_text(text, "test.etd")); }
 
 /// A job with a given renderer, camera, picture and objects.
 inline std::string job_text(const std::string& renderer, const std::string& camera, int size, const std::string& objects,
                             const std::string& scene = "BruteForceScene") {
   return "Job {\n renderer: " + renderer + "\n camera: " + camera + "\n image: ImageBuffer { width: " + std::to_string(size) +
-         ", height: " + std::to_string(size) + ", filter: BoxFilter {} }\n scene: " + scene + " { objects: [\n" + objects + "\n] }\n}\n";
+         ", height: " + std::to_string(size) + ", filter: BoxFilter {} }\n scene: " + scene + " { objects: [\n" + objects +
+         "\n] }\n}\n";
 }
 
 }  // namespace etendue::test

@@ -13,17 +13,16 @@ namespace etendue::detail {
 
 inline constexpr int abi_wavelengths = spectrum_size;
 static_assert(spectrum_size == 4 || spectrum_size == 8 || spectrum_size == 16);
-inline constexpr const char* abi_text = spectrum_size == 4
-                                            ? "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++ ABI " ETENDUE_TEXT(__GXX_ABI_VERSION) ", 4 wavelengths"
-                                        : spectrum_size == 8
-                                            ? "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++ ABI " ETENDUE_TEXT(__GXX_ABI_VERSION) ", 8 wavelengths"
-                                            : "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++ ABI " ETENDUE_TEXT(__GXX_ABI_VERSION) ", 16 wavelengths";
+inline constexpr const char* abi_text =
+    spectrum_size == 4
+        ? "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++ ABI " ETENDUE_TEXT(__GXX_ABI_VERSION) ", 4 wavelengths"
+    : spectrum_size == 8
+        ? "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++ ABI " ETENDUE_TEXT(__GXX_ABI_VERSION) ", 8 wavelengths"
+        : "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++ ABI " ETENDUE_TEXT(__GXX_ABI_VERSION) ", 16 wavelengths";
 
 }  // namespace etendue::detail
 
 /// Emitted into every library that includes this header.
 extern "C" {
-[[gnu::used, gnu::visibility("default")]] inline const char* etendue_plugin_abi() {
-  return etendue::detail::abi_text;
-}
+[[gnu::used, gnu::visibility("default")]] inline const char* etendue_plugin_abi() { return etendue::detail::abi_text; }
 }

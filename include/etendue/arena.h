@@ -32,7 +32,8 @@ class Arena {
     size_t at = (used_ + alignment - 1) & ~(alignment - 1);
     if (blocks_.empty() || at + size > block_size) {
       if (!blocks_.empty()) ++block_;
-      if (block_ == blocks_.size()) blocks_.emplace_back(static_cast<std::byte*>(::operator new(block_size, std::align_val_t(64))));
+      if (block_ == blocks_.size())
+        blocks_.emplace_back(static_cast<std::byte*>(::operator new(block_size, std::align_val_t(64))));
       at = 0;
     }
     used_ = at + size;

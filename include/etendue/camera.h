@@ -13,12 +13,12 @@ namespace etendue {
 
 /// A point on the lens seen from a point of the scene.
 struct LensSample {
-  Point3 lens;          ///< where on the lens
-  Vector3 direction;    ///< unit, from the scene point to the lens
-  float distance = 0;   ///< [m]
-  float density = 0;    ///< [1/sr] at the scene point; a pinhole: distance^2 / cos (a delta in area, converted)
-  float importance = 0; ///< W_e [1/(m^2 sr)] of the connection, normalised as `Camera::importance`
-  Point2 film;          ///< where on the film light from the point arrives
+  Point3 lens;           ///< where on the lens
+  Vector3 direction;     ///< unit, from the scene point to the lens
+  float distance = 0;    ///< [m]
+  float density = 0;     ///< [1/sr] at the scene point; a pinhole: distance^2 / cos (a delta in area, converted)
+  float importance = 0;  ///< W_e [1/(m^2 sr)] of the connection, normalised as `Camera::importance`
+  Point2 film;           ///< where on the film light from the point arrives
 };
 
 /// Densities with which a camera ray is drawn when film points are uniform over the whole film.

@@ -28,7 +28,8 @@ struct RgbSpace {
 const RgbSpace& rgb_space(const std::string& name);
 std::vector<std::string> rgb_space_names();
 /// A space of any primaries and white.
-RgbSpace make_rgb_space(const std::string& name, const std::array<std::array<double, 2>, 3>& primaries, const std::array<double, 2>& white);
+RgbSpace make_rgb_space(const std::string& name, const std::array<std::array<double, 2>, 3>& primaries,
+                        const std::array<double, 2>& white);
 
 /// Transfer functions: "linear", "srgb", "rec709", "gamma2.2". encode: linear [0, 1] to the file's [0, 1]; decode back.
 double encode_transfer(const std::string& transfer, double linear);
@@ -47,10 +48,10 @@ Xyz to_xyz(const SpectralFunction&, ColorUse, const SpectralFunction* illuminant
 Color rgb_color(const std::string& space, double r, double g, double b);  ///< linear components
 Color srgb_color(double r, double g, double b);                           ///< encoded components in [0, 1]
 Color xyz_color(double x, double y, double z);
-Color blackbody_spectrum(double kelvin);  ///< Planck's radiance [W m^-2 sr^-1 nm^-1]
+Color blackbody_spectrum(double kelvin);             ///< Planck's radiance [W m^-2 sr^-1 nm^-1]
 Color illuminant_spectrum(const std::string& name);  ///< "A" "D50" "D65" "E" "F2" "F11", scaled to Y = 1
-Color glass_index(const std::string& name);          ///< refractive index: "N-BK7", "N-SF11", "F2", "fused silica", "diamond", "water"
-Color metal_index(const std::string& name);          ///< complex: "Au" "Ag" "Al" "Cu" "Cr"
+Color glass_index(const std::string& name);  ///< refractive index: "N-BK7", "N-SF11", "F2", "fused silica", "diamond", "water"
+Color metal_index(const std::string& name);  ///< complex: "Au" "Ag" "Al" "Cu" "Cr"
 Color complex_index(Color n, Color k);
 /// Values at increasing wavelengths [nm], linear between, 0 outside.
 Color table_spectrum(std::vector<float> wavelengths, std::vector<float> values);

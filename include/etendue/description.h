@@ -13,15 +13,9 @@ namespace etendue {
 
 // ---- options of a member ------------------------------------------------------------------------------------------
 
-inline Range range(double low, double high) {
-  return {low, high, false};
-}
-inline Range at_least(double low) {
-  return {low, std::numeric_limits<double>::infinity(), false};
-}
-inline Range more_than(double low) {
-  return {low, std::numeric_limits<double>::infinity(), true};
-}
+inline Range range(double low, double high) { return {low, high, false}; }
+inline Range at_least(double low) { return {low, std::numeric_limits<double>::infinity(), false}; }
+inline Range more_than(double low) { return {low, std::numeric_limits<double>::infinity(), true}; }
 /// Marks a member that must be written.
 struct Required {};
 inline constexpr Required required{};
@@ -47,8 +41,10 @@ Color to_color(const Value&, const Member&);
 AnimatedTransform to_transform(const Value&);
 Ref<Component> to_component(const Value&, const Member&);
 /// Rows of `width` floats appended through `push`; accepts flat and nested lists.
-void to_rows(const Value&, const Member&, int width, void (*push)(void* to, const float* row), void* to, void (*reserve)(void* to, size_t rows));
-void to_integers(const Value&, const Member&, std::int64_t low, std::int64_t high, void (*push)(void* to, std::int64_t), void* to, void (*reserve)(void* to, size_t count));
+void to_rows(const Value&, const Member&, int width, void (*push)(void* to, const float* row), void* to,
+             void (*reserve)(void* to, size_t rows));
+void to_integers(const Value&, const Member&, std::int64_t low, std::int64_t high, void (*push)(void* to, std::int64_t),
+                 void* to, void (*reserve)(void* to, size_t count));
 const Value::List& to_list(const Value&, Value::List& scratch);
 Value from_number(double, const Member&);
 Value from_floats(const float*, int count, const Member&);
@@ -129,11 +125,16 @@ struct ConvertTuple {
     return from_floats(f, N, m);
   }
 };
-template <> struct Convert<Vector2> : ConvertTuple<Vector2, Kind::vector2, 2> {};
-template <> struct Convert<Point2> : ConvertTuple<Point2, Kind::vector2, 2> {};
-template <> struct Convert<Vector3> : ConvertTuple<Vector3, Kind::vector3, 3> {};
-template <> struct Convert<Point3> : ConvertTuple<Point3, Kind::point3, 3> {};
-template <> struct Convert<Normal3> : ConvertTuple<Normal3, Kind::normal3, 3> {};
+template <>
+struct Convert<Vector2> : ConvertTuple<Vector2, Kind::vector2, 2> {};
+template <>
+struct Convert<Point2> : ConvertTuple<Point2, Kind::vector2, 2> {};
+template <>
+struct Convert<Vector3> : ConvertTuple<Vector3, Kind::vector3, 3> {};
+template <>
+struct Convert<Point3> : ConvertTuple<Point3, Kind::point3, 3> {};
+template <>
+struct Convert<Normal3> : ConvertTuple<Normal3, Kind::normal3, 3> {};
 
 template <>
 struct Convert<Color> {
@@ -168,11 +169,15 @@ struct Convert<std::vector<T>> {
   static void read(const Value& v, const Member& m, List& out) {
     List list;
     if constexpr (Tuple<T>) {
-      to_rows(v, m, Convert<T>::width, [](void* to, const float* f) { static_cast<List*>(to)->push_back(Convert<T>::make(f)); }, &list, reserve);
+      to_rows(
+          v, m, Convert<T>::width, [](void* to, const float* f) { static_cast<List*>(to)->push_back(Convert<T>::make(f)); },
+          &list, reserve);
     } else if constexpr (std::is_floating_point_v<T>) {
       to_rows(v, m, 1, [](void* to, const float* f) { static_cast<List*>(to)->push_back(T(*f)); }, &list, reserve);
     } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
-      to_integers(v, m, Convert<T>::low, Convert<T>::high, [](void* to, std::int64_t i) { static_cast<List*>(to)->push_back(T(i)); }, &list, reserve);
+      to_integers(
+          v, m, Convert<T>::low, Convert<T>::high, [](void* to, std::int64_t i) { static_cast<List*>(to)->push_back(T(i)); },
+          &list, reserve);
     } else {
       Value::List scratch;
       for (const Value& item : to_list(v, scratch)) Convert<T>::read(item, m, list.emplace_back());
@@ -233,7 +238,7 @@ struct Referee<std::vector<C>> : Referee<C> {};
 
 template <auto P>
 struct PointerTo;
-template <class C, class T, T C::*P>
+template <class C, class T, T C::* P>
 struct PointerTo<P> {
   using Class = C;
   using Type = T;
@@ -269,8 +274,12 @@ class Description {
     m.list = detail::IsVector<Type>::value;
     m.component_class = detail::referred_class<detail::Referee<Type>>();
     m.owner = &info_;
-    m.get = [](const Component& c, const Member& self) { return detail::Convert<Type>::write(static_cast<const T&>(c).*P, self); };
-    m.store = [](Component& c, const Member& self, const Value& v) { detail::Convert<Type>::read(v, self, static_cast<T&>(c).*P); };
+    m.get = [](const Component& c, const Member& self) {
+      return detail::Convert<Type>::write(static_cast<const T&>(c).*P, self);
+    };
+    m.store = [](Component& c, const Member& self, const Value& v) {
+      detail::Convert<Type>::read(v, self, static_cast<T&>(c).*P);
+    };
     (option(m, std::move(options)), ...);
     info_.members.push_back(std::move(m));
     return *this;

@@ -15,10 +15,10 @@ namespace etendue {
 
 /// Auxiliary layers a renderer may fill at the first surface a camera path meets.
 struct Features {
-  Vector3 albedo;       ///< linear sRGB
-  Vector3 normal;       ///< unit, world
-  float depth = 0;      ///< distance from the camera [m]; 0: nothing was met
-  int object = 0;       ///< 1 + index of the object in the scene; 0: nothing
+  Vector3 albedo;   ///< linear sRGB
+  Vector3 normal;   ///< unit, world
+  float depth = 0;  ///< distance from the camera [m]; 0: nothing was met
+  int object = 0;   ///< 1 + index of the object in the scene; 0: nothing
 };
 
 /// Pixel rectangle [x0, x1) x [y0, y1).
@@ -66,7 +66,7 @@ class ImageTile {
     Xyz value;
   };
   const ImageBuffer* buffer_ = nullptr;
-  PixelArea area_, extent_;  // the area and the area widened by the filter
+  PixelArea area_, extent_;       // the area and the area widened by the filter
   std::vector<double> sums_;      // X Y Z weight per pixel of the extent
   std::vector<double> moments_;   // count, sum Y, sum Y^2 of the samples in each pixel of the area
   std::vector<double> features_;  // ImageBuffer::feature_values per pixel of the area
@@ -85,8 +85,8 @@ class ImageBuffer : public Component {
 
   int width = 512, height = 512;
   Ref<Filter> filter;
-  std::vector<int> crop;             ///< x0, y0, x1, y1 [pixels]; empty: all
-  std::vector<std::string> layers;   ///< of "albedo", "normal", "depth", "object", "variance", "samples"
+  std::vector<int> crop;            ///< x0, y0, x1, y1 [pixels]; empty: all
+  std::vector<std::string> layers;  ///< of "albedo", "normal", "depth", "object", "variance", "samples"
 
   void prepare() override;
 

@@ -18,11 +18,11 @@ namespace etendue {
 /// How far a render is.
 struct Progress {
   std::uint32_t samples = 0, samples_wanted = 0;  ///< per pixel
-  double fraction = 0;           ///< of the work, by whichever rule will stop it first
-  double seconds = 0;            ///< since the first pass began
-  double seconds_left = 0;       ///< estimated; negative: unknown
-  double samples_per_second = 0; ///< over the whole picture
-  double error = 0;              ///< relative, see ImageBuffer::relative_error; only when asked for
+  double fraction = 0;                            ///< of the work, by whichever rule will stop it first
+  double seconds = 0;                             ///< since the first pass began
+  double seconds_left = 0;                        ///< estimated; negative: unknown
+  double samples_per_second = 0;                  ///< over the whole picture
+  double error = 0;                               ///< relative, see ImageBuffer::relative_error; only when asked for
   bool finished = false;
 };
 

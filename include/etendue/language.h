@@ -20,7 +20,8 @@ struct LoadOptions {
 /// Reads a render description; throws Errors with everything wrong that can be found in one run. Not prepared yet.
 Ref<Job> load_job(const std::string& path, const LoadOptions& = {});
 /// The same from a text; `name` stands for the file in messages, paths are relative to `folder`.
-Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder = {}, const LoadOptions& = {});
+Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder = {},
+                       const LoadOptions& = {});
 
 /// Any one component, such as "Sphere { radius: 2 m }", which definitions may precede; for tests and tools.
 Ref<Component> parse_component(const std::string& text, const std::string& name = "text", const std::string& folder = {});

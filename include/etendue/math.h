@@ -16,38 +16,22 @@ inline constexpr float infinity = std::numeric_limits<float>::infinity();
 /// The largest float below 1: random numbers are clamped to it.
 inline constexpr float one_minus_epsilon = 0x1.fffffep-1f;
 
-constexpr float square(float x) {
-  return x * x;
-}
+constexpr float square(float x) { return x * x; }
 
-constexpr float lerp(float t, float a, float b) {
-  return (1 - t) * a + t * b;
-}
+constexpr float lerp(float t, float a, float b) { return (1 - t) * a + t * b; }
 
-constexpr float clamp(float x, float low, float high) {
-  return x < low ? low : (x > high ? high : x);
-}
+constexpr float clamp(float x, float low, float high) { return x < low ? low : (x > high ? high : x); }
 
 /// sqrt(max(x, 0)): for quantities that are negative only by rounding.
-inline float safe_sqrt(float x) {
-  return std::sqrt(std::max(x, 0.0f));
-}
+inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
 
-inline float safe_acos(float x) {
-  return std::acos(clamp(x, -1, 1));
-}
+inline float safe_acos(float x) { return std::acos(clamp(x, -1, 1)); }
 
-inline float safe_asin(float x) {
-  return std::asin(clamp(x, -1, 1));
-}
+inline float safe_asin(float x) { return std::asin(clamp(x, -1, 1)); }
 
-constexpr float radians(float degrees) {
-  return degrees * (pi / 180);
-}
+constexpr float radians(float degrees) { return degrees * (pi / 180); }
 
-constexpr float degrees(float radians) {
-  return radians * (180 / pi);
-}
+constexpr float degrees(float radians) { return radians * (180 / pi); }
 
 /// Bound of the relative error after n floating-point operations (Higham 2002, section 3.1).
 constexpr float rounding_bound(int n) {
@@ -92,8 +76,6 @@ constexpr std::uint64_t mix_bits(std::uint64_t v) {
 }
 
 /// 32 random bits as a float in [0, 1).
-constexpr float to_unit_float(std::uint32_t bits) {
-  return float(bits >> 8) * 0x1p-24f;
-}
+constexpr float to_unit_float(std::uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
 
 }  // namespace etendue

@@ -28,11 +28,11 @@ struct Ray {
 struct Hit {
   static constexpr int deepest_nesting = 8;
 
-  float distance = infinity;            ///< t along the ray
-  const SceneObject* object = nullptr;  ///< the innermost object; null when nothing was hit
-  std::uint32_t primitive = 0;          ///< part of the object (a triangle of a mesh)
-  float u = 0, v = 0;                   ///< coordinates on the part, as the object defines them
-  int depth = 0;                        ///< how many nested scenes the object lies in
+  float distance = infinity;                   ///< t along the ray
+  const SceneObject* object = nullptr;         ///< the innermost object; null when nothing was hit
+  std::uint32_t primitive = 0;                 ///< part of the object (a triangle of a mesh)
+  float u = 0, v = 0;                          ///< coordinates on the part, as the object defines them
+  int depth = 0;                               ///< how many nested scenes the object lies in
   const SceneObject* scenes[deepest_nesting];  ///< those scenes, innermost first; only `depth` of them are set
 
   explicit operator bool() const { return object != nullptr; }
@@ -41,19 +41,19 @@ struct Hit {
 /// A point on a surface, in the coordinates of the scene the renderer sees.
 struct SurfacePoint {
   Point3 position;
-  float error = 0;           ///< bound of the distance of `position` from the true surface [m]
-  Normal3 normal;            ///< unit, geometric; points to the front
-  Normal3 shading_normal;    ///< unit; equals `normal` unless the object interpolates or a map perturbs it
-  Point2 uv;                 ///< surface coordinates
-  Vector3 dpdu, dpdv;        ///< change of position with uv; zero until the object's `tangents` was asked
-  Point3 object_position;    ///< before the object's transform
-  Normal3 object_normal;     ///< unit, before the object's transform
-  float footprint = 0;       ///< width of the ray's cone here, across the ray [m]
+  float error = 0;             ///< bound of the distance of `position` from the true surface [m]
+  Normal3 normal;              ///< unit, geometric; points to the front
+  Normal3 shading_normal;      ///< unit; equals `normal` unless the object interpolates or a map perturbs it
+  Point2 uv;                   ///< surface coordinates
+  Vector3 dpdu, dpdv;          ///< change of position with uv; zero until the object's `tangents` was asked
+  Point3 object_position;      ///< before the object's transform
+  Normal3 object_normal;       ///< unit, before the object's transform
+  float footprint = 0;         ///< width of the ray's cone here, across the ray [m]
   float footprint_cosine = 1;  ///< between the ray and the normal: the footprint is this much longer along one direction
-  float time = 0;            ///< [s]
+  float time = 0;              ///< [s]
   const SceneObject* object = nullptr;
   std::uint32_t primitive = 0;
-  float u = 0, v = 0;        ///< of the hit
+  float u = 0, v = 0;                  ///< of the hit
   const MediumStack* media = nullptr;  ///< media around the ray that came here; null: vacuum
 
   /// A ray that leaves the surface without meeting it again: the origin is moved along the normal beyond the error.

@@ -27,7 +27,21 @@ struct Range {
   std::string text() const;
 };
 
-enum class Kind : std::uint8_t { boolean, integer, number, string, file, choice, vector2, vector3, point3, normal3, color, transform, component };
+enum class Kind : std::uint8_t {
+  boolean,
+  integer,
+  number,
+  string,
+  file,
+  choice,
+  vector2,
+  vector3,
+  point3,
+  normal3,
+  color,
+  transform,
+  component
+};
 std::string_view name(Kind);
 
 /// One described member of a class.
@@ -39,7 +53,7 @@ struct Member {
   Effect effect = Effect::rerender;
   std::optional<Range> range;
   std::vector<std::string> choices;
-  std::string component_class;  ///< the interface a `component` member refers to
+  std::string component_class;       ///< the interface a `component` member refers to
   const ClassInfo* owner = nullptr;  ///< the class that declares it
   Value default_value;               ///< of a default-constructed object; none for abstract classes
 
@@ -53,7 +67,7 @@ class ClassInfo {
   std::string name;
   const ClassInfo* parent = nullptr;  ///< null for Component itself
   std::string summary, source;
-  std::vector<Member> members;  ///< inherited ones first
+  std::vector<Member> members;           ///< inherited ones first
   Ref<Component> (*create)() = nullptr;  ///< null: abstract
   std::type_index type = typeid(void);
   std::string provider;  ///< "" for built-in parts, else the plugin's file

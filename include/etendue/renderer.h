@@ -25,11 +25,11 @@ struct RenderContext {
 
 /// What one sample of a camera-path renderer has at hand.
 struct SampleContext {
-  Wavelengths& wavelengths;   ///< may lose its secondary ones along the path
+  Wavelengths& wavelengths;  ///< may lose its secondary ones along the path
   SampleStream& random;
-  Arena& arena;               ///< emptied after the sample
-  Features* features = nullptr;   ///< to be filled at the first surface when not null
-  PathRecord* record = nullptr;   ///< to be filled when not null: someone replays this sample
+  Arena& arena;                  ///< emptied after the sample
+  Features* features = nullptr;  ///< to be filled at the first surface when not null
+  PathRecord* record = nullptr;  ///< to be filled when not null: someone replays this sample
 };
 
 /// A range of samples per pixel, [begin, end), and the means to run work over all cores.
@@ -45,7 +45,12 @@ class Pass {
 
   template <class F>
   void run(std::uint64_t count, F&& f) {
-    run(count, [](void* self, std::uint64_t item, ImageTile& tile, Arena& arena) { (*static_cast<std::remove_reference_t<F>*>(self))(item, tile, arena); }, &f);
+    run(
+        count,
+        [](void* self, std::uint64_t item, ImageTile& tile, Arena& arena) {
+          (*static_cast<std::remove_reference_t<F>*>(self))(item, tile, arena);
+        },
+        &f);
   }
 };
 
@@ -74,7 +79,8 @@ class Renderer : public Component {
     Spectrum value;
     Wavelengths wavelengths;
   };
-  CameraSample camera_sample(const RenderContext&, int x, int y, std::uint32_t sample, Arena&, Features* = nullptr, PathRecord* = nullptr) const;
+  CameraSample camera_sample(const RenderContext&, int x, int y, std::uint32_t sample, Arena&, Features* = nullptr,
+                             PathRecord* = nullptr) const;
 
   /// Whether expectations are exact for any number of samples, or only in the limit.
   virtual bool unbiased() const { return true; }

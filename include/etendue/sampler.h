@@ -15,7 +15,8 @@ struct SampleKey {
 
   SampleKey() = default;
   SampleKey(std::uint64_t seed, int x, int y, std::uint32_t sample_)
-      : pixel(mix_bits(mix_bits(seed + 0x9e3779b97f4a7c15ull) ^ ((std::uint64_t(std::uint32_t(y)) << 32) | std::uint32_t(x)))), sample(sample_) {}
+      : pixel(mix_bits(mix_bits(seed + 0x9e3779b97f4a7c15ull) ^ ((std::uint64_t(std::uint32_t(y)) << 32) | std::uint32_t(x)))),
+        sample(sample_) {}
 };
 
 /// Stateless: the same arguments give the same numbers, from any thread.

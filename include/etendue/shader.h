@@ -18,9 +18,9 @@ enum Lobe : std::uint8_t {
   diffuse_transmission = 2,
   glossy_reflection = 4,
   glossy_transmission = 8,
-  specular_reflection = 16,   ///< a mirror: all in one direction
+  specular_reflection = 16,  ///< a mirror: all in one direction
   specular_transmission = 32,
-  pass_through = 64,          ///< straight on, as if nothing were there
+  pass_through = 64,  ///< straight on, as if nothing were there
 };
 using Lobes = std::uint8_t;
 inline constexpr Lobes no_lobes = 0;
@@ -40,10 +40,10 @@ enum class Transport : std::uint8_t { radiance, importance };
 /// A direction chosen by a Scatter. All vectors point away from the surface and have unit length.
 struct ScatterSample {
   Vector3 direction;
-  Spectrum weight;      ///< f |cos| / density for smooth lobes; the lobe's fraction over its probability for specular ones
-  float density = 0;    ///< [1/sr] for smooth lobes (all asked lobes together); for specular ones a probability
+  Spectrum weight;    ///< f |cos| / density for smooth lobes; the lobe's fraction over its probability for specular ones
+  float density = 0;  ///< [1/sr] for smooth lobes (all asked lobes together); for specular ones a probability
   Lobe lobe = diffuse_reflection;
-  float eta = 1;        ///< index where the direction leads over index where the path came from; 1 for reflection
+  float eta = 1;            ///< index where the direction leads over index where the path came from; 1 for reflection
   bool dispersive = false;  ///< the direction holds for the hero wavelength only: drop the others
   bool specular() const { return (lobe & specular_lobes) != 0; }
   bool transmitted() const { return (lobe & transmission_lobes) != 0; }
@@ -66,10 +66,12 @@ class Scatter {
   /// call with the directions exchanged.
   float density(const Vector3& out, const Vector3& in, Transport = Transport::radiance, Lobes = all_lobes) const;
   /// Both of the above in one call.
-  ScatterValue value_and_density(const Vector3& out, const Vector3& in, Transport = Transport::radiance, Lobes = all_lobes) const;
+  ScatterValue value_and_density(const Vector3& out, const Vector3& in, Transport = Transport::radiance,
+                                 Lobes = all_lobes) const;
   /// Chooses a direction among the asked lobes: `choice` picks the lobe, `u` the direction. Empty when the sample is
   /// absorbed (its contribution is zero, and counts).
-  std::optional<ScatterSample> sample(const Vector3& out, float choice, Point2 u, Transport = Transport::radiance, Lobes = all_lobes) const;
+  std::optional<ScatterSample> sample(const Vector3& out, float choice, Point2 u, Transport = Transport::radiance,
+                                      Lobes = all_lobes) const;
   /// An estimate of the fraction of light from all asked lobes that leaves towards `out`, for Russian roulette and for
   /// choosing between lobes; exact where the model has a closed form.
   Spectrum albedo(const Vector3& out, Lobes which = all_lobes) const { return local_albedo(frame_.to_local(out), which); }

@@ -41,10 +41,22 @@ class Spectrum {
   friend Spectrum operator*(float s, Spectrum a) { return Spectrum(a.v_ * s); }
   friend Spectrum operator/(Spectrum a, float s) { return Spectrum(a.v_ * (1 / s)); }
   Spectrum operator-() const { return Spectrum(-v_); }
-  Spectrum& operator+=(Spectrum b) { v_ += b.v_; return *this; }
-  Spectrum& operator*=(Spectrum b) { v_ *= b.v_; return *this; }
-  Spectrum& operator*=(float s) { v_ *= s; return *this; }
-  Spectrum& operator/=(float s) { v_ *= 1 / s; return *this; }
+  Spectrum& operator+=(Spectrum b) {
+    v_ += b.v_;
+    return *this;
+  }
+  Spectrum& operator*=(Spectrum b) {
+    v_ *= b.v_;
+    return *this;
+  }
+  Spectrum& operator*=(float s) {
+    v_ *= s;
+    return *this;
+  }
+  Spectrum& operator/=(float s) {
+    v_ *= 1 / s;
+    return *this;
+  }
 
   bool black() const { return none(v_ != detail::Lanes{}); }
   float maximum() const {
@@ -100,7 +112,12 @@ inline Spectrum sqrt(Spectrum a) {
 /// Y times 683 times 106.8569.
 struct Xyz {
   double x = 0, y = 0, z = 0;
-  Xyz& operator+=(const Xyz& b) { x += b.x; y += b.y; z += b.z; return *this; }
+  Xyz& operator+=(const Xyz& b) {
+    x += b.x;
+    y += b.y;
+    z += b.z;
+    return *this;
+  }
   friend Xyz operator*(double s, const Xyz& c) { return {s * c.x, s * c.y, s * c.z}; }
   friend Xyz operator+(Xyz a, const Xyz& b) { return a += b; }
   bool operator==(const Xyz&) const = default;

@@ -39,7 +39,8 @@ class Transform {
             m_[8] * p.x + m_[9] * p.y + m_[10] * p.z + m_[11]};
   }
   Vector3 operator()(const Vector3& v) const {
-    return {m_[0] * v.x + m_[1] * v.y + m_[2] * v.z, m_[4] * v.x + m_[5] * v.y + m_[6] * v.z, m_[8] * v.x + m_[9] * v.y + m_[10] * v.z};
+    return {m_[0] * v.x + m_[1] * v.y + m_[2] * v.z, m_[4] * v.x + m_[5] * v.y + m_[6] * v.z,
+            m_[8] * v.x + m_[9] * v.y + m_[10] * v.z};
   }
   /// Not normalised; keeps the side the normal points to even under mirroring.
   Normal3 operator()(const Normal3& n) const {

@@ -16,7 +16,17 @@ namespace etendue {
 
 class Component;
 
-enum class Dimension : std::uint8_t { none, length, angle, temperature, power, luminous_flux, luminous_intensity, illuminance, time };
+enum class Dimension : std::uint8_t {
+  none,
+  length,
+  angle,
+  temperature,
+  power,
+  luminous_flux,
+  luminous_intensity,
+  illuminance,
+  time
+};
 
 /// A unit the language knows: `value in base units = factor * number`. Base units: m, rad, K, W, lm, cd, lx, s.
 struct Unit {
@@ -62,7 +72,9 @@ struct FilePath {
 struct Value {
   using List = std::vector<Value>;
   /// monostate is `none`.
-  std::variant<std::monostate, bool, Number, std::string, Numbers, FilePath, Color, Transform, AnimatedTransform, Ref<Component>, List> data;
+  std::variant<std::monostate, bool, Number, std::string, Numbers, FilePath, Color, Transform, AnimatedTransform,
+               Ref<Component>, List>
+      data;
   Location location;
   std::string folder;  ///< of the file a string was written in
 
@@ -81,8 +93,6 @@ struct Value {
 
 /// Whether two values are equal; components are equal when their classes and all their members are (sharing aside).
 bool equal(const Value&, const Value&);
-inline bool operator==(const Value& a, const Value& b) {
-  return equal(a, b);
-}
+inline bool operator==(const Value& a, const Value& b) { return equal(a, b); }
 
 }  // namespace etendue

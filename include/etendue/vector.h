@@ -18,18 +18,10 @@ struct Point2 {
   bool operator==(const Point2&) const = default;
 };
 
-constexpr Point2 operator+(Point2 p, Vector2 v) {
-  return {p.x + v.x, p.y + v.y};
-}
-constexpr Vector2 operator-(Point2 a, Point2 b) {
-  return {a.x - b.x, a.y - b.y};
-}
-constexpr Vector2 operator+(Vector2 a, Vector2 b) {
-  return {a.x + b.x, a.y + b.y};
-}
-constexpr Vector2 operator*(float s, Vector2 v) {
-  return {s * v.x, s * v.y};
-}
+constexpr Point2 operator+(Point2 p, Vector2 v) { return {p.x + v.x, p.y + v.y}; }
+constexpr Vector2 operator-(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
+constexpr Vector2 operator+(Vector2 a, Vector2 b) { return {a.x + b.x, a.y + b.y}; }
+constexpr Vector2 operator*(float s, Vector2 v) { return {s * v.x, s * v.y}; }
 
 struct Vector3 {
   float x = 0, y = 0, z = 0;
@@ -57,88 +49,40 @@ struct Normal3 {
   bool operator==(const Normal3&) const = default;
 };
 
-constexpr Vector3 operator+(const Vector3& a, const Vector3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-constexpr Vector3 operator-(const Vector3& a, const Vector3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-constexpr Vector3 operator-(const Vector3& v) {
-  return {-v.x, -v.y, -v.z};
-}
-constexpr Vector3 operator*(float s, const Vector3& v) {
-  return {s * v.x, s * v.y, s * v.z};
-}
-constexpr Vector3 operator*(const Vector3& v, float s) {
-  return s * v;
-}
-constexpr Vector3 operator/(const Vector3& v, float s) {
-  return (1 / s) * v;
-}
-constexpr Vector3& operator+=(Vector3& a, const Vector3& b) {
-  return a = a + b;
-}
+constexpr Vector3 operator+(const Vector3& a, const Vector3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+constexpr Vector3 operator-(const Vector3& a, const Vector3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+constexpr Vector3 operator-(const Vector3& v) { return {-v.x, -v.y, -v.z}; }
+constexpr Vector3 operator*(float s, const Vector3& v) { return {s * v.x, s * v.y, s * v.z}; }
+constexpr Vector3 operator*(const Vector3& v, float s) { return s * v; }
+constexpr Vector3 operator/(const Vector3& v, float s) { return (1 / s) * v; }
+constexpr Vector3& operator+=(Vector3& a, const Vector3& b) { return a = a + b; }
 
-constexpr Vector3 operator-(const Point3& a, const Point3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-constexpr Point3 operator+(const Point3& p, const Vector3& v) {
-  return {p.x + v.x, p.y + v.y, p.z + v.z};
-}
-constexpr Point3 operator-(const Point3& p, const Vector3& v) {
-  return {p.x - v.x, p.y - v.y, p.z - v.z};
-}
+constexpr Vector3 operator-(const Point3& a, const Point3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+constexpr Point3 operator+(const Point3& p, const Vector3& v) { return {p.x + v.x, p.y + v.y, p.z + v.z}; }
+constexpr Point3 operator-(const Point3& p, const Vector3& v) { return {p.x - v.x, p.y - v.y, p.z - v.z}; }
 constexpr Point3 lerp(float t, const Point3& a, const Point3& b) {
   return {lerp(t, a.x, b.x), lerp(t, a.y, b.y), lerp(t, a.z, b.z)};
 }
 
-constexpr float dot(const Vector3& a, const Vector3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-constexpr float dot(const Normal3& a, const Vector3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-constexpr float dot(const Vector3& a, const Normal3& b) {
-  return dot(b, a);
-}
-constexpr float dot(const Normal3& a, const Normal3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+constexpr float dot(const Vector3& a, const Vector3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr float dot(const Normal3& a, const Vector3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr float dot(const Vector3& a, const Normal3& b) { return dot(b, a); }
+constexpr float dot(const Normal3& a, const Normal3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 constexpr Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-constexpr float length_squared(const Vector3& v) {
-  return dot(v, v);
-}
-inline float length(const Vector3& v) {
-  return std::sqrt(dot(v, v));
-}
+constexpr float length_squared(const Vector3& v) { return dot(v, v); }
+inline float length(const Vector3& v) { return std::sqrt(dot(v, v)); }
 /// The unit vector along v; v must not be zero.
-inline Vector3 normalize(const Vector3& v) {
-  return (1 / length(v)) * v;
-}
-inline Normal3 normalize(const Normal3& n) {
-  return Normal3(normalize(Vector3(n)));
-}
-constexpr float distance_squared(const Point3& a, const Point3& b) {
-  return length_squared(a - b);
-}
-inline float distance(const Point3& a, const Point3& b) {
-  return length(a - b);
-}
-inline Vector3 abs(const Vector3& v) {
-  return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
-}
-constexpr float max_component(const Vector3& v) {
-  return v.x > v.y ? (v.x > v.z ? v.x : v.z) : (v.y > v.z ? v.y : v.z);
-}
-inline bool is_finite(const Vector3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-inline bool is_finite(const Point3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
+inline Vector3 normalize(const Vector3& v) { return (1 / length(v)) * v; }
+inline Normal3 normalize(const Normal3& n) { return Normal3(normalize(Vector3(n))); }
+constexpr float distance_squared(const Point3& a, const Point3& b) { return length_squared(a - b); }
+inline float distance(const Point3& a, const Point3& b) { return length(a - b); }
+inline Vector3 abs(const Vector3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+constexpr float max_component(const Vector3& v) { return v.x > v.y ? (v.x > v.z ? v.x : v.z) : (v.y > v.z ? v.y : v.z); }
+inline bool is_finite(const Vector3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool is_finite(const Point3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// An orthonormal right-handed basis; local z is the normal.
 struct Frame {

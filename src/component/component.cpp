@@ -68,7 +68,8 @@ void warn(const std::string& message, Location at) {
   static std::mutex mutex;
   static std::set<std::string> said;
   const std::lock_guard lock(mutex);
-  std::string text = at.known() ? std::string(at.file) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " : "";
+  std::string text =
+      at.known() ? std::string(at.file) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " : "";
   text += "warning: " + message + "\n";
   if (said.insert(text).second) std::fputs(text.c_str(), stderr);
 }
@@ -106,7 +107,8 @@ std::string suggestion(const std::string& given, const std::vector<std::string>&
     if (name.size() > 100) continue;
     size_t distance = edit_distance(given, name);
     // "Path" for "PathTracer": a beginning is as good as two slips.
-    if (given.size() >= 3 && name.size() > given.size() && name.compare(0, given.size(), given) == 0) distance = std::min<size_t>(distance, 2);
+    if (given.size() >= 3 && name.size() > given.size() && name.compare(0, given.size(), given) == 0)
+      distance = std::min<size_t>(distance, 2);
     if (distance < best_distance) best_distance = distance, best = &name;
   }
   return best ? " (did you mean '" + *best + "'?)" : std::string();

@@ -17,8 +17,13 @@ namespace {
 double in_member_unit(double value, Dimension dimension, const Member& m, Location at) {
   if (dimension == Dimension::none) return value;
   const Unit* unit = find_unit(m.unit);
-  if (!unit) throw Error(fmt::format("expects a plain number{}, not {}", m.unit == "1" || m.unit.empty() ? "" : " in " + m.unit, with_article(name(dimension))), at);
-  if (unit->dimension != dimension) throw Error(fmt::format("expects {} [{}], not {}", with_article(name(unit->dimension)), m.unit, with_article(name(dimension))), at);
+  if (!unit)
+    throw Error(fmt::format("expects a plain number{}, not {}", m.unit == "1" || m.unit.empty() ? "" : " in " + m.unit,
+                            with_article(name(dimension))),
+                at);
+  if (unit->dimension != dimension)
+    throw Error(
+        fmt::format("expects {} [{}], not {}", with_article(name(unit->dimension)), m.unit, with_article(name(dimension))), at);
   return value / unit->factor;
 }
 
@@ -63,7 +68,8 @@ std::int64_t to_integer(const Value& v, const Member& m, std::int64_t low, std::
   if (!n) mismatch("a whole number", v);
   const double x = checked(n->value, n->dimension, m, v.location);
   if (x != std::floor(x)) throw Error(fmt::format("expects a whole number, not {:.9g}", x), v.location);
-  if (x < double(low) || x > double(high)) throw Error(fmt::format("must be from {} to {}, not {:.17g}", low, high, x), v.location);
+  if (x < double(low) || x > double(high))
+    throw Error(fmt::format("must be from {} to {}, not {:.17g}", low, high, x), v.location);
   return std::int64_t(x);
 }
 
@@ -120,7 +126,8 @@ Ref<Component> to_component(const Value& v, const Member& m) {
   if (v.none()) return nullptr;
   if (const auto* c = v.as<Ref<Component>>()) {
     if (!*c || (*c)->class_info().is_a(*wanted)) return *c;
-    throw Error(fmt::format("expects {}, not {}", with_article(wanted->name), with_article((*c)->class_info().name)), v.location);
+    throw Error(fmt::format("expects {}, not {}", with_article(wanted->name), with_article((*c)->class_info().name)),
+                v.location);
   }
   for (const ClassInfo* candidate : registry.subclasses(*wanted)) {
     if (candidate->literal.empty()) continue;
@@ -131,7 +138,8 @@ Ref<Component> to_component(const Value& v, const Member& m) {
   mismatch(with_article(wanted->name), v);
 }
 
-void to_rows(const Value& v, const Member& m, int width, void (*push)(void*, const float*), void* to, void (*reserve)(void*, size_t)) {
+void to_rows(const Value& v, const Member& m, int width, void (*push)(void*, const float*), void* to,
+             void (*reserve)(void*, size_t)) {
   if (const auto* list = v.as<Value::List>(); list && list->empty()) return;
   const auto* n = v.as<Numbers>();
   const std::string wanted = width == 1 ? "a list of numbers" : fmt::format("a list of rows of {} numbers", width);
@@ -155,8 +163,8 @@ void to_rows(const Value& v, const Member& m, int width, void (*push)(void*, con
   }
 }
 
-void to_integers(const Value& v, const Member& m, std::int64_t low, std::int64_t high, void (*push)(void*, std::int64_t), void* to,
-                 void (*reserve)(void*, size_t)) {
+void to_integers(const Value& v, const Member& m, std::int64_t low, std::int64_t high, void (*push)(void*, std::int64_t),
+                 void* to, void (*reserve)(void*, size_t)) {
   if (const auto* list = v.as<Value::List>(); list && list->empty()) return;
   const auto* n = v.as<Numbers>();
   if (!n || n->dimension != Dimension::none || (n->width != 1 && n->width != 3)) mismatch("a list of whole numbers", v);
@@ -164,7 +172,8 @@ void to_integers(const Value& v, const Member& m, std::int64_t low, std::int64_t
   for (size_t i = 0; i < n->values.size(); ++i) {
     const double x = n->values[i];
     if (x != std::floor(x)) throw Error(fmt::format("entry {} is {:.9g}, not a whole number", i, x), v.location);
-    if (x < double(low) || x > double(high)) throw Error(fmt::format("entry {} is {:.17g}, not from {} to {}", i, x, low, high), v.location);
+    if (x < double(low) || x > double(high))
+      throw Error(fmt::format("entry {} is {:.17g}, not from {} to {}", i, x, low, high), v.location);
     if (m.range && !m.range->contains(x)) throw Error(fmt::format("entry {} is {}, not {}", i, x, m.range->text()), v.location);
     push(to, std::int64_t(x));
   }
@@ -177,7 +186,9 @@ const Value::List& to_list(const Value& v, Value::List& scratch) {
       if (n->width == 1)
         scratch.emplace_back(Number{n->values[r], n->dimension}, v.location);
       else
-        scratch.emplace_back(Numbers{{n->values.begin() + long(r) * n->width, n->values.begin() + long(r + 1) * n->width}, 1, n->dimension}, v.location);
+        scratch.emplace_back(
+            Numbers{{n->values.begin() + long(r) * n->width, n->values.begin() + long(r + 1) * n->width}, 1, n->dimension},
+            v.location);
     }
     return scratch;
   }

@@ -12,9 +12,7 @@
 
 namespace etendue {
 
-const char* abi_string() {
-  return detail::abi_text;
-}
+const char* abi_string() { return detail::abi_text; }
 
 std::string find_plugin(const std::string& path) {
   namespace fs = std::filesystem;

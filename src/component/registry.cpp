@@ -23,9 +23,7 @@ void enlist(RegistrationNode& node) noexcept {
   pending = &node;
 }
 
-RegistrationNode* take_pending() {
-  return std::exchange(pending, nullptr);
-}
+RegistrationNode* take_pending() { return std::exchange(pending, nullptr); }
 
 std::string detail::bare_class_name(const std::type_info& type) {
   int status = 0;
@@ -41,14 +39,17 @@ std::string_view name(Effect e) {
 }
 
 std::string_view name(Kind k) {
-  constexpr std::array<std::string_view, 13> names = {"boolean", "integer", "number", "string", "file",  "choice",   "vector2",
-                                                      "vector3", "point3",  "normal3", "color", "transform", "component"};
+  constexpr std::array<std::string_view, 13> names = {"boolean", "integer",   "number",   "string", "file",
+                                                      "choice",  "vector2",   "vector3",  "point3", "normal3",
+                                                      "color",   "transform", "component"};
   return names[size_t(k)];
 }
 
 std::string Range::text() const {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
-  if (has_low && has_high) return open_low ? fmt::format("more than {:.9g} and at most {:.9g}", low, high) : fmt::format("from {:.9g} to {:.9g}", low, high);
+  if (has_low && has_high)
+    return open_low ? fmt::format("more than {:.9g} and at most {:.9g}", low, high)
+                    : fmt::format("from {:.9g} to {:.9g}", low, high);
   if (has_low) return (open_low ? "more than " : "at least ") + fmt::format("{:.9g}", low);
   if (has_high) return fmt::format("at most {:.9g}", high);
   return "any number";
@@ -124,7 +125,8 @@ void Registry::adopt() {
       if (info->parent)
         info->members = info->parent->members;
       else if (node->second->parent != typeid(Component))
-        faults += fmt::format("\n  {}: its parent class {} is not registered", info->name, detail::bare_class_name(node->second->parent));
+        faults += fmt::format("\n  {}: its parent class {} is not registered", info->name,
+                              detail::bare_class_name(node->second->parent));
     }
     node->second->describe(*info);
     if (const std::string wrong = fault(*info); !wrong.empty()) faults += "\n  " + info->name + ": " + wrong;
@@ -198,7 +200,8 @@ Ref<Component> Registry::create(std::string_view name) const {
       if (!c->abstract() && (!info || c->is_a(*info))) known.push_back(c->name);
   }
   if (!info) throw Error(fmt::format("there is no class '{}'{}", name, suggestion(std::string(name), known)));
-  if (info->abstract()) throw Error(fmt::format("'{}' is an interface; write one of its classes: {}", name, fmt::join(known, ", ")));
+  if (info->abstract())
+    throw Error(fmt::format("'{}' is an interface; write one of its classes: {}", name, fmt::join(known, ", ")));
   return info->create();
 }
 
@@ -245,7 +248,8 @@ void set(Component& c, std::string_view member, const Value& value) {
   if (!m) {
     std::vector<std::string> known;
     for (const Member& other : info.members) known.push_back(other.name);
-    throw Error(fmt::format("{} has no member '{}'{}", info.name, member, suggestion(std::string(member), known)), value.location);
+    throw Error(fmt::format("{} has no member '{}'{}", info.name, member, suggestion(std::string(member), known)),
+                value.location);
   }
   try {
     m->store(c, *m, value);

@@ -9,14 +9,14 @@ namespace etendue {
 
 const std::vector<Unit>& units() {
   static const std::vector<Unit> all = {
-      {"m", Dimension::length, 1},           {"cm", Dimension::length, 1e-2},
-      {"mm", Dimension::length, 1e-3},       {"km", Dimension::length, 1e3},
-      {"um", Dimension::length, 1e-6},       {"nm", Dimension::length, 1e-9},
-      {"rad", Dimension::angle, 1},          {"deg", Dimension::angle, 0.017453292519943295769},
-      {"K", Dimension::temperature, 1},      {"W", Dimension::power, 1},
-      {"mW", Dimension::power, 1e-3},        {"kW", Dimension::power, 1e3},
-      {"lm", Dimension::luminous_flux, 1},   {"cd", Dimension::luminous_intensity, 1},
-      {"lx", Dimension::illuminance, 1},     {"s", Dimension::time, 1},
+      {"m", Dimension::length, 1},         {"cm", Dimension::length, 1e-2},
+      {"mm", Dimension::length, 1e-3},     {"km", Dimension::length, 1e3},
+      {"um", Dimension::length, 1e-6},     {"nm", Dimension::length, 1e-9},
+      {"rad", Dimension::angle, 1},        {"deg", Dimension::angle, 0.017453292519943295769},
+      {"K", Dimension::temperature, 1},    {"W", Dimension::power, 1},
+      {"mW", Dimension::power, 1e-3},      {"kW", Dimension::power, 1e3},
+      {"lm", Dimension::luminous_flux, 1}, {"cd", Dimension::luminous_intensity, 1},
+      {"lx", Dimension::illuminance, 1},   {"s", Dimension::time, 1},
       {"ms", Dimension::time, 1e-3},
   };
   return all;
@@ -29,8 +29,8 @@ const Unit* find_unit(std::string_view name) {
 }
 
 std::string_view name(Dimension d) {
-  constexpr std::array<std::string_view, 9> names = {"pure number",   "length",             "angle",       "temperature", "power",
-                                                     "luminous flux", "luminous intensity", "illuminance", "time"};
+  constexpr std::array<std::string_view, 9> names = {
+      "pure number", "length", "angle", "temperature", "power", "luminous flux", "luminous intensity", "illuminance", "time"};
   return names[size_t(d)];
 }
 
@@ -48,7 +48,9 @@ std::string Value::kind() const {
   struct Name {
     std::string operator()(std::monostate) const { return "none"; }
     std::string operator()(bool) const { return "true or false"; }
-    std::string operator()(const Number& n) const { return n.dimension == Dimension::none ? "a number" : with_article(etendue::name(n.dimension)); }
+    std::string operator()(const Number& n) const {
+      return n.dimension == Dimension::none ? "a number" : with_article(etendue::name(n.dimension));
+    }
     std::string operator()(const std::string&) const { return "a string"; }
     std::string operator()(const Numbers& n) const {
       return n.width == 1 ? "a list of " + std::to_string(n.values.size()) + " numbers"
@@ -58,7 +60,9 @@ std::string Value::kind() const {
     std::string operator()(const Color&) const { return "a colour"; }
     std::string operator()(const Transform&) const { return "a transform"; }
     std::string operator()(const AnimatedTransform&) const { return "a moving transform"; }
-    std::string operator()(const Ref<Component>& c) const { return c ? "a component of class " + c->class_info().name : "none"; }
+    std::string operator()(const Ref<Component>& c) const {
+      return c ? "a component of class " + c->class_info().name : "none";
+    }
     std::string operator()(const List&) const { return "a list"; }
   };
   return std::visit(Name(), data);

@@ -7,7 +7,8 @@
 namespace etendue {
 
 void Job::describe(Description<Job>& d) {
-  d.summary("A whole render: what is seen, how it is computed, and where the picture goes.", "Demoreuille & Shaw 2002, section 3.2.2")
+  d.summary("A whole render: what is seen, how it is computed, and where the picture goes.",
+            "Demoreuille & Shaw 2002, section 3.2.2")
       .member<&Job::renderer>("renderer", "", "the algorithm")
       .member<&Job::camera>("camera", "", "where the picture is taken from", required)
       .member<&Job::scene>("scene", "", "what is in front of it", required, Effect::rebuild)
@@ -16,10 +17,11 @@ void Job::describe(Description<Job>& d) {
       .member<&Job::tone_map>("tone_map", "", "from radiance to display values", Effect::retone)
       .member<&Job::outputs>("outputs", "", "files to write", Effect::retone)
       .member<&Job::seed>("seed", "1", "chooses the random numbers", at_least(0))
-      .member<&Job::time_limit>("time_limit", "s", "stops after the pass in which this time is over; 0: no limit", at_least(0), Effect::retone)
+      .member<&Job::time_limit>("time_limit", "s", "stops after the pass in which this time is over; 0: no limit", at_least(0),
+                                Effect::retone)
       .member<&Job::error_limit>("error_limit", "1",
-                                 "stops when the mean relative standard error of pixels is below this; 0: no limit", at_least(0),
-                                 Effect::retone);
+                                 "stops when the mean relative standard error of pixels is below this; 0: no limit",
+                                 at_least(0), Effect::retone);
 }
 static const Register<Job> registered;
 
@@ -30,9 +32,7 @@ Ref<T> created(const char* name) {
   return ref_cast<T>(Registry::instance().create(name));
 }
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Samples per pixel of each pass: few for large pictures, many for small ones. A function of the size alone, so that
 /// passes are the same however a render is stopped or continued.
@@ -65,9 +65,7 @@ void Job::prepare() {
   prepared_ = true;
 }
 
-RenderContext Job::context() const {
-  return {*scene, *camera, *image, *wavelengths, seed};
-}
+RenderContext Job::context() const { return {*scene, *camera, *image, *wavelengths, seed}; }
 
 Ended Job::render() {
   if (!prepared_) prepare_tree(*this);
@@ -98,13 +96,15 @@ Ended Job::render() {
     p.fraction = samples / wanted;
     if (time_limit > 0) p.fraction = std::max(p.fraction, seconds / time_limit);
     // The error falls with the root of the number of samples.
-    if (error_limit > 0 && error > 0 && std::isfinite(error)) p.fraction = std::max(p.fraction, square(float(error_limit / error)) * 1.0);
+    if (error_limit > 0 && error > 0 && std::isfinite(error))
+      p.fraction = std::max(p.fraction, square(float(error_limit / error)) * 1.0);
     p.fraction = std::min(p.fraction, 1.0);
     p.seconds_left = p.fraction > 0 ? seconds * (1 - p.fraction) / p.fraction : -1;
     on_progress(p);
   };
 
-  PassRunner runner(*image, threads, stop_, [&](std::uint64_t done, std::uint64_t count) { report(double(done) / double(count), false); });
+  PassRunner runner(*image, threads, stop_,
+                    [&](std::uint64_t done, std::uint64_t count) { report(double(done) / double(count), false); });
   Ended ended = Ended::samples;
   while (samples_done_ < wanted) {
     runner.begin = samples_done_;
@@ -156,7 +156,8 @@ std::vector<std::string> Job::write_outputs(const std::string& default_stem) con
 
 Point2 Job::replay(int x, int y, std::uint32_t sample, PathRecord& record) {
   if (!prepared_) prepare_tree(*this);
-  if (!image->area().contains(x, y)) throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
+  if (!image->area().contains(x, y))
+    throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
   const RenderContext context = this->context();
   renderer->begin(context);
   Arena arena;

@@ -37,14 +37,15 @@ struct PassRunner::State {
 };
 
 namespace {
-int thread_count(int wanted) {
-  return wanted > 0 ? wanted : tbb::info::default_concurrency();
-}
+int thread_count(int wanted) { return wanted > 0 ? wanted : tbb::info::default_concurrency(); }
 }  // namespace
 
 PassRunner::PassRunner(ImageBuffer& image, int threads, const std::atomic<int>& stop,
                        std::function<void(std::uint64_t, std::uint64_t)> tick)
-    : state_(new State{image, stop, std::move(tick), thread_count(threads),
+    : state_(new State{image,
+                       stop,
+                       std::move(tick),
+                       thread_count(threads),
                        tbb::global_control(tbb::global_control::max_allowed_parallelism, size_t(thread_count(threads))),
                        tbb::task_arena(thread_count(threads)),
                        {},
@@ -60,22 +61,18 @@ void PassRunner::run(std::uint64_t count, Work work, void* self) {
     // Enough tiles in flight that no thread waits for a slow one, few enough that memory stays small.
     tbb::parallel_pipeline(
         size_t(4 * s.threads),
-        tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
-                                              [&](tbb::flow_control& flow) -> std::uint64_t {
-                                                if (next == count || s.stop.load(std::memory_order_relaxed) == 2) flow.stop();
-                                                return next++;
-                                              }) &
-            tbb::make_filter<std::uint64_t, ImageTile*>(tbb::filter_mode::parallel,
-                                                        [&](std::uint64_t item) {
-                                                          ImageTile* tile = s.take();
-                                                          work(self, item, *tile, s.arenas.local());
-                                                          return tile;
-                                                        }) &
-            tbb::make_filter<ImageTile*, void>(tbb::filter_mode::serial_in_order, [&](ImageTile* tile) {
-              s.image.merge(*tile);
-              s.give(tile);
-              s.tick(++done, count);
-            }));
+        tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) -> std::uint64_t {
+          if (next == count || s.stop.load(std::memory_order_relaxed) == 2) flow.stop();
+          return next++;
+        }) & tbb::make_filter<std::uint64_t, ImageTile*>(tbb::filter_mode::parallel, [&](std::uint64_t item) {
+          ImageTile* tile = s.take();
+          work(self, item, *tile, s.arenas.local());
+          return tile;
+        }) & tbb::make_filter<ImageTile*, void>(tbb::filter_mode::serial_in_order, [&](ImageTile* tile) {
+          s.image.merge(*tile);
+          s.give(tile);
+          s.tick(++done, count);
+        }));
   });
 }
 

@@ -11,7 +11,8 @@ namespace etendue {
 class PassRunner final : public Pass {
  public:
   /// `stop` at 2 ends a pass early; `tick(done, count)` is called from one thread at a time.
-  PassRunner(ImageBuffer& image, int threads, const std::atomic<int>& stop, std::function<void(std::uint64_t, std::uint64_t)> tick);
+  PassRunner(ImageBuffer& image, int threads, const std::atomic<int>& stop,
+             std::function<void(std::uint64_t, std::uint64_t)> tick);
   ~PassRunner() override;
 
   using Pass::run;

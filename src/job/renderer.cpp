@@ -27,7 +27,13 @@ void Renderer::begin(const RenderContext& context) {
 namespace {
 
 /// Dimensions of a camera sample, by purpose; the path's own begin after them.
-enum CameraDimension : std::uint32_t { film_dimension = 0, lens_dimension = 2, time_dimension = 4, wavelength_dimension = 5, path_dimension = 6 };
+enum CameraDimension : std::uint32_t {
+  film_dimension = 0,
+  lens_dimension = 2,
+  time_dimension = 4,
+  wavelength_dimension = 5,
+  path_dimension = 6
+};
 
 /// How the picture and the samples of a pass are divided into items: tiles, and for small pictures parts of the sample
 /// range as well. Depends on nothing but the picture's size and the pass, so results do not depend on threads.

@@ -103,7 +103,8 @@ class Rectangle final : public SceneObject {
           return s;
         }
       } else {
-        return sample_half(w, from, u, time);
+        sample_half(w, from, u, time, s);
+        return s;  // always this one, so that it is made in place
       }
     }
     fill_part(w, u, time, s.point);
@@ -221,10 +222,9 @@ class Rectangle final : public SceneObject {
   }
 
   /// Of a parallelogram that is no rectangle: one half by chance, then by solid angle.
-  SurfaceSample sample_half(const World& w, const Point3& from, Point2 u, float time) const {
+  void sample_half(const World& w, const Point3& from, Point2 u, float time, SurfaceSample& s) const {
     const std::uint32_t which = u.x < 0.5f ? 0 : 1;
     u.x = std::min(2 * u.x - float(which), one_minus_epsilon);
-    SurfaceSample s;
     const SphericalTriangle t = w.half(which, from);
     if (!t.usable()) {
       const Point2 b = warp::triangle(u);
@@ -233,7 +233,7 @@ class Rectangle final : public SceneObject {
       s.point.u = b.x;
       s.point.v = b.y;
       complete_by_area(s, from, 1 / w.area);
-      return s;
+      return;
     }
     const Vector3 direction = t.sample(u), c = w.corner - from, r = cross(c, direction);
     const float inverse = 1 / dot(w.scaled_normal, direction);
@@ -247,7 +247,6 @@ class Rectangle final : public SceneObject {
     s.point.u = which == 0 ? uv.x - uv.y : uv.x;
     s.point.v = which == 0 ? uv.y : uv.y - uv.x;
     complete_by_angle(s, from, 0.5f / t.solid_angle());
-    return s;
   }
 
   World still_;

@@ -7,7 +7,7 @@ namespace etendue {
 
 /// Sampling by solid angle pays only near a luminaire. Further away, where area / distance^2 is below this [sr], the
 /// factor cos / distance^2 hardly varies over the luminaire and sampling by area is as good and five times faster.
-inline constexpr float worthwhile_solid_angle = 0.1f;
+inline constexpr float worthwhile_solid_angle = 0.5f;
 /// Outside these [sr] the formulas below lose too many digits (flat against the luminaire's plane, or all around).
 inline constexpr float least_solid_angle = 0.01f, greatest_solid_angle = 6.2f;
 

@@ -24,11 +24,14 @@ class PathTracer final : public Renderer {
   static void describe(Description<PathTracer>& d) {
     d.summary("Unidirectional path tracing with next event estimation, multiple importance sampling and Russian roulette.",
               "Kajiya 1986; Veach 1997, chapters 9 and 10")
-        .member<&PathTracer::max_depth>("max_depth", "1", "longest path, in segments: 1 shows luminaires only, 2 adds direct light",
-                                        at_least(1))
-        .member<&PathTracer::roulette_depth>("roulette_depth", "1", "segments before Russian roulette may end a path", at_least(1))
-        .member<&PathTracer::heuristic>("heuristic", "", "how the two ways of finding light are weighted", choices("balance", "power"))
-        .member<&PathTracer::next_event>("next_event", "", "whether luminaires are sampled; without, paths must meet them by chance");
+        .member<&PathTracer::max_depth>("max_depth", "1",
+                                        "longest path, in segments: 1 shows luminaires only, 2 adds direct light", at_least(1))
+        .member<&PathTracer::roulette_depth>("roulette_depth", "1", "segments before Russian roulette may end a path",
+                                             at_least(1))
+        .member<&PathTracer::heuristic>("heuristic", "", "how the two ways of finding light are weighted",
+                                        choices("balance", "power"))
+        .member<&PathTracer::next_event>("next_event", "",
+                                         "whether luminaires are sampled; without, paths must meet them by chance");
   }
 
   std::string limits() const override {
@@ -56,9 +59,10 @@ class PathTracer final : public Renderer {
       return throughput * emitted * heuristic_weight(heuristic, direction_density, light_density);
     };
 
+    const bool one_luminaire = scene.luminaires().size() == 1;
+    Hit hit;
+    SurfacePoint point;
     for (int depth = 1;; ++depth) {
-      Hit hit;
-      SurfacePoint point;
       if (!scene.nearest(ray, hit)) {
         for (const SceneObject* far : scene.infinite_luminaires()) {
           far->surface_point(ray, hit, point);
@@ -92,20 +96,21 @@ class PathTracer final : public Renderer {
       if (first) note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths);
       if (!scatter || depth >= max_depth) break;
 
+      // All of the bounce's numbers at once: they depend on nothing, so the processor finds them while it does the rest.
+      SampleStream& random = sample.random;
+      const float light_choice = one_luminaire ? (random.skip(), 0.0f) : random.next();
+      const Point2 light_point = random.next_pair();
+      const float lobe_choice = scatter->has_choice() ? random.next() : (random.skip(), 0.0f);
+      const Point2 scatter_direction = random.next_pair();
+
       if (next_event && scatter->has(smooth_lobes)) {
         const Spectrum light = throughput * sample_direct_light(scene, *light_sampler, point, *scatter, out, sample.wavelengths,
-                                                                sample.random, heuristic);
+                                                                light_choice, light_point, heuristic);
         radiance += light;
         record_direct(sample.record, light);
       }
 
-      float choice = 0;
-      if (scatter->has_choice())
-        choice = sample.random.next();
-      else
-        sample.random.skip();
-      const Point2 u = sample.random.next_pair();
-      const std::optional<ScatterSample> next = scatter->sample(out, choice, u);
+      const std::optional<ScatterSample> next = scatter->sample(out, lobe_choice, scatter_direction);
       if (!next) break;
       throughput *= next->weight;
       eta_squared *= next->eta * next->eta;

@@ -54,8 +54,11 @@ std::uint32_t shuffled(std::uint32_t sample, std::uint64_t hash) {
   return reverse(permute_reversed(reverse(sample), std::uint32_t(hash)));
 }
 
+/// The key is well mixed already: one multiplication, folded, spreads the dimension over all bits.
 std::uint64_t hash(const SampleKey& key, std::uint32_t dimension) {
-  return mix_bits(key.pixel ^ ((std::uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull));
+  __extension__ using Wide = unsigned __int128;
+  const Wide product = Wide(key.pixel ^ ((std::uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull)) * 0xd6e8feb86659fd93ull;
+  return std::uint64_t(product >> 64) ^ std::uint64_t(product);
 }
 
 class SobolSampler final : public Sampler {

@@ -2,7 +2,6 @@
 
 #include "etendue/scene.h"
 #include "etendue/shader.h"
-#include "objects/triangle_test.h"
 
 #if defined(__AVX512F__)
 #include <immintrin.h>
@@ -32,32 +31,17 @@ inline bool any_of(const Ints& mask) {
 #endif
 }
 
-/// 1/x to about 2e-7. A division of all lanes takes as long as the rest of the test.
-inline Floats reciprocal(const Floats& x) {
-#if defined(__AVX512F__)
-  const Floats y = std::bit_cast<Floats>(_mm512_rcp14_ps(std::bit_cast<__m512>(x)));
-  return y * (2 - x * y);  // one step of Newton's method
-#else
-  return 1 / x;
-#endif
-}
-
 /// The lane of the smallest value, the first of several.
 inline int lowest_lane(const Floats& x) {
-  Ints lane;
-  for (int i = 0; i < lanes; ++i) lane[i] = i;
-  Floats lowest = x;
-  for (int step = lanes / 2; step > 0; step /= 2) {
-    const Floats other = __builtin_shuffle(lowest, lane ^ step);
-    lowest = other < lowest ? other : lowest;
-  }
 #if defined(__AVX512F__)
-  const __m512i equal = std::bit_cast<__m512i>(x == lowest);
-  return std::countr_zero(unsigned(_mm512_test_epi32_mask(equal, equal)));
+  const __m512 values = std::bit_cast<__m512>(x);
+  const __m512 lowest = _mm512_set1_ps(_mm512_reduce_min_ps(values));
+  return std::countr_zero(unsigned(_mm512_cmp_ps_mask(values, lowest, _CMP_EQ_OQ)));
 #else
-  for (int i = 0; i < lanes; ++i)
-    if (x[i] == lowest[i]) return i;
-  return 0;
+  int lane = 0;
+  for (int i = 1; i < lanes; ++i)
+    if (x[i] < x[lane]) lane = i;
+  return lane;
 #endif
 }
 
@@ -80,13 +64,13 @@ struct WideRay {
 };
 
 /// As in objects/triangle_test.h, for all lanes. Returns which are hit with t in (0, limit).
-inline Ints test(const Block& b, const WideRay& r, const Floats& limit, Floats& t) {
+inline Ints test(const Block& b, const WideRay& r, const Floats& limit, Floats& t, Floats& u, Floats& v) {
   const Floats cx = b.vx - r.ox, cy = b.vy - r.oy, cz = b.vz - r.oz;
   const Floats rx = cy * r.dz - cz * r.dy, ry = cz * r.dx - cx * r.dz, rz = cx * r.dy - cy * r.dx;
-  const Floats inverse = reciprocal(b.nx * r.dx + b.ny * r.dy + b.nz * r.dz);
+  const Floats inverse = 1 / (b.nx * r.dx + b.ny * r.dy + b.nz * r.dz);
   t = (b.nx * cx + b.ny * cy + b.nz * cz) * inverse;
-  const Floats u = (rx * b.bx + ry * b.by + rz * b.bz) * inverse;
-  const Floats v = -(rx * b.ax + ry * b.ay + rz * b.az) * inverse;
+  u = (rx * b.bx + ry * b.by + rz * b.bz) * inverse;
+  v = -(rx * b.ax + ry * b.ay + rz * b.az) * inverse;
   return (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0) & (t < limit);
 }
 
@@ -106,20 +90,24 @@ class BruteForceScene final : public Scene {
     Ray rest = ray;
     if (!blocks_.empty()) {
       const WideRay wide(ray);
-      Floats best = Floats{} + ray.maximum;
+      Floats best = Floats{} + ray.maximum, best_u{}, best_v{};
       Ints where = Ints{} - 1;
       for (size_t i = 0; i < blocks_.size(); ++i) {
-        Floats t;
-        const Ints mask = test(blocks_[i], wide, best, t);
+        Floats t, u, v;
+        const Ints mask = test(blocks_[i], wide, best, t, u, v);
         best = mask ? t : best;
+        best_u = mask ? u : best_u;
+        best_v = mask ? v : best_v;
         where = mask ? Ints{} + std::int32_t(i) : where;
       }
       const int lane = lowest_lane(best);
       if (where[lane] >= 0) {
         const Slot& slot = slots_[size_t(where[lane]) * lanes + size_t(lane)];
-        slot.complete(ray, hit);
+        hit.distance = best[lane];
         hit.object = slot.object;
         hit.primitive = slot.primitive;
+        hit.u = best_u[lane];
+        hit.v = best_v[lane];
         hit.depth = 0;
         rest.maximum = hit.distance;
         found = true;
@@ -141,8 +129,8 @@ class BruteForceScene final : public Scene {
       const WideRay wide(ray);
       const Floats limit = Floats{} + ray.maximum;
       for (const Block& block : blocks_) {
-        Floats t;
-        if (any_of(test(block, wide, limit, t))) return true;
+        Floats t, u, v;
+        if (any_of(test(block, wide, limit, t, u, v))) return true;
       }
     }
     if (!others_.empty()) {
@@ -175,17 +163,6 @@ class BruteForceScene final : public Scene {
   struct Slot {
     const SceneObject* object;
     std::uint32_t primitive;
-    Point3 corner;
-    Vector3 e1, e2, n;
-
-    /// Distance and coordinates of a hit that was found, once more and in full precision.
-    void complete(const Ray& ray, Hit& hit) const {
-      TriangleHit h;
-      intersect_triangle(ray, corner, e1, e2, n, h);
-      hit.distance = h.t;
-      hit.u = h.u;
-      hit.v = h.v;
-    }
   };
   struct Other {
     const SceneObject* object;
@@ -215,9 +192,9 @@ class BruteForceScene final : public Scene {
   void add(const SceneObject* object, std::uint32_t primitive, const Point3& p, const Point3& q, const Point3& r) {
     const size_t lane = slots_.size() % lanes;
     if (lane == 0) blocks_.emplace_back();
+    slots_.push_back({object, primitive});
     Block& b = blocks_.back();
     const Vector3 e1 = q - p, e2 = r - p, n = cross(e1, e2);
-    slots_.push_back({object, primitive, p, e1, e2, n});
     b.vx[lane] = p.x;
     b.vy[lane] = p.y;
     b.vz[lane] = p.z;

@@ -14,16 +14,11 @@ namespace etendue {
 /// chosen with probability P and a point on it with solid-angle density p(in), so the estimate is
 ///     w f L_e V |cos| / (P p),
 /// with the multiple-importance weight w of P p against the density with which the shader itself gives `in`.
-/// `shader_sampling` says whether that second strategy is used at all; if not, w = 1.
-inline Spectrum sample_direct_light(const Scene& scene, const LightSampler& lights, const SurfacePoint& point, const Scatter& scatter,
-                                    const Vector3& out, const Wavelengths& wavelengths, SampleStream& random, Heuristic heuristic,
-                                    bool shader_sampling = true) {
-  float choice = 0;
-  if (scene.luminaires().size() > 1)
-    choice = random.next();
-  else
-    random.skip();
-  const Point2 u = random.next_pair();
+/// `shader_sampling` says whether that second strategy is used at all; if not, w = 1. `choice` picks the luminaire, `u` the
+/// point on it.
+inline Spectrum sample_direct_light(const Scene& scene, const LightSampler& lights, const SurfacePoint& point,
+                                    const Scatter& scatter, const Vector3& out, const Wavelengths& wavelengths, float choice,
+                                    Point2 u, Heuristic heuristic, bool shader_sampling = true) {
   const LightChoice light = lights.choose(point.position, point.normal, choice);
   if (!light.luminaire) return {};
   const SurfaceSample s = light.luminaire->sample_visible(point.position, u, point.time);
@@ -39,8 +34,8 @@ inline Spectrum sample_direct_light(const Scene& scene, const LightSampler& ligh
 }
 
 /// The solid-angle density [1/sr] with which the above would have given a point of a luminaire, seen from `from`.
-inline float direct_light_density(const LightSampler& lights, const Point3& from, const Normal3& normal, const Vector3& direction,
-                                  const SurfacePoint& on_luminaire) {
+inline float direct_light_density(const LightSampler& lights, const Point3& from, const Normal3& normal,
+                                  const Vector3& direction, const SurfacePoint& on_luminaire) {
   const SceneObject& luminaire = *on_luminaire.object;
   const float probability = lights.probability(from, normal, luminaire);
   return probability > 0 ? probability * luminaire.visible_density(from, direction, on_luminaire) : 0;

@@ -36,7 +36,8 @@ void record_surface_slowly(PathRecord& record, const SurfacePoint& p, const Spec
   record.vertices.push_back(std::move(v));
 }
 
-void record_escape_slowly(PathRecord& record, const SceneObject& far, const Ray& ray, const Spectrum& throughput, const Spectrum& light) {
+void record_escape_slowly(PathRecord& record, const SceneObject& far, const Ray& ray, const Spectrum& throughput,
+                          const Spectrum& light) {
   PathRecord::Vertex v;
   v.kind = "escaped";
   v.object = name_of(far);
@@ -59,7 +60,8 @@ void note_features(Features& features, const Scene& scene, const SurfacePoint& p
   features.normal = Vector3(dot(point.shading_normal, out) < 0 ? -point.shading_normal : point.shading_normal);
   features.depth = hit.distance;
   const SceneObject* top = hit.depth > 0 ? hit.scenes[hit.depth - 1] : hit.object;
-  const auto place = std::find_if(scene.objects.begin(), scene.objects.end(), [&](const Ref<SceneObject>& o) { return o.get() == top; });
+  const auto place =
+      std::find_if(scene.objects.begin(), scene.objects.end(), [&](const Ref<SceneObject>& o) { return o.get() == top; });
   features.object = int(place - scene.objects.begin()) + 1;
   if (!scatter) return;
   static const RgbSpace& srgb = rgb_space("srgb");

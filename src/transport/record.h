@@ -15,7 +15,8 @@ inline void record_surface(PathRecord* r, const SurfacePoint& p, const Spectrum&
   if (r) [[unlikely]]
     record_surface_slowly(*r, p, throughput);
 }
-inline void record_escape(PathRecord* r, const SceneObject& o, const Ray& ray, const Spectrum& throughput, const Spectrum& light) {
+inline void record_escape(PathRecord* r, const SceneObject& o, const Ray& ray, const Spectrum& throughput,
+                          const Spectrum& light) {
   if (r) [[unlikely]]
     record_escape_slowly(*r, o, ray, throughput, light);
 }
@@ -36,6 +37,7 @@ inline void record_scatter(PathRecord* r, const ScatterSample& s) {
 std::string lobe_name(Lobe);
 
 /// The auxiliary layers' values at the first surface of a camera path; scatter may be null (black).
-void note_features(Features&, const Scene&, const SurfacePoint&, const Hit&, const Scatter* scatter, const Vector3& out, const Wavelengths&);
+void note_features(Features&, const Scene&, const SurfacePoint&, const Hit&, const Scatter* scatter, const Vector3& out,
+                   const Wavelengths&);
 
 }  // namespace etendue
