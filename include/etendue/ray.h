@@ -59,26 +59,34 @@ struct SurfacePoint {
   /// A ray that leaves the surface without meeting it again: the origin is moved along the normal beyond the error.
   Ray leave(const Vector3& direction) const {
     Ray ray;
+    leave(direction, ray);
+    return ray;
+  }
+  /// The same into a ray that is there already (a copy of what was just written would wait for it).
+  void leave(const Vector3& direction, Ray& ray) const {
     ray.origin = exit(direction);
     ray.direction = direction;
+    ray.maximum = infinity;
     ray.time = time;
-    return ray;
   }
   /// Where such a ray begins.
   Point3 exit(const Vector3& direction) const {
     const float side = dot(normal, direction) < 0 ? -error : error;
     return position + side * Vector3(normal);
   }
-  /// A ray to another point; directions are not normalised: the other point is at t = 1, and the ray ends just before.
+  /// A ray to another point, of unit direction, that ends just before it.
   Ray towards(const Point3& p, float error_there) const {
     Ray ray;
+    towards(p, error_there, ray);
+    return ray;
+  }
+  void towards(const Point3& p, float error_there, Ray& ray) const {
     ray.origin = exit(p - position);
-    ray.direction = p - ray.origin;
-    const float reach = length(ray.direction);
-    ray.direction = ray.direction / reach;
+    const Vector3 d = p - ray.origin;
+    const float reach = length(d);
+    ray.direction = d / reach;
     ray.maximum = reach * (1 - 1e-4f) - 2 * error_there;
     ray.time = time;
-    return ray;
   }
 };
 

@@ -39,7 +39,7 @@ enum CameraDimension : std::uint32_t {
 /// range as well. Depends on nothing but the picture's size and the pass, so results do not depend on threads.
 struct Division {
   PixelArea area;
-  int tile = 32, columns = 1, rows = 1;
+  int tile = 16, columns = 1, rows = 1;
   std::uint32_t begin = 0, end = 1, chunk = 1, chunks = 1;
 
   Division(const PixelArea& a, const Pass& pass) : area(a), begin(pass.begin), end(pass.end) {
@@ -84,15 +84,15 @@ Renderer::CameraSample Renderer::camera_sample(const RenderContext& context, int
                                                Features* features, PathRecord* record) const {
   SampleStream random(*sampler, SampleKey(context.seed, x, y, n));
   const SampleKey& key = random.key();
-  CameraSample s;
   const Point2 within = sampler->pair(key, film_dimension);
-  s.film = {float(x) + within.x, float(y) + within.y};
+  CameraSample s{{float(x) + within.x, float(y) + within.y},
+                 {},
+                 context.wavelengths.sample(key, sampler->number(key, wavelength_dimension))};
   const Point2 lens = sampler->pair(key, lens_dimension);
   const Camera& camera = context.camera;
   const float time = camera.shutter_close > camera.shutter_open
                          ? lerp(sampler->number(key, time_dimension), camera.shutter_open, camera.shutter_close)
                          : camera.shutter_open;
-  s.wavelengths = context.wavelengths.sample(key, sampler->number(key, wavelength_dimension));
   random.jump(path_dimension);
 
   SampleContext sample{s.wavelengths, random, arena, features, record};

@@ -21,6 +21,9 @@ Vector3 unit_normal(const Vector3& n, float& inverse_length) {
   return l * m;
 }
 
+/// Up to this many triangles have their planes remembered: 1 MB, and a tenth of a path's time.
+constexpr size_t remembered_planes = 1 << 16;
+
 /// Up to this many triangles are tested one by one when a scene does not traverse them itself.
 constexpr size_t few = 8;
 
@@ -52,6 +55,13 @@ void TriangleObject::adopt(MeshData mesh) {
     stored_bounds_.add(a);
     stored_bounds_.add(b);
     stored_bounds_.add(c);
+  }
+  planes_.clear();
+  if (!mesh_.triangles.empty() && mesh_.triangles.size() <= remembered_planes) {
+    for (const auto& t : mesh_.triangles) {
+      const Point3& p = mesh_.positions[t[0]];
+      planes_.push_back(plane_of(p, mesh_.positions[t[1]] - p, mesh_.positions[t[2]] - p));
+    }
   }
   mesh_.positions.push_back({});
   bounds_ = transform.animated() ? swept(transform, stored_bounds_) : stored_bounds_;
@@ -114,25 +124,31 @@ bool TriangleObject::occludes(const Ray& ray) const {
   return intersect(ray, hit);
 }
 
+// The error says how far a point found on the triangle may be from where an intersection test sees the plane, along the
+// normal N/|N|. With E = |e1| + |e2| by axis and P = |v0| + E: the point itself and moving it off the surface round its
+// coordinates, of at most P (3 roundings); interpolation, v0 - O and the product with N round terms of at most E (8 of
+// them); and N, rounded by up to 3 roundings of X_i = |e1_j e2_k| + |e1_k e2_j|, turns the plane about v0, seen at a
+// distance of at most E. For slivers this last bound exceeds what is useful, and is cut off.
+TriangleObject::Plane TriangleObject::plane_of(const Point3& p0, const Vector3& e1, const Vector3& e2) {
+  float inverse_length = 0;
+  Plane plane;
+  plane.normal = Normal3(unit_normal(cross(e1, e2), inverse_length));
+  const Vector3 a = abs(e1), b = abs(e2), extent = a + b;
+  const Vector3 x{a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
+  const Vector3 furthest = Vector3{std::abs(p0.x), std::abs(p0.y), std::abs(p0.z)} + extent;
+  plane.error = along(plane.normal, rounding_bound(3) * furthest + rounding_bound(8) * extent) +
+                std::min(rounding_bound(3) * inverse_length * dot(x, extent), 1e-3f * (extent.x + extent.y + extent.z));
+  return plane;
+}
+
 void TriangleObject::fill(std::uint32_t primitive, float u, float v, float time, SurfacePoint& p) const {
   const auto& t = mesh_.triangles[primitive];
   const Point3& p0 = mesh_.positions[t[0]];
   const Vector3 e1 = mesh_.positions[t[1]] - p0, e2 = mesh_.positions[t[2]] - p0;
-  const Vector3 n = cross(e1, e2);
-  float inverse_length = 0;
-  p.normal = Normal3(unit_normal(n, inverse_length));
+  const Plane plane = planes_.empty() ? plane_of(p0, e1, e2) : planes_[primitive];
+  p.normal = plane.normal;
+  p.error = plane.error;
   p.position = p0 + (u * e1 + v * e2);
-
-  // How far the point may be from where an intersection test sees the plane, along the normal N/|N|. With E = |e1| + |e2|
-  // by axis: the point itself and moving it off the surface round its coordinates (3 roundings of p); interpolation,
-  // v0 - O and the product with N round terms of at most E (8 of them); and N, rounded by up to 3 roundings of
-  // X_i = |e1_j e2_k| + |e1_k e2_j|, turns the plane about v0, seen at a distance of at most E. For slivers this last
-  // bound exceeds what is useful, and is cut off.
-  const Vector3 a = abs(e1), b = abs(e2), extent = a + b;
-  const Vector3 x{a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
-  const Vector3 here{std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)};
-  p.error = along(p.normal, rounding_bound(3) * here + rounding_bound(8) * extent) +
-            std::min(rounding_bound(3) * inverse_length * dot(x, extent), 1e-3f * (extent.x + extent.y + extent.z));
 
   const float w = 1 - u - v;
   if (mesh_.normals.empty()) {

@@ -51,7 +51,14 @@ class TriangleObject : public SceneObject {
   const EmbreeTriangles& accelerator() const;
   TriangleView view() const { return {{mesh_.positions.data(), vertices_}, mesh_.triangles}; }
 
-  MeshData mesh_;  // its positions have one more at the end: padding, which Embree asks for
+  struct Plane {
+    Normal3 normal;
+    float error = 0;  // see SurfacePoint
+  };
+  static Plane plane_of(const Point3&, const Vector3& e1, const Vector3& e2);
+
+  std::vector<Plane> planes_;  // in the stored coordinates; none for large meshes
+  MeshData mesh_;              // its positions have one more at the end: padding, which Embree asks for
   size_t vertices_ = 0;
   double area_ = 0;  // in the stored coordinates [m^2]
   Bounds3 bounds_, stored_bounds_;

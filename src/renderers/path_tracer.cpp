@@ -62,8 +62,19 @@ class PathTracer final : public Renderer {
     const bool one_luminaire = scene.luminaires().size() == 1;
     Hit hit;
     SurfacePoint point;
+    DirectLight direct;
+    bool awaits_light = false, goes_on = true;
     for (int depth = 1;; ++depth) {
-      if (!scene.nearest(ray, hit)) {
+      // The last vertex's shadow ray and the ray on from it need nothing of each other: the processor traces both at once.
+      const bool lit = awaits_light && !scene.any(direct.shadow);
+      const bool found = goes_on && scene.nearest(ray, hit);
+      if (lit) {
+        radiance += direct.light;
+        record_direct(sample.record, direct.light);
+      }
+      awaits_light = false;
+      if (!goes_on) break;
+      if (!found) {
         for (const SceneObject* far : scene.infinite_luminaires()) {
           far->surface_point(ray, hit, point);
           const Spectrum light = emitted_at(point);
@@ -104,14 +115,14 @@ class PathTracer final : public Renderer {
       const Point2 scatter_direction = random.next_pair();
 
       if (next_event && scatter->has(smooth_lobes)) {
-        const Spectrum light = throughput * sample_direct_light(scene, *light_sampler, point, *scatter, out, sample.wavelengths,
-                                                                light_choice, light_point, heuristic);
-        radiance += light;
-        record_direct(sample.record, light);
+        awaits_light = propose_direct_light(*light_sampler, point, *scatter, out, sample.wavelengths, light_choice, light_point,
+                                            heuristic, direct);
+        if (awaits_light) direct.light *= throughput;
       }
 
+      goes_on = false;
       const std::optional<ScatterSample> next = scatter->sample(out, lobe_choice, scatter_direction);
-      if (!next) break;
+      if (!next) continue;
       throughput *= next->weight;
       eta_squared *= next->eta * next->eta;
       if (next->dispersive) throughput *= sample.wavelengths.drop_secondary();
@@ -120,10 +131,11 @@ class PathTracer final : public Renderer {
       // The factor undoes the change of radiance by refraction, which comes back when the path leaves the medium.
       if (depth >= roulette_depth) {
         const float survival = std::min(0.95f, throughput.maximum() * eta_squared);
-        if (sample.random.next() >= survival) break;
+        if (random.next() >= survival) continue;
         throughput /= survival;
       }
-      if (throughput.black()) break;
+      if (throughput.black()) continue;
+      goes_on = true;
 
       if (track_media && next->transmitted()) cross_boundary(media, *point.object, point.normal, next->direction);
       from = point.position;

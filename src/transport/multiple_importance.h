@@ -18,4 +18,11 @@ inline float heuristic_weight(Heuristic heuristic, float p, float q) {
   return 1 / (1 + r * r);
 }
 
+/// heuristic_weight(p, q) / p: what a sample of the strategy with density p is multiplied by. One division, in double so
+/// that squares of large densities stay finite.
+inline float weight_over_density(Heuristic heuristic, float p, float q) {
+  const double a = p, b = q;
+  return float(heuristic == Heuristic::balance ? 1 / (a + b) : a / (a * a + b * b));
+}
+
 }  // namespace etendue
