@@ -193,18 +193,18 @@ TEST(LightSampler, ProbabilitiesSumToOneAndAreKept) {
     std::vector<double> expected, counts(3);
     constexpr int count = 10000;
     for (const SceneObject* l : lights.scene->luminaires()) {
-      sum += double(sampler->probability(*l));
+      sum += double(sampler->probability(*l)) / 2 + double(sampler->probability({}, {}, *l)) / 2;
       expected.push_back(count * double(sampler->probability({}, {}, *l)));
     }
     EXPECT_NEAR(sum, 1, 1e-6);
     for (int i = 0; i < count; ++i) {
       const LightChoice c = sampler->choose({}, {}, (float(i) + 0.5f) / count);
       ASSERT_NE(c.luminaire, nullptr);
-      EXPECT_EQ(c.probability, sampler->probability(*c.luminaire));
+      EXPECT_EQ(c.probability, sampler->probability({}, {}, *c.luminaire));
       ++counts[size_t(c.luminaire->luminaire_index)];
     }
-    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(counts[i], expected[i], 1.01) << name;
-    EXPECT_EQ(sampler->probability(*lights.scene->objects[3]), 0);  // no luminaire
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(counts[i], expected[i], 2.02) << name;  // two ranges of u at most
+    EXPECT_EQ(sampler->probability(*lights.scene->objects[3]), 0);                     // no luminaire
     EXPECT_NE(sampler->choose(one_minus_epsilon).luminaire, nullptr);
   }
 }
@@ -214,7 +214,11 @@ TEST(LightSampler, ByPower) {
   const Ref<LightSampler> sampler = create<LightSampler>("PowerLightSampler");
   sampler->build(*lights.scene);
   const double wanted[] = {0.1, 0.6, 0.3};
-  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(sampler->probability(*lights.scene->luminaires()[i]), wanted[i], 1e-3);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(sampler->probability(*lights.scene->luminaires()[i]), wanted[i], 1e-3);
+    // For a point, half of the choices are made regardless of power.
+    EXPECT_NEAR(sampler->probability({}, {}, *lights.scene->luminaires()[i]), wanted[i] / 2 + 1 / 6.0, 1e-3);
+  }
 }
 
 }  // namespace

@@ -48,10 +48,10 @@ std::string_view name(Kind k) {
 std::string Range::text() const {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
   if (has_low && has_high)
-    return open_low ? fmt::format("more than {:.9g} and at most {:.9g}", low, high)
-                    : fmt::format("from {:.9g} to {:.9g}", low, high);
-  if (has_low) return (open_low ? "more than " : "at least ") + fmt::format("{:.9g}", low);
-  if (has_high) return fmt::format("at most {:.9g}", high);
+    return open_low ? fmt::format("more than {:.12g} and at most {:.12g}", low, high)
+                    : fmt::format("from {:.12g} to {:.12g}", low, high);
+  if (has_low) return (open_low ? "more than " : "at least ") + fmt::format("{:.12g}", low);
+  if (has_high) return fmt::format("at most {:.12g}", high);
   return "any number";
 }
 

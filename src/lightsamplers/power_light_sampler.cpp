@@ -8,8 +8,13 @@ namespace {
 class PowerLightSampler final : public LightSampler {
  public:
   static void describe(Description<PowerLightSampler>& d) {
-    d.summary("Chooses luminaires in proportion to the power they emit.",
-              "Shirley, Wang & Zimmerman 1996, Monte Carlo techniques for direct lighting calculations");
+    d.summary("Chooses luminaires in proportion to the power they emit, mixed with choosing all alike.",
+              "Shirley, Wang & Zimmerman 1996, Monte Carlo techniques for direct lighting calculations")
+        .member<&PowerLightSampler::uniform>(
+            "uniform", "1",
+            "share of choices made without regard to power, so that a lamp nearby is not starved by "
+            "a sky that is far stronger in all",
+            range(0, 1));
   }
 
   void build(const Scene& scene) override {
@@ -35,9 +40,21 @@ class PowerLightSampler final : public LightSampler {
     }
   }
 
-  LightChoice choose(const Point3&, const Normal3&, float u) const override { return choose(u); }
+  // P = uniform / n + (1 - uniform) P_power.
+  LightChoice choose(const Point3&, const Normal3&, float u) const override {
+    if (luminaires_.size() < 2) return choose(u);
+    const SceneObject* luminaire = nullptr;
+    if (u < uniform) {
+      const size_t i = size_t(u / uniform * float(luminaires_.size()));
+      luminaire = luminaires_[std::min(i, luminaires_.size() - 1)];
+    } else {
+      luminaire = choose(std::min((u - uniform) / (1 - uniform), one_minus_epsilon)).luminaire;
+    }
+    return {luminaire, mixed(probability(*luminaire))};
+  }
   float probability(const Point3&, const Normal3&, const SceneObject& luminaire) const override {
-    return probability(luminaire);
+    const float by_power = probability(luminaire);
+    return by_power > 0 && luminaires_.size() > 1 ? mixed(by_power) : by_power;
   }
   LightChoice choose(float u) const override {
     if (luminaires_.empty()) return {};
@@ -50,7 +67,11 @@ class PowerLightSampler final : public LightSampler {
     return index < luminaires_.size() && luminaires_[index] == &luminaire ? probabilities_[index] : 0;
   }
 
+  float uniform = 0.5f;
+
  private:
+  float mixed(float by_power) const { return uniform / float(luminaires_.size()) + (1 - uniform) * by_power; }
+
   /// Power [W] over the visible range: the mean over 64 wavelengths at equal steps, times the range.
   static double power(const SceneObject& luminaire, float scene_radius) {
     constexpr int sets = 16;
