@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "etendue/registry.h"
 
@@ -53,6 +55,16 @@ Job { camera: PerspectiveCamera { from: [0, 0, -4], to: [0, 0, 0] }, image: Imag
   EXPECT_NE(output.find("purity"), std::string::npos) << output;
   EXPECT_EQ(run(program + " render " + f + "/gold.etd --set 'scene.objects[0].shader.purity=2'", &output), 2);
   EXPECT_NE(output.find("must be from 0 to 1"), std::string::npos) << output;
+}
+
+TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
+  const auto text = [](const char* path) {
+    std::ifstream file(path);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string listing = text(ETENDUE_SOURCE_DIR "/tests/plugin/gold.cpp");
+  EXPECT_NE(text(ETENDUE_SOURCE_DIR "/docs/write-a-shader.md").find("```cpp\n" + listing + "```"), std::string::npos);
+  EXPECT_LT(std::count(listing.begin(), listing.end(), '\n'), 60);
 }
 
 TEST_F(Plugin, RefusesWhatIsNone) {
