@@ -36,8 +36,8 @@ class Plugin : public ::testing::Test {
 TEST_F(Plugin, BuildsOutOfTreeAndRenders) {
   const std::string f = folder.string(), source = ETENDUE_SOURCE_DIR "/tests/plugin";
   ASSERT_EQ(run("cmake --install " ETENDUE_BINARY_DIR " --prefix " + f + "/installed"), 0);
-  ASSERT_EQ(run("cmake -S " + source + " -B " + f + "/build -DCMAKE_PREFIX_PATH=" + f + "/installed && cmake --build " + f +
-                "/build"),
+  ASSERT_EQ(run("cmake -G Ninja -S " + source + " -B " + f + "/build -DCMAKE_PREFIX_PATH=" + f +
+                "/installed && cmake --build " + f + "/build"),
             0);
   const std::string library = f + "/build/libgold.so";
   ASSERT_TRUE(fs::exists(library));
