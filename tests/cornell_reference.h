@@ -1,6 +1,6 @@
 #pragma once
 // Means of X, Y and Z over 32 x 32 pixel tiles of the Cornell box (cbox-spectral.xml of mitsuba-data, 256 x 256, depth 6),
-// rendered by Mitsuba 3 (PyPI, llvm_ad_spectral) with 12800 samples a pixel, and scaled by 106.7503/106.8569 for its
+// rendered by Mitsuba 3 (PyPI, llvm_ad_spectral) with 14848 samples a pixel, and scaled by 106.7503/106.8569 for its
 // rounded integral of ybar
 
 namespace etendue::test {
