@@ -65,7 +65,7 @@ struct Member {
 class ClassInfo {
  public:
   std::string name;
-  const ClassInfo* parent = nullptr;  ///< null for Component itself
+  const ClassInfo* parent = nullptr;  ///< null for interfaces that stand at the top
   std::string summary, source;
   std::vector<Member> members;           ///< inherited ones first
   Ref<Component> (*create)() = nullptr;  ///< null: abstract
@@ -111,7 +111,6 @@ Value get(const Component&, std::string_view member);
 /// Checks type, unit, range and choices and sets a member; the one way by which anything is ever set. Numbers without a
 /// unit are in the member's unit. Throws Error with value.location.
 void set(Component&, std::string_view member, const Value&);
-/// The value as the member would store it, by setting it on a scratch object; throws as `set` does.
 
 /// A deep copy: every member copied, shared parts shared in the copy as well.
 Ref<Component> copy(const Component&);
