@@ -258,7 +258,7 @@ TEST(EnvironmentEmission, ConstantImageIsSampledUniformly) {
   test::TestSquare object;
   object.reference();
   const Wavelengths w = test::wavelengths(550);
-  EXPECT_NEAR(e->power(object, w)[0] / seen(*e, {0, 0, 1}), 4 * M_PI * M_PI, 1e-3);
+  EXPECT_NEAR(e->power(object, w)[0] / seen(*e, {0, 0, 1}), M_PI * double(object.area(0)), 1e-3);
 }
 
 TEST(EnvironmentEmission, OfAMap) {
@@ -268,14 +268,14 @@ TEST(EnvironmentEmission, OfAMap) {
   EXPECT_NEAR(seen(*plain, {0, 1, 0}), 6, 1e-6f);
   test::TestSquare object;
   object.reference();
-  EXPECT_NEAR(plain->power(object, test::wavelengths())[0], 6 * 4 * M_PI * M_PI, 1e-3);
+  EXPECT_NEAR(plain->power(object, test::wavelengths())[0], 6 * M_PI * double(object.area(0)), 1e-3);
   // Maps see (u, v) of the direction, v upwards: upper half dark, lower half bright.
   const Ref<ObjectMap> halves =
       create<ObjectMap>("CheckerMap", {{"first", 4.0}, {"second", 1.0}, {"repeat", std::vector<double>{1, 2, 1}}});
   const Ref<EmissionShader> varied = create<EmissionShader>("EnvironmentEmission", {{"radiance", halves}});
   EXPECT_NEAR(seen(*varied, normalize(Vector3{1, 0.2f, 0.3f})), 1, 1e-6f);
   EXPECT_NEAR(seen(*varied, normalize(Vector3{1, -0.2f, 0.3f})), 4, 1e-6f);
-  EXPECT_NEAR(varied->power(object, test::wavelengths())[0], 2.5 * 4 * M_PI * M_PI, 0.01);
+  EXPECT_NEAR(varied->power(object, test::wavelengths())[0], 2.5 * M_PI * double(object.area(0)), 0.01);
 }
 
 TEST(EnvironmentEmission, RefusesBadFiles) {

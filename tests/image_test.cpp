@@ -228,7 +228,7 @@ TEST(ImageBuffer, BadSamplesAreCountedLocatedAndBlack) {
     Wavelengths single = wavelengths;
     single.drop_secondary();
     tile.contribute({5.5f, 6.5f}, 5, 6, 9, partly, single);  // nor this: the value is of a dropped wavelength
-    tile.splat({2.5f, 3.5f}, Spectrum(nan), wavelengths);
+    tile.splat({2.5f, 3.5f}, 4, 5, 11, Spectrum(nan), wavelengths, 2);
     buffer->merge(tile);
     EXPECT_EQ(buffer->bad_samples(), 6u);
     const auto& bad = buffer->first_bad_samples();
@@ -240,7 +240,8 @@ TEST(ImageBuffer, BadSamplesAreCountedLocatedAndBlack) {
     EXPECT_EQ(bad[1].kind, BadSample::Kind::infinite);
     EXPECT_EQ(bad[2].kind, BadSample::Kind::negative);
     EXPECT_EQ(bad[3].x, 6);
-    EXPECT_EQ(bad[5].sample, BadSample::no_sample);
+    EXPECT_EQ(bad[5].sample, 11u);
+    EXPECT_EQ(bad[5].y, 5);
     const Image image = buffer->develop();
     for (const double v : image.values) EXPECT_TRUE(std::isfinite(v) && v >= 0);
     EXPECT_EQ(image.at(4, 2, 1), 0);
@@ -267,10 +268,9 @@ TEST(ImageBuffer, SplatsOfAnEvenFilmAreEvenUpToTheEdge) {
     for (int j = 0; j < 5 * n; ++j)
       for (int i = 0; i < 6 * n; ++i) {
         tile.count_path();
-        tile.splat({(float(i) + 0.5f) / n, (float(j) + 0.5f) / n}, Spectrum(2.0f), wavelengths);
+        tile.splat({(float(i) + 0.5f) / n, (float(j) + 0.5f) / n}, 0, 0, 0, Spectrum(2.0f), wavelengths, 1);
       }
     buffer->merge(tile);
-    buffer->set_splat_scale(30.0 / (30.0 * n * n));
     const double expected = to_xyz(Spectrum(2.0f), wavelengths).y;
     const Image image = buffer->develop();
     for (int y = 0; y < 5; ++y)
@@ -288,10 +288,9 @@ TEST(ImageBuffer, StateRoundTrip) {
   ImageTile tile;
   tile.begin(*a, a->area());
   tile.features(2, 3, {{0.1f, 0.2f, 0.3f}, {0, 0, 1}, 2, 7});
-  tile.splat({1.2f, 3.4f}, Spectrum(1.0f), wavelengths);
+  tile.splat({1.2f, 3.4f}, 1, 3, 0, Spectrum(1.0f), wavelengths, 2);
   tile.contribute({1, 1}, 1, 1, 3, Spectrum(-1.0f), wavelengths);
   a->merge(tile);
-  a->set_splat_scale(0.25);
   const std::vector<std::byte> state = a->save_state();
   b->load_state(state);
   EXPECT_EQ(b->save_state(), state);

@@ -41,8 +41,9 @@ class EmissionShader : public Component {
   virtual float incident_density(const Vector3&) const { return 0; }
   virtual bool knows_incident() const { return false; }
 
+  /// A point without a normal, on an object without extent, emits in all directions.
   bool emits(const SurfacePoint& p, const Vector3& direction) const {
-    if (sides == Sides::both) return true;
+    if (sides == Sides::both || p.normal == Normal3{}) return true;
     return (dot(p.normal, direction) > 0) == (sides == Sides::front);
   }
 

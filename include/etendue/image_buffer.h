@@ -34,8 +34,16 @@ struct PixelArea {
 struct BadSample {
   int x = 0, y = 0;
   std::uint32_t sample = 0;
-  static constexpr std::uint32_t no_sample = ~0u;  ///< the index of a splat, which belongs to no sample
   enum class Kind : std::uint8_t { not_a_number, infinite, negative } kind = Kind::not_a_number;
+};
+
+/// A sample that brought much light to the picture: a firefly, perhaps.
+struct LargeSample {
+  double luminance = 0;  ///< Y of the radiance it brought
+  int x = 0, y = 0;      ///< the pixel it belongs to
+  std::uint32_t sample = 0;
+  Point2 film;         ///< where the light fell
+  bool splat = false;  ///< brought by a path from a luminaire
 };
 
 class ImageBuffer;
@@ -49,10 +57,13 @@ class ImageTile {
 
   /// Adds a sample at a film point (pixels; centres at half-integers), in the pixel (px, py) it belongs to. Bad values
   /// are noted and count as zero.
-  void contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, float weight = 1);
-  /// Adds light that did not come through a pixel of its own (light tracing), to be divided by the number of paths:
-  /// `ImageBuffer::splat_scale`. May lie anywhere in the picture.
-  void splat(Point2 film, const Spectrum&, const Wavelengths&);
+  /// `by_length`, when given, holds the parts of the value by path length, for `ImageBuffer::path_lengths`.
+  void contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, float weight = 1,
+                  std::span<const Spectrum> by_length = {});
+  /// Adds light that did not come through a pixel of its own (light tracing): the estimate, from one path of as many as
+  /// there are samples, of radiance on the film times the number of pixels of the whole picture. May lie anywhere in the
+  /// picture. (px, py) and sample say which sample brought it, length how many segments its path had.
+  void splat(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, int length);
   /// The auxiliary values of a sample, when the buffer wants any.
   void features(int px, int py, const Features&);
   /// Counts the samples without light as well: call once for each sample path begun.
@@ -64,12 +75,18 @@ class ImageTile {
   struct Splat {
     Point2 film;
     Xyz value;
+    int length;
   };
+  void note_large(const LargeSample&);
+  static void keep_larger(std::vector<LargeSample>&, const LargeSample&, size_t most);
+  void add_lengths(Point2 film, int px, int py, const Wavelengths&, float weight, std::span<const Spectrum> by_length);
   const ImageBuffer* buffer_ = nullptr;
   PixelArea area_, extent_;       // the area and the area widened by the filter
   std::vector<double> sums_;      // X Y Z weight per pixel of the extent
   std::vector<double> moments_;   // count, sum Y, sum Y^2 of the samples in each pixel of the area
   std::vector<double> features_;  // ImageBuffer::feature_values per pixel of the area
+  std::vector<double> lengths_;   // X Y Z per path length and pixel of the extent
+  std::vector<LargeSample> largest_;
   std::vector<Splat> splats_;
   std::vector<BadSample> bad_;
   std::uint64_t bad_count_ = 0, paths_ = 0;
@@ -87,6 +104,7 @@ class ImageBuffer : public Component {
   Ref<Filter> filter;
   std::vector<int> crop;            ///< x0, y0, x1, y1 [pixels]; empty: all
   std::vector<std::string> layers;  ///< of "albedo", "normal", "depth", "object", "variance", "samples"
+  int path_lengths = 0;             ///< how many layers to keep by path length; the last holds all longer paths too
 
   void prepare() override;
 
@@ -99,8 +117,6 @@ class ImageBuffer : public Component {
 
   /// Adds a tile; the order of calls is part of the result.
   void merge(const ImageTile&);
-  /// What splats are multiplied by when developed: number of pixels over number of light paths.
-  void set_splat_scale(double scale) { splat_scale_ = scale; }
 
   /// The picture as X Y Z, with the wanted layers as further channels.
   Image develop() const;
@@ -113,25 +129,39 @@ class ImageBuffer : public Component {
   /// The first bad samples, at most 32.
   const std::vector<BadSample>& first_bad_samples() const { return bad_; }
 
+  /// From now on keeps the n samples that brought most light. Not part of the state.
+  void keep_largest(size_t n) { largest_wanted_ = n; }
+  /// Those, largest first.
+  std::vector<LargeSample> largest_samples() const;
+
   /// All state, for checkpoints: the same bytes restore the same buffer. `load` throws Error when they do not fit.
   std::vector<std::byte> save_state() const;
   void load_state(std::span<const std::byte>);
+  /// Adds what another buffer of the same picture has collected, of other samples.
+  void add_state(std::span<const std::byte>);
 
  private:
   friend class ImageTile;
   // sums of albedo (3), normal (3), depth; how many had a depth; the first object; how many
   static constexpr size_t feature_values = 10, bad_samples_kept = 32;
   void allocate();
-  void add_splat(Point2, const Xyz&);
+  void add_splat(const ImageTile::Splat&);
   double filter_integral(float left, float right, float up, float down) const;
   std::uint64_t filter_hash() const;
   static double variance_of_mean(const double* moment);
+  double variance_of_pixel(size_t pixel) const;
+  double splat_scale() const;
+  double splat_norm() const;
   size_t index(int x, int y) const { return size_t(y - area_.y0) * size_t(area_.width()) + size_t(x - area_.x0); }
 
   PixelArea area_;
   bool wants_features_ = false;
-  std::vector<double> sums_, moments_, features_, splats_;
-  double splat_scale_ = 1;
+  int kept_lengths_ = 0;
+  std::vector<double> sums_, moments_, features_;
+  std::vector<double> splats_;                   // X Y Z and the sum of Y^2 per pixel
+  std::vector<double> lengths_, length_splats_;  // X Y Z per path length and pixel
+  std::vector<LargeSample> largest_;
+  size_t largest_wanted_ = 0;
   std::uint64_t samples_ = 0, bad_count_ = 0;
   std::vector<BadSample> bad_;
   // the filter tabulated over one quadrant, weight at ((i + 0.5) / table_size * radius)

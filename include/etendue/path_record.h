@@ -1,5 +1,5 @@
 #pragma once
-// PathRecord: what a path did, for people. Filled only when a sample is replayed.
+// PathRecord: what a path did, for people and programs. Filled only when a sample is replayed.
 
 #include <string>
 #include <vector>
@@ -22,7 +22,18 @@ struct PathRecord {
     Spectrum direct;      ///< weighted contribution of light sampled from here
     std::string note;     ///< roulette, dispersion, media…
   };
-  std::vector<Vertex> vertices;
+  /// Light one strategy brought, as it counts in the picture.
+  struct Contribution {
+    std::string strategy;  ///< "luminaire met", "luminaire sampled", or how many vertices come from each end
+    int length = 0;        ///< segments from the lens to the luminaire
+    float weight = 1;      ///< of multiple importance sampling
+    Spectrum value;        ///< weighted
+    Point2 film;           ///< where it falls
+    bool splat = false;    ///< falls there by itself, not as part of the sample's own value
+  };
+  std::vector<Vertex> vertices;        ///< from the camera
+  std::vector<Vertex> light_vertices;  ///< from a luminaire, when the renderer begins paths there
+  std::vector<Contribution> contributions;
   Wavelengths wavelengths;
   Spectrum result;
 };

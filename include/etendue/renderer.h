@@ -10,6 +10,7 @@
 #include "etendue/path_record.h"
 #include "etendue/sampler.h"
 #include "etendue/scene.h"
+#include "etendue/scene_traits.h"
 #include "etendue/wavelength_sampler.h"
 
 namespace etendue {
@@ -23,13 +24,40 @@ struct RenderContext {
   std::uint64_t seed = 0;
 };
 
+/// Light that a sample brings to another place of the film than its own: from a path that began at a luminaire.
+struct Splat {
+  Point2 film;
+  Spectrum value;  ///< the estimate of radiance on the film, for one path over the whole film (importance integrates to 1)
+  Wavelengths wavelengths;
+  int length = 0;  ///< segments of the path
+};
+
 /// What one sample of a camera-path renderer has at hand.
 struct SampleContext {
   Wavelengths& wavelengths;  ///< may lose its secondary ones along the path
   SampleStream& random;
-  Arena& arena;                  ///< emptied after the sample
-  Features* features = nullptr;  ///< to be filled at the first surface when not null
-  PathRecord* record = nullptr;  ///< to be filled when not null: someone replays this sample
+  Arena& arena;                      ///< emptied after the sample
+  Features* features = nullptr;      ///< to be filled at the first surface when not null
+  PathRecord* record = nullptr;      ///< to be filled when not null: someone replays this sample
+  std::span<Spectrum> lengths = {};  ///< radiance by path length, when someone wants it; see `note_length`
+  std::vector<Splat>* splats = nullptr;
+
+  /// Says that `value`, a part of the radiance returned, came by a path of so many segments (1: a luminaire seen by the
+  /// camera). Renderers that call this for all they return can be compared length by length.
+  void note_length(int length, const Spectrum& value) {
+    if (!lengths.empty()) [[unlikely]]
+      lengths[std::min(size_t(length), lengths.size()) - 1] += value;
+  }
+  /// Brings light to a point of the film (beside the value `radiance` returns).
+  void splat(Point2 film, const Spectrum& value, const Wavelengths& w, int length) {
+    if (splats) splats->push_back({film, value, w, length});
+  }
+};
+
+/// Light that a renderer cannot find in a scene, and what can.
+struct Advice {
+  std::string lost;     ///< "caustics of the point light 'lamp' through 'ball'"
+  std::string instead;  ///< class names of renderers that find it, or what to change; empty: nothing known does
 };
 
 /// A range of samples per pixel, [begin, end), and the means to run work over all cores.
@@ -79,13 +107,30 @@ class Renderer : public Component {
     Spectrum value;
     Wavelengths wavelengths;
   };
-  CameraSample camera_sample(const RenderContext&, int x, int y, std::uint32_t sample, Arena&, Features* = nullptr,
-                             PathRecord* = nullptr) const;
+  /// `request` may name features, record, lengths and splats to be filled; its other parts are set by this call.
+  struct Request {
+    Features* features = nullptr;
+    PathRecord* record = nullptr;
+    std::span<Spectrum> lengths = {};
+    std::vector<Splat>* splats = nullptr;
+  };
+  CameraSample camera_sample(const RenderContext&, int x, int y, std::uint32_t sample, Arena&, const Request&) const;
+  CameraSample camera_sample(const RenderContext& context, int x, int y, std::uint32_t sample, Arena& arena) const {
+    return camera_sample(context, x, y, sample, arena, Request{});
+  }
 
   /// Whether expectations are exact for any number of samples, or only in the limit.
   virtual bool unbiased() const { return true; }
   /// What it cannot render, in words for the user; empty: nothing is left out.
   virtual std::string limits() const { return {}; }
+  /// What it cannot find of the light that a given scene has; empty: nothing is missed. Renderers for which this is empty
+  /// must agree.
+  virtual std::vector<Advice> misses(const SceneTraits&) const { return {}; }
+
+  /// What it has learned at a pass boundary beside the picture, for checkpoints: the same bytes restore it. Most have
+  /// nothing.
+  virtual std::vector<std::byte> save_state() const { return {}; }
+  virtual void load_state(std::span<const std::byte>) {}
 };
 
 }  // namespace etendue

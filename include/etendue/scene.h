@@ -33,13 +33,21 @@ class Scene : public SceneObject {
 
   /// Objects that emit, those at infinity included.
   std::span<const SceneObject* const> luminaires() const { return luminaires_; }
-  /// Objects at infinity, seen by rays that hit nothing.
+  /// Luminaires at infinity that rays which hit nothing see; those without extent are not among them.
   std::span<const SceneObject* const> infinite_luminaires() const { return infinite_; }
   /// A sphere around all finite objects.
   Point3 centre() const { return bounds_.centre(); }
   float radius() const { return bounds_.empty() ? 1.0f : length(bounds_.diagonal()) / 2; }
   /// Whether any surface lets paths into objects, so that media and indices must be tracked.
   bool has_interiors() const { return has_interiors_; }
+  /// Whether any surface lets some light pass straight on, so that shadow rays may have to go through surfaces.
+  bool has_null_surfaces() const { return has_null_surfaces_; }
+  /// Whether a point may lie inside an object that paths can enter: a quick test by bounds.
+  bool maybe_inside(const Point3& p) const {
+    for (const Bounds3& box : interiors_)
+      if (box.contains(p)) return true;
+    return false;
+  }
 
   // As an object in another scene: transforms the ray and asks itself.
   void prepare() override;
@@ -60,7 +68,8 @@ class Scene : public SceneObject {
 
   Bounds3 bounds_;  // of the objects, in the scene's own coordinates
   std::vector<const SceneObject*> luminaires_, infinite_;
-  bool has_interiors_ = false;
+  std::vector<Bounds3> interiors_;  // of the objects that paths can enter, and of scenes in which there are such
+  bool has_interiors_ = false, has_null_surfaces_ = false;
 };
 
 }  // namespace etendue

@@ -19,7 +19,7 @@ class Shader;
 struct SurfaceSample {
   SurfacePoint point;
   float density = 0;  ///< per area [1/m^2] from sample_area; per solid angle [1/sr] from sample_visible; 0: nothing was found
-  /// A luminaire without extent (a point light, a distant light): `density` is then a probability and no ray meets it.
+  /// On an object without extent (a point light, a distant light), which no ray meets; see SceneObject::delta.
   bool delta = false;
   /// The point is infinitely far along `direction` from where it was asked for.
   bool infinite = false;
@@ -79,6 +79,12 @@ class SceneObject : public Component {
   virtual bool closed() const { return false; }
   /// Lies at infinity: never intersected, seen by rays that leave the scene; has no bounds.
   virtual bool infinite() const { return false; }
+  /// Has no extent, so no ray ever meets it. A point stands for a sphere with a cross section of 1 m^2, shrunk: what its
+  /// emission calls radiance, times 1 m^2, is its intensity [W/sr]; densities by area are then 1 per m^2 of that cross
+  /// section, and densities by solid angle follow by distance^2, so that radiance over density is irradiance as for
+  /// any other object. Its points have no normal (zero): directions are not measured against it. In the same way a single
+  /// direction stands for a disc of 1 sr at infinity, with density 1.
+  virtual bool delta() const { return false; }
   /// Tells an object at infinity the sphere around all finite ones; by Scene::prepare.
   virtual void enclose(const Point3& /*centre*/, float /*radius*/) {}
   /// The object as triangles, when that is what it is and it does not move.

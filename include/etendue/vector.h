@@ -120,6 +120,9 @@ struct Bounds3 {
     add(b.low);
     add(b.high);
   }
+  bool contains(const Point3& p) const {
+    return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
+  }
   Vector3 diagonal() const { return empty() ? Vector3{} : high - low; }
   Point3 centre() const { return lerp(0.5f, low, high); }
   Point3 corner(int i) const { return {(i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z}; }

@@ -24,6 +24,8 @@ class VolumeShader : public Component {
   virtual VolumeCoefficients coefficients(const Point3&, float time, const Wavelengths&) const = 0;
   /// Coefficients are the same everywhere: free paths then have a closed form.
   virtual bool homogeneous() const = 0;
+  /// Whether it sends out light of its own.
+  virtual bool emits() const { return false; }
   /// A bound of the extinction [1/m] over the medium, per wavelength.
   virtual Spectrum majorant(const Wavelengths&) const = 0;
   /// Phase function [1/sr] for light that turns from travelling along -out to travelling along in; integrates to 1.

@@ -57,12 +57,8 @@ void report_bad_samples(const ImageBuffer& image, const RenderOptions& options) 
   const auto& first = image.first_bad_samples();
   for (size_t i = 0; i < std::min(first.size(), most); ++i) {
     const BadSample& bad = first[i];
-    if (bad.sample == BadSample::no_sample)
-      fmt::print(stderr, "  (light that arrived at pixel {},{} from a path of another pixel: {})\n", bad.x, bad.y,
-                 kind_text(bad.kind));
-    else
-      fmt::print(stderr, "  {} --pixel {},{} --sample {}    # {}\n", options.picture_command(), bad.x, bad.y, bad.sample,
-                 kind_text(bad.kind));
+    fmt::print(stderr, "  {} --pixel {},{} --sample {}    # {}\n", options.picture_command(), bad.x, bad.y, bad.sample,
+               kind_text(bad.kind));
   }
 }
 

@@ -59,6 +59,7 @@ class DiffuseEmission final : public EmissionShader {
   }
 
   DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
+    if (p.normal == Normal3{}) return {warp::sphere(u), warp::sphere_density};
     float side = sides == Sides::back ? -1.0f : 1.0f, probability = 1;
     if (sides == Sides::both) {
       probability = 0.5f;
@@ -70,6 +71,7 @@ class DiffuseEmission final : public EmissionShader {
     return {side * frame.to_world(local), probability * warp::cosine_hemisphere_density(local.z)};
   }
   float density(const SurfacePoint& p, const Vector3& direction) const override {
+    if (p.normal == Normal3{}) return warp::sphere_density;
     if (!emits(p, direction)) return 0;
     return (sides == Sides::both ? 0.5f : 1.0f) * inverse_pi * std::abs(dot(p.normal, direction));
   }
@@ -78,7 +80,7 @@ class DiffuseEmission final : public EmissionShader {
     const float area = object.area();
     if (!(area > 0)) return {};
     const Spectrum mean = constant_ ? constant_->evaluate(w, ColorUse::radiance) : mean_radiance(object, w);
-    return mean * (pi * side_count() * area * (watts > 0 ? scale(object, 0) : 1));
+    return mean * (pi * side_count(object) * area * (watts > 0 ? scale(object, 0) : 1));
   }
 
   Ref<ObjectMap> map = constant(1.0f);
@@ -92,11 +94,12 @@ class DiffuseEmission final : public EmissionShader {
     std::atomic<double> integral{-1};
   };
 
-  float side_count() const { return sides == Sides::both ? 2.0f : 1.0f; }
+  /// Of a point, which stands for a shrunk sphere, the inside does not count.
+  float side_count(const SceneObject& object) const { return !object.delta() && sides == Sides::both ? 2.0f : 1.0f; }
 
   float scale(const SceneObject& object, float time) const {
     const double below =
-        double(pi) * double(side_count()) * double(object.area(time)) * (constant_ ? integral_ : measure(object));
+        double(pi) * double(side_count(object)) * double(object.area(time)) * (constant_ ? integral_ : measure(object));
     return below > 0 ? float(watts / below) : 0;
   }
 

@@ -78,10 +78,10 @@ class EnvironmentEmission final : public EmissionShader {
   }
   float density(const SurfacePoint&, const Vector3&) const override { return 1; }
 
-  /// Of all the light that passes through a disc of radius 1 m across each direction [W/nm]: the scene's own disc has
-  /// radius R, and R^2 times this. For an image, of its mean colour.
-  Spectrum power(const SceneObject&, const Wavelengths& w) const override {
-    const float sphere_times_disc = 4 * pi * pi;
+  /// Of all the light that enters through the object's area [W/nm]: pi * area * mean radiance. For an image, of its mean
+  /// colour.
+  Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
+    const float sphere_times_disc = pi * object.area();
     if (!image_.rgb.empty())
       return rgb_spectrum(*space_, scale * mean_[0], scale * mean_[1], scale * mean_[2], ColorUse::radiance, w) *
              sphere_times_disc;

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include "images/filter_window.h"
 
@@ -26,7 +28,11 @@ void ImageBuffer::describe(Description<ImageBuffer>& d) {
                                   "excluded]; empty: the whole picture")
       .member<&ImageBuffer::layers>("layers", "",
                                     "further channels: of albedo, normal, depth, object (what camera paths meet first), "
-                                    "variance (of the mean of Y), samples (per pixel)");
+                                    "variance (of the mean of Y), samples (per pixel)")
+      .member<&ImageBuffer::path_lengths>("path_lengths", "1",
+                                          "further channels length_1.X, … by the number of segments of the paths that "
+                                          "brought the light; the last holds all longer ones too",
+                                          range(0, 64));
 }
 
 static const Register<ImageBuffer> registered;
@@ -74,9 +80,11 @@ void ImageBuffer::prepare() {
 
   const bool features = wants("albedo") || wants("normal") || wants("depth") || wants("object");
   // What was collected stays valid when the picture is prepared again after an edit of something else.
-  const bool same = area == area_ && table == filter_table_ && radius == filter_radius_ && features == wants_features_;
+  const bool same = path_lengths == kept_lengths_ && area == area_ && table == filter_table_ && radius == filter_radius_ &&
+                    features == wants_features_;
   area_ = area;
   wants_features_ = features;
+  kept_lengths_ = path_lengths;
   filter_table_ = std::move(table);
   filter_radius_ = radius;
   box_ =
@@ -90,7 +98,9 @@ void ImageBuffer::clear() {
   moments_.clear();
   features_.clear();
   splats_.clear();
-  splat_scale_ = 1;
+  lengths_.clear();
+  length_splats_.clear();
+  largest_.clear();
   samples_ = bad_count_ = 0;
   bad_.clear();
 }
@@ -101,6 +111,7 @@ void ImageBuffer::allocate() {
     sums_.resize(4 * pixels);
     moments_.resize(3 * pixels);
     if (wants_features_) features_.resize(feature_values * pixels);
+    lengths_.resize(3 * size_t(path_lengths) * pixels);
   } catch (const std::bad_alloc&) {
     fail("width", fmt::format("there is not enough memory for {} x {} pixels", area_.width(), area_.height()));
   }
@@ -117,6 +128,7 @@ void ImageBuffer::merge(const ImageTile& tile) {
     }
   };
   if (!tile.sums_.empty()) add(tile.extent_, 4, tile.sums_, sums_);
+  if (!tile.lengths_.empty()) add(tile.extent_, 3 * size_t(path_lengths), tile.lengths_, lengths_);
   if (!tile.moments_.empty()) add(tile.area_, 3, tile.moments_, moments_);
   if (!tile.features_.empty() && !features_.empty()) {
     const double* source = tile.features_.data();
@@ -128,20 +140,54 @@ void ImageBuffer::merge(const ImageTile& tile) {
           if (i != 8) target[i] += source[i];
       }
   }
-  for (const ImageTile::Splat& s : tile.splats_) add_splat(s.film, s.value);
+  for (const ImageTile::Splat& s : tile.splats_) add_splat(s);
+  for (const LargeSample& s : tile.largest_) ImageTile::keep_larger(largest_, s, largest_wanted_);
   for (const BadSample& b : tile.bad_)
     if (bad_.size() < bad_samples_kept) bad_.push_back(b);
   samples_ += tile.paths_;
   bad_count_ += tile.bad_count_;
 }
 
-void ImageBuffer::add_splat(Point2 film, const Xyz& value) {
-  if (splats_.empty()) splats_.resize(3 * size_t(area_.width()) * size_t(area_.height()));
+void ImageTile::keep_larger(std::vector<LargeSample>& kept, const LargeSample& s, size_t most) {
+  // A heap with the least of them in front; ties are broken by place, so that the order of merging does not matter.
+  const auto larger = [](const LargeSample& a, const LargeSample& b) {
+    return std::tuple(-a.luminance, a.y, a.x, a.sample, a.film.y, a.film.x) <
+           std::tuple(-b.luminance, b.y, b.x, b.sample, b.film.y, b.film.x);
+  };
+  if (kept.size() == most) {
+    if (!larger(s, kept.front())) return;
+    std::pop_heap(kept.begin(), kept.end(), larger);
+    kept.pop_back();
+  }
+  kept.push_back(s);
+  std::push_heap(kept.begin(), kept.end(), larger);
+}
+
+std::vector<LargeSample> ImageBuffer::largest_samples() const {
+  std::vector<LargeSample> sorted = largest_;
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.luminance > b.luminance; });
+  return sorted;
+}
+
+void ImageBuffer::add_splat(const ImageTile::Splat& splat) {
+  const size_t pixels = size_t(area_.width()) * size_t(area_.height());
+  if (splats_.empty()) {
+    splats_.resize(4 * pixels);
+    length_splats_.resize(3 * size_t(path_lengths) * pixels);
+  }
+  const Point2 film = splat.film;
+  const Xyz& value = splat.value;
   const auto add = [&](int x, int y, double weight) {
-    double* sum = &splats_[3 * index(x, y)];
+    double* sum = &splats_[4 * index(x, y)];
     sum[0] += weight * value.x;
     sum[1] += weight * value.y;
     sum[2] += weight * value.z;
+    sum[3] += square(weight * value.y);
+    if (path_lengths == 0 || splat.length < 1) return;
+    double* part = &length_splats_[3 * (size_t(path_lengths) * index(x, y) + size_t(std::min(splat.length, path_lengths)) - 1)];
+    part[0] += weight * value.x;
+    part[1] += weight * value.y;
+    part[2] += weight * value.z;
   };
   if (box_) {
     add(std::min(int(film.x), area_.x1 - 1), std::min(int(film.y), area_.y1 - 1), double(filter_table_[0]));

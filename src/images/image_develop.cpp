@@ -30,8 +30,8 @@ double ImageBuffer::filter_integral(float left, float right, float up, float dow
 // rendered: I = int_F f L / int_F f.
 //   Samples of the camera are spread evenly over F, with L_k known at x_k:   I ~ sum_k f(x_k) L_k / sum_k f(x_k).
 //   Splats arrive with a density of their own, each already divided by it:   I ~ scale * sum_k f(x_k) s_k / int_F f,
-// where the scale is the number of pixels (the film's area) over the number of paths. With samples of both kinds the
-// two are parts of one sum, weighted against each other by whoever made them.
+// where the scale is the number of pixels of the whole picture (the film's area) over the number of paths. With samples of both
+// kinds the two are parts of one sum, weighted against each other by whoever made them.
 Image ImageBuffer::develop() const {
   std::vector<std::string> channels = {"X", "Y", "Z"};
   enum class Source { mean, hit_mean, first, variance, count };
@@ -58,6 +58,8 @@ Image ImageBuffer::develop() const {
     else if (layer == "samples")
       add("samples.N", Source::count);
   }
+  for (int length = 1; length <= path_lengths; ++length)
+    for (const char* part : {".X", ".Y", ".Z"}) channels.push_back("length_" + std::to_string(length) + part);
 
   Image image(area_.width(), area_.height(), std::move(channels));
   image.metadata["color_space"] = "xyz";
@@ -86,11 +88,10 @@ Image ImageBuffer::develop() const {
       // Filters with negative lobes can leave a pixel of few samples without weight.
       const double scale = sum[3] > 0 ? 1 / sum[3] : 0;
       for (size_t c = 0; c < 3; ++c) out[c] = scale * sum[c];
-      if (!splats_.empty()) {
-        const double norm = integral(x, y);
-        if (norm > 0)
-          for (size_t c = 0; c < 3; ++c) out[c] += splat_scale_ / norm * splats_[3 * pixel + c];
-      }
+      const double norm = splats_.empty() ? 0 : integral(x, y);
+      const double splat = norm > 0 ? splat_scale() / norm : 0;
+      if (splat > 0)
+        for (size_t c = 0; c < 3; ++c) out[c] += splat * splats_[4 * pixel + c];
       out += 3;
       const double* moment = &moments_[3 * pixel];
       for (const Layer& layer : sources) {
@@ -100,10 +101,14 @@ Image ImageBuffer::develop() const {
           case Source::mean: value = feature && feature[9] > 0 ? feature[layer.offset] / feature[9] : 0; break;
           case Source::hit_mean: value = feature && feature[7] > 0 ? feature[layer.offset] / feature[7] : 0; break;
           case Source::first: value = feature ? feature[layer.offset] : 0; break;
-          case Source::variance: value = variance_of_mean(moment); break;
+          case Source::variance: value = variance_of_pixel(pixel); break;
           case Source::count: value = moment[0]; break;
         }
         *out++ = value;
+      }
+      for (size_t i = 0; i < 3 * size_t(path_lengths); ++i) {
+        const size_t at = 3 * size_t(path_lengths) * pixel + i;
+        *out++ = scale * lengths_[at] + (splat > 0 ? splat * length_splats_[at] : 0);
       }
     }
   return image;
@@ -118,20 +123,37 @@ double ImageBuffer::variance_of_mean(const double* moment) {
   return std::max(0.0, moment[2] / n - mean * mean) / (n - 1);
 }
 
+/// Splats add to a pixel's variance as arrivals that are independent of one another: scale^2 * sum of squares.
+double ImageBuffer::variance_of_pixel(size_t pixel) const {
+  double variance = variance_of_mean(&moments_[3 * pixel]);
+  if (!splats_.empty()) variance += square(splat_scale()) * splats_[4 * pixel + 3] / square(splat_norm());
+  return variance;
+}
+
+double ImageBuffer::splat_scale() const { return samples_ > 0 ? double(width) * double(height) / double(samples_) : 0; }
+
+double ImageBuffer::splat_norm() const {
+  return filter_integral(filter_radius_, filter_radius_, filter_radius_, filter_radius_);
+}
+
 double ImageBuffer::relative_error() const {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   double total = 0, samples = 0;
-  for (size_t i = 0; i < moments_.size(); i += 3) {
-    if (moments_[i] < 2) return unknown;
+  const double splat = splats_.empty() ? 0 : splat_scale() / splat_norm();
+  const auto mean = [&](size_t pixel) {
+    return moments_[3 * pixel + 1] / moments_[3 * pixel] + (splat > 0 ? splat * splats_[4 * pixel + 1] : 0);
+  };
+  const size_t pixels = moments_.size() / 3;
+  for (size_t i = 0; i < pixels; ++i) {
+    if (moments_[3 * i] < 2) return unknown;
     samples += 1;
-    total += moments_[i + 1] / moments_[i];
+    total += mean(i);
   }
   // A picture still black may only have found no light yet.
   if (samples == 0 || total <= 0) return unknown;
   const double floor = 1e-3 * total / samples;
   double sum = 0;
-  for (size_t i = 0; i < moments_.size(); i += 3)
-    sum += std::sqrt(variance_of_mean(&moments_[i])) / (moments_[i + 1] / moments_[i] + floor);
+  for (size_t i = 0; i < pixels; ++i) sum += std::sqrt(variance_of_pixel(i)) / (mean(i) + floor);
   return sum / samples;
 }
 

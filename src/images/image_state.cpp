@@ -9,7 +9,7 @@
 namespace etendue {
 namespace {
 
-constexpr std::uint64_t magic = 0x31304d4c49465445;  // "ETFILM01": name and version of the format, little endian
+constexpr std::uint64_t magic = 0x32304d4c49465445;  // "ETFILM02": name and version of the format, little endian
 
 class Writer {
  public:
@@ -77,15 +77,18 @@ std::uint64_t ImageBuffer::filter_hash() const {
 std::vector<std::byte> ImageBuffer::save_state() const {
   Writer w;
   w.bytes.reserve(200 + bad_.size() * 16 +
-                  sizeof(double) * (sums_.size() + moments_.size() + features_.size() + splats_.size()));
+                  sizeof(double) * (sums_.size() + moments_.size() + features_.size() + splats_.size() + lengths_.size() +
+                                    length_splats_.size()));
   w.value(magic);
-  for (const int i : {width, height, area_.x0, area_.y0, area_.x1, area_.y1, int(wants_features_)}) w.value(std::int32_t(i));
+  for (const int i : {width, height, area_.x0, area_.y0, area_.x1, area_.y1, int(wants_features_), path_lengths})
+    w.value(std::int32_t(i));
   w.value(filter_hash());
   w.list(sums_);
   w.list(moments_);
   w.list(features_);
   w.list(splats_);
-  w.value(splat_scale_);
+  w.list(lengths_);
+  w.list(length_splats_);
   w.value(samples_);
   w.value(bad_count_);
   w.value(std::uint64_t(bad_.size()));
@@ -101,18 +104,20 @@ std::vector<std::byte> ImageBuffer::save_state() const {
 void ImageBuffer::load_state(std::span<const std::byte> bytes) {
   Reader r(bytes);
   if (r.value<std::uint64_t>() != magic) throw Error("this is not a film's state, or one of another version");
-  for (const int i : {width, height, area_.x0, area_.y0, area_.x1, area_.y1, int(wants_features_)})
+  for (const int i : {width, height, area_.x0, area_.y0, area_.x1, area_.y1, int(wants_features_), path_lengths})
     if (r.value<std::int32_t>() != i) throw Error("the film's state belongs to a picture of another size, crop or layers");
   if (r.value<std::uint64_t>() != filter_hash()) throw Error("the film's state was made with another filter");
 
   // All is read and checked before anything changes.
   const size_t pixels = size_t(area_.width()) * size_t(area_.height());
   std::vector<double> sums = r.list(4 * pixels), moments = r.list(3 * pixels);
-  std::vector<double> features = r.list(wants_features_ ? feature_values * pixels : 0), splats = r.list(3 * pixels);
+  std::vector<double> features = r.list(wants_features_ ? feature_values * pixels : 0), splats = r.list(4 * pixels);
+  const size_t by_length = 3 * size_t(path_lengths) * pixels;
+  std::vector<double> lengths = r.list(by_length), length_splats = r.list(by_length);
   if (sums.empty() != moments.empty() || (wants_features_ && sums.empty() != features.empty()) ||
-      (sums.empty() && !splats.empty()))
+      (sums.empty() && !splats.empty()) || (path_lengths > 0 && sums.empty() != lengths.empty()) ||
+      (path_lengths > 0 && splats.empty() != length_splats.empty()))
     throw Error("the film's state lacks a part");
-  const auto scale = r.value<double>();
   const auto samples = r.value<std::uint64_t>(), bad_count = r.value<std::uint64_t>(), noted = r.value<std::uint64_t>();
   if (noted > bad_samples_kept || noted > bad_count) throw Error("the film's state holds an impossible number of bad samples");
   std::vector<BadSample> bad;
@@ -132,10 +137,45 @@ void ImageBuffer::load_state(std::span<const std::byte> bytes) {
   moments_ = std::move(moments);
   features_ = std::move(features);
   splats_ = std::move(splats);
-  splat_scale_ = scale;
+  lengths_ = std::move(lengths);
+  length_splats_ = std::move(length_splats);
   samples_ = samples;
   bad_count_ = bad_count;
   bad_ = std::move(bad);
+}
+
+void ImageBuffer::add_state(std::span<const std::byte> bytes) {
+  // Read into a copy of the settings first: an error leaves this buffer as it was.
+  ImageBuffer other;
+  other.width = width;
+  other.height = height;
+  other.filter = filter;
+  other.crop = crop;
+  other.layers = layers;
+  other.path_lengths = path_lengths;
+  other.prepare();
+  other.load_state(bytes);
+  const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
+    if (to.empty())
+      to = from;
+    else
+      for (size_t i = 0; i < from.size(); ++i) to[i] += from[i];
+  };
+  for (size_t i = 0; i + feature_values <= other.features_.size() && !features_.empty(); i += feature_values)
+    if (features_[i + 9] > 0)
+      other.features_[i + 8] = 0;  // the object is of the first sample, not a sum
+    else
+      features_[i + 8] = 0;
+  add(sums_, other.sums_);
+  add(moments_, other.moments_);
+  add(features_, other.features_);
+  add(splats_, other.splats_);
+  add(lengths_, other.lengths_);
+  add(length_splats_, other.length_splats_);
+  for (const BadSample& b : other.bad_)
+    if (bad_.size() < bad_samples_kept) bad_.push_back(b);
+  samples_ += other.samples_;
+  bad_count_ += other.bad_count_;
 }
 
 }  // namespace etendue

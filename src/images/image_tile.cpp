@@ -86,7 +86,9 @@ void ImageTile::begin(const ImageBuffer& buffer, const PixelArea& area) {
   sums_.assign(4 * pixels(extent_), 0);
   moments_.assign(3 * pixels(area_), 0);
   features_.assign(buffer.wants_features() ? ImageBuffer::feature_values * pixels(area_) : 0, 0);
+  lengths_.assign(3 * size_t(buffer.path_lengths) * pixels(extent_), 0);
   splats_.clear();
+  largest_.clear();
   bad_.clear();
   bad_count_ = paths_ = 0;
 }
@@ -97,7 +99,7 @@ void ImageTile::note(int x, int y, std::uint32_t sample, BadSample::Kind kind) {
 }
 
 void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum& value,
-                           const Wavelengths& wavelengths, float weight) {
+                           const Wavelengths& wavelengths, float weight, std::span<const Spectrum> by_length) {
   Xyz color;
   BadKind kind = BadKind::not_a_number;
   bool good = to_color(value, wavelengths, color, kind);
@@ -111,6 +113,8 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
     note(px, py, sample, kind);
     color = {};
   }
+  if (buffer_->largest_wanted_ > 0) [[unlikely]]
+    note_large({color.y * double(weight), px, py, sample, film, false});
   if (!area_.contains(px, py)) [[unlikely]]
     return;
 
@@ -118,6 +122,9 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
   moment[0] += 1;
   moment[1] += color.y;
   moment[2] += color.y * color.y;
+
+  if (!lengths_.empty() && good) [[unlikely]]
+    add_lengths(film, px, py, wavelengths, weight, by_length);
 
   const Sums one{color.x, color.y, color.z, 1};
   if (buffer_->box_) {
@@ -137,17 +144,56 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
   }
 }
 
-void ImageTile::splat(Point2 film, const Spectrum& value, const Wavelengths& wavelengths) {
+void ImageTile::add_lengths(Point2 film, int px, int py, const Wavelengths& wavelengths, float weight,
+                            std::span<const Spectrum> by_length) {
+  const size_t count = std::min(by_length.size(), size_t(buffer_->path_lengths)), stride = 3 * size_t(buffer_->path_lengths);
+  for (size_t length = 0; length < count; ++length) {
+    if (by_length[length].black()) continue;
+    Xyz color;
+    BadKind kind;
+    if (!to_color(by_length[length], wavelengths, color, kind)) continue;
+    const auto add = [&](int x, int y, double factor) {
+      double* sum =
+          &lengths_[stride * (size_t(y - extent_.y0) * size_t(extent_.width()) + size_t(x - extent_.x0)) + 3 * length];
+      sum[0] += factor * color.x;
+      sum[1] += factor * color.y;
+      sum[2] += factor * color.z;
+    };
+    if (buffer_->box_) {
+      add(px, py, double(weight));
+      continue;
+    }
+    constexpr int size = ImageBuffer::table_size;
+    const FilterWindow across(film.x, buffer_->filter_radius_, size, extent_.x0, extent_.x1);
+    const FilterWindow down(film.y, buffer_->filter_radius_, size, extent_.y0, extent_.y1);
+    for (int j = 0; j < down.count; ++j) {
+      const float* row = &buffer_->filter_table_[size_t(down.cells[size_t(j)]) * size];
+      for (int i = 0; i < across.count; ++i)
+        add(across.first + i, down.first + j, double(row[across.cells[size_t(i)]] * weight));
+    }
+  }
+}
+
+void ImageTile::note_large(const LargeSample& s) {
+  if (!(s.luminance > 0)) return;
+  keep_larger(largest_, s, buffer_->largest_wanted_);
+}
+
+void ImageTile::splat(Point2 film, int px, int py, std::uint32_t sample, const Spectrum& value, const Wavelengths& wavelengths,
+                      int length) {
   const PixelArea& all = buffer_->area();
   // Light beside the rendered pixels is left out, as camera samples have none from there either: at the picture's edge
   // both estimate the same mean over the part of the filter that lies inside.
   if (!(film.x >= float(all.x0) && film.x < float(all.x1) && film.y >= float(all.y0) && film.y < float(all.y1))) return;
   Xyz color;
   BadKind kind = BadKind::not_a_number;
-  if (to_color(value, wavelengths, color, kind)) [[likely]]
-    splats_.push_back({film, color});
-  else
-    note(int(film.x), int(film.y), BadSample::no_sample, kind);
+  if (to_color(value, wavelengths, color, kind)) [[likely]] {
+    splats_.push_back({film, color, length});
+    if (buffer_->largest_wanted_ > 0) [[unlikely]]
+      note_large({color.y * double(buffer_->width) * double(buffer_->height), px, py, sample, film, true});
+  } else {
+    note(px, py, sample, kind);
+  }
 }
 
 void ImageTile::features(int px, int py, const Features& f) {

@@ -161,7 +161,9 @@ Point2 Job::replay(int x, int y, std::uint32_t sample, PathRecord& record) {
   const RenderContext context = this->context();
   renderer->begin(context);
   Arena arena;
-  return renderer->camera_sample(context, x, y, sample, arena, nullptr, &record).film;
+  Renderer::Request request;
+  request.record = &record;
+  return renderer->camera_sample(context, x, y, sample, arena, request).film;
 }
 
 }  // namespace etendue

@@ -65,23 +65,31 @@ struct Division {
 void Renderer::pass(const RenderContext& context, Pass& pass) const {
   const Division division(context.image.area(), pass);
   const bool wants_features = context.image.wants_features();
+  const size_t path_lengths = size_t(context.image.path_lengths);
   pass.run(division.count(), [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
     const PixelArea area = division.pixels(item);
     tile.begin(context.image, area);
+    static thread_local std::vector<Splat> splats;
+    static thread_local std::vector<Spectrum> lengths;
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x)
         for (std::uint32_t n = division.first(item); n < division.last(item); ++n) {
           Features features;
-          const CameraSample s = camera_sample(context, x, y, n, arena, wants_features ? &features : nullptr);
+          splats.clear();
+          lengths.assign(path_lengths, Spectrum());
+          const Request request{wants_features ? &features : nullptr, nullptr, lengths, &splats};
+          const CameraSample s = camera_sample(context, x, y, n, arena, request);
           tile.count_path();
-          tile.contribute(s.film, x, y, n, s.value, s.wavelengths);
+          tile.contribute(s.film, x, y, n, s.value, s.wavelengths, 1, lengths);
+          for (const Splat& splat : splats) tile.splat(splat.film, x, y, n, splat.value, splat.wavelengths, splat.length);
           if (wants_features) tile.features(x, y, features);
         }
   });
 }
 
 Renderer::CameraSample Renderer::camera_sample(const RenderContext& context, int x, int y, std::uint32_t n, Arena& arena,
-                                               Features* features, PathRecord* record) const {
+                                               const Request& request) const {
+  PathRecord* const record = request.record;
   SampleStream random(*sampler, SampleKey(context.seed, x, y, n));
   const SampleKey& key = random.key();
   const Point2 within = sampler->pair(key, film_dimension);
@@ -95,7 +103,7 @@ Renderer::CameraSample Renderer::camera_sample(const RenderContext& context, int
                          : camera.shutter_open;
   random.jump(path_dimension);
 
-  SampleContext sample{s.wavelengths, random, arena, features, record};
+  SampleContext sample{s.wavelengths, random, arena, request.features, record, request.lengths, request.splats};
   const Ray ray = camera.ray(s.film, lens, time);
   if (record) {
     PathRecord::Vertex v;

@@ -42,9 +42,9 @@ class Environment final : public SceneObject {
     p.dpdv = frame.t;
   }
 
-  /// The area through which its light enters the scene, seen from one direction: the cross section of the sphere around
-  /// the scene [m^2]. Power is then pi * area * radiance, as of any diffuse luminaire.
-  float area(float) const override { return pi * radius_ * radius_; }
+  /// Of the sphere around the scene, through which its light enters [m^2]: the power of the light that does is
+  /// pi * area * radiance, as of any diffuse luminaire.
+  float area(float) const override { return 4 * pi * radius_ * radius_; }
   /// There are no points with an area at infinity.
   SurfaceSample sample_area(Point2, float) const override { return {}; }
   float area_density(const SurfacePoint&) const override { return 0; }

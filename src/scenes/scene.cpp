@@ -44,8 +44,15 @@ void Scene::describe(Description<Scene>& d) {
 void Scene::prepare() {
   luminaires_.clear();
   infinite_.clear();
+  interiors_.clear();
   bounds_ = {};
-  has_interiors_ = false;
+  has_interiors_ = has_null_surfaces_ = false;
+  const auto note_interior = [&](const SceneObject& object) {
+    if (!object.shader || !object.shader->transmits()) return;
+    has_interiors_ = true;
+    interiors_.push_back(object.bounds());
+    if (object.shader->possible_lobes() & pass_through) has_null_surfaces_ = true;
+  };
 
   std::unordered_set<const SceneObject*> seen;
   for (size_t i = 0; i < objects.size(); ++i) {
@@ -67,8 +74,13 @@ void Scene::prepare() {
       object.fail("", "a luminaire stands both in a scene and in one nested in it");
     if (object.infinite()) object.fail("", "an object at infinity cannot stand in a nested scene");
     object.luminaire_index = -1;
-    if (object.shader && object.shader->transmits()) has_interiors_ = true;
   });
+  for (const Ref<SceneObject>& object : objects)
+    if (const Scene* inner = as_scene(object.get()); inner && inner->has_interiors_) {
+      has_interiors_ = true;
+      has_null_surfaces_ |= inner->has_null_surfaces_;
+      interiors_.push_back(inner->bounds());
+    }
 
   std::vector<const SceneObject*> finite;
   for (const Ref<SceneObject>& object : objects) {
@@ -77,9 +89,9 @@ void Scene::prepare() {
     if (object->luminaire() && !inner) {
       object->luminaire_index = int(luminaires_.size());
       luminaires_.push_back(object.get());
-      if (object->infinite()) infinite_.push_back(object.get());
+      if (object->infinite() && !object->delta()) infinite_.push_back(object.get());
     }
-    if (object->shader && !inner && object->shader->transmits()) has_interiors_ = true;
+    if (!inner) note_interior(*object);
     if (object->infinite()) continue;
     const Bounds3 box = object->bounds();
     if (box.empty()) continue;  // without extent: a point light, an empty scene
