@@ -86,11 +86,11 @@ TEST_F(ProgramTest, wrong_usage_exits_with_2_and_says_why) {
   EXPECT_EQ(run({"render", scene, "--sampels", "4"}), 2);
   EXPECT_TRUE(has(err, "did you mean '--samples'")) << err;
   const std::vector<std::vector<std::string>> wrong = {
-      {"--threads", "many"},   {"--threads", "-1"},   {"--progress", "dots"}, {"--size", "64"},        {"--size", "64x"},
-      {"--crop", "1,2,3"},     {"--time", "soon"},    {"--time", "5m5m"},     {"--time", "-3"},        {"--samples", "few"},
-      {"--samples", "-2"},     {"--seed", "-1"},      {"--pixel", "1,1"},     {"--sample", "3"},       {"-D", "samples"},
-      {"-D", "sampels=3"},     {"--set", "seed"},     {"--set", "sede=3"},    {"--error", "-1"},       {"-o", "a.nothing"},
-      {"-o", "no/such/a.png"}, {"--plugin", "no.so"}, {"--size", "0x10"},     {"--crop", "0,0,99,99"},
+      {"--threads", "many"}, {"--threads", "-1"}, {"--progress", "dots"},  {"--size", "64"},    {"--size", "64x"},
+      {"--crop", "1,2,3"},   {"--time", "soon"},  {"--time", "5m5m"},      {"--time", "-3"},    {"--samples", "few"},
+      {"--samples", "-2"},   {"--seed", "-1"},    {"--sample", "3"},       {"-D", "samples"},   {"-D", "sampels=3"},
+      {"--set", "seed"},     {"--set", "sede=3"}, {"--error", "-1"},       {"-o", "a.nothing"}, {"-o", "no/such/a.png"},
+      {"--plugin", "no.so"}, {"--size", "0x10"},  {"--crop", "0,0,99,99"},
   };
   for (const auto& options : wrong) {
     std::vector<std::string> arguments{"render", scene};

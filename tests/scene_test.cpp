@@ -213,7 +213,7 @@ TEST(Scene, LuminairesAndInteriors) {
   EXPECT_EQ(wall->luminaire_index, -1);
   EXPECT_FALSE(outer->has_interiors());
   EXPECT_NEAR(outer->radius(), std::sqrt(3.0f), 1e-4f);
-  EXPECT_NEAR(sky->area(0), pi * square(outer->radius()), 1e-4f);
+  EXPECT_NEAR(sky->area(0), 4 * pi * square(outer->radius()), 1e-4f);
   inner_lamp->shader = make<TestShader>();
   inner->prepare();
   outer->prepare();

@@ -60,9 +60,9 @@ class ImageTile {
   /// `by_length`, when given, holds the parts of the value by path length, for `ImageBuffer::path_lengths`.
   void contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, float weight = 1,
                   std::span<const Spectrum> by_length = {});
-  /// Adds light that did not come through a pixel of its own (light tracing): the estimate, from one path of as many as
-  /// there are samples, of radiance on the film times the number of pixels of the whole picture. May lie anywhere in the
-  /// picture. (px, py) and sample say which sample brought it, length how many segments its path had.
+  /// Adds light that did not come through a pixel of its own (light tracing): what one path, of as many as there are
+  /// samples, brings to the mean radiance over the whole picture. May lie anywhere in the picture. (px, py) and sample say
+  /// which sample brought it, length how many segments its path had.
   void splat(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, int length);
   /// The auxiliary values of a sample, when the buffer wants any.
   void features(int px, int py, const Features&);

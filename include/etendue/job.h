@@ -26,6 +26,15 @@ struct Progress {
   bool finished = false;
 };
 
+/// [begin, end) of passes or samples.
+struct IndexRange {
+  std::uint32_t begin = 0, end = 0;
+  bool operator==(const IndexRange&) const = default;
+};
+
+/// The state of a render at a pass boundary; see job/checkpoint.h.
+struct Checkpoint;
+
 /// Why a render ended.
 enum class Ended : std::uint8_t { samples, time, error, interrupted, aborted };
 
@@ -51,16 +60,33 @@ class Job final : public Component {
   // Not described: how this process runs the job.
   int threads = 0;  ///< 0: all cores
   std::function<void(const Progress&)> on_progress;
-  double progress_interval = 0.25;  ///< [s]
+  double progress_interval = 0.25;   ///< [s]
+  std::string checkpoint_file;       ///< where to keep the state while it renders; empty: nowhere
+  double checkpoint_interval = 60;   ///< [s] at least from one writing to the next; 0: after every pass
+  std::optional<IndexRange> passes;  ///< only these; their number and size follow from the picture's size and the samples
 
   void prepare() override;
 
-  /// Prepares everything and renders until a rule says stop. The picture depends on the description and the seed alone.
+  /// Prepares everything and renders from the beginning until a rule says stop. The picture depends on the description and
+  /// the seed alone.
   Ended render();
+  /// Goes on where a checkpoint of this job ended, with the passes that it lacks: to the same bits. Throws Error before
+  /// anything changes when it is damaged or of something else.
+  Ended resume(const std::string& checkpoint);
   /// Asks a running render to stop: at the end of the pass (`finish`), or now, discarding the pass (`abort`). Safe in
   /// signal handlers.
   void finish() { stop_.store(1); }
   void abort() { stop_.store(2); }
+
+  /// Why the state could not be written to `checkpoint_file` the last time; empty: it could. A render goes on without.
+  const std::string& checkpoint_failure() const { return checkpoint_failure_; }
+  /// A pass is a range of so many samples per pixel, the last of a render perhaps fewer. The job must be prepared.
+  std::uint32_t samples_per_pass() const;
+  /// The samples of each pixel that the picture holds, in order.
+  const std::vector<IndexRange>& samples_done() const { return done_; }
+
+  /// Takes over the state of a checkpoint as it is. The image must be prepared.
+  void restore(const Checkpoint&);
 
   /// The picture so far, with metadata.
   Image picture() const;
@@ -75,10 +101,13 @@ class Job final : public Component {
 
  private:
   RenderContext context() const;
+  IndexRange wanted_samples() const;
+  Ended run(const Checkpoint* from, const std::string& from_file);
 
   std::atomic<int> stop_{0};
-  std::uint32_t samples_done_ = 0;
+  std::vector<IndexRange> done_;
   double seconds_ = 0;
+  std::string checkpoint_failure_;
   bool prepared_ = false;
 };
 

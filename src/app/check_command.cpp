@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/advice.h"
 #include "app/scene_options.h"
 #include "app/text.h"
 
@@ -26,6 +27,21 @@ void count(const Scene& scene, Contents& contents) {
   }
 }
 
+/// What of the scene's light the job's renderer misses, and which renderers find all of it.
+void report_light(const Job& job, const SceneTraits& traits) {
+  if (job.scene->luminaires().empty() && traits.nested_luminaires.empty() && traits.emissive_media.empty()) {
+    fmt::print("Nothing emits light: the picture will be black.\n");
+    return;
+  }
+  std::fflush(stdout);  // warnings stand where they belong when both go to a terminal
+  advise(job);
+  const std::vector<std::string> renderers = renderers_that_find_all(traits);
+  if (renderers.empty())
+    fmt::print("No known renderer finds all light of this scene.\n");
+  else
+    fmt::print("renderers that find all light of this scene: {}\n", fmt::join(renderers, ", "));
+}
+
 int check(const SceneOptions& options) {
   const Ref<Job> job = options.load();
   prepare_tree(*job);
@@ -40,12 +56,13 @@ int check(const SceneOptions& options) {
   fmt::print("objects     {}\n", grouped(contents.objects));
   if (contents.scenes > 1) fmt::print("scenes      {}\n", grouped(contents.scenes));
   fmt::print("triangles   {}\n", grouped(contents.triangles));
-  fmt::print("luminaires  {}\n", grouped(job->scene->luminaires().size()));
+  const SceneTraits traits = scene_traits(*job->scene, *job->camera);
+  fmt::print("luminaires  {}\n", luminaires_text(traits));
   fmt::print("image       {}\n", size);
   fmt::print("samples     {} per pixel\n", job->renderer->samples);
   fmt::print("renderer    {}, {}\n", job->renderer->class_info().name, job->renderer->unbiased() ? "unbiased" : "consistent");
   if (const std::string limits = job->renderer->limits(); !limits.empty()) fmt::print("left out    {}\n", limits);
-  if (job->scene->luminaires().empty()) fmt::print("Nothing emits light: the picture will be black.\n");
+  report_light(*job, traits);
   fmt::print("{} is good\n", options.file);
   return exit_status::done;
 }

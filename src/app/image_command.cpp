@@ -1,10 +1,11 @@
-// etendue image diff, info, tonemap: pictures in files.
+// etendue image diff, info, tonemap, merge: pictures in files.
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "app/commands.h"
+#include "app/image_merge.h"
 #include "etendue/image_tools.h"
 #include "etendue/language.h"
 #include "etendue/tone_map.h"
@@ -155,11 +156,12 @@ void add_tonemap(CLI::App& image, Run& run) {
 }  // namespace
 
 void add_image_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("image", "Compare, inspect and tone map pictures");
+  CLI::App* command = program.add_subcommand("image", "Compare, inspect, tone map and merge pictures");
   command->require_subcommand(1);
   add_diff(*command, run);
   add_info(*command, run);
   add_tonemap(*command, run);
+  add_image_merge(*command, run);
 }
 
 }  // namespace etendue

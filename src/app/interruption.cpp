@@ -62,4 +62,6 @@ void Interruption::remind() const {
   if (asked == 2) job_.abort();
 }
 
+bool Interruption::asked() const { return requests.load() != 0; }
+
 }  // namespace etendue

@@ -16,6 +16,8 @@ class Interruption {
 
   /// Tells the job again: a signal that came before it began would be forgotten.
   void remind() const;
+  /// Whether a signal came.
+  bool asked() const;
 
  private:
   Job& job_;

@@ -18,6 +18,7 @@ First steps
   etendue classes                                        everything a file can contain
   etendue classes PathTracer                             one class: its members, units, defaults and ranges
   etendue image diff a.exr b.exr                         how much two pictures differ
+  etendue verify box.etd                                 whether all algorithms agree on a scene
 
 Help on one command: etendue render --help
 Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
@@ -41,6 +42,7 @@ int main(int argument_count, char** arguments) {
   add_schema_command(program, run);
   add_manual_command(program, run);
   add_image_command(program, run);
+  add_verify_command(program, run);
 
   try {
     program.parse(argument_count, arguments);

@@ -4,12 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/advice.h"
+#include "app/fireflies.h"
 #include "app/interruption.h"
 #include "app/progress_display.h"
 #include "app/render_options.h"
 #include "app/replay.h"
 #include "app/text.h"
 #include "etendue/language.h"
+#include "outputs/whole_file.h"
 
 namespace etendue {
 
@@ -18,26 +21,17 @@ namespace {
 int replay(Job& job, const RenderOptions& options) {
   int pixel[2];
   parse_integers(options.pixel, ',', 2, pixel, "--pixel", "X,Y");
-  PathRecord record;
-  const Point2 film = job.replay(pixel[0], pixel[1], *options.sample, record);
-  fmt::print("pixel {},{} sample {}\n{}", pixel[0], pixel[1], *options.sample, path_text(record, film));
-  return exit_status::done;
-}
-
-/// Writes each output by itself: when one fails, the others are still written. Returns what was written.
-std::vector<std::string> write_all(Job& job, const std::string& stem, std::vector<Error>& errors) {
-  std::vector<std::string> written;
-  const std::vector<Ref<Output>> outputs = job.outputs;
-  for (const Ref<Output>& output : outputs) {
-    job.outputs = {output};
-    try {
-      for (const std::string& path : job.write_outputs(stem)) written.push_back(path);
-    } catch (const Error& error) {
-      errors.push_back(error);
-    }
+  if (!options.replay.empty()) check_folder(options.replay, {});
+  prepare_tree(job);
+  const PixelReplay paths = options.sample ? replay_sample(job, pixel[0], pixel[1], *options.sample)
+                                           : replay_pixel(job, pixel[0], pixel[1], size_t(options.paths));
+  const std::string command = options.picture_command();
+  if (!options.replay.empty()) {
+    const std::string json = replay_json(job, paths, options.file, command);
+    write_whole_file(options.replay, json.data(), json.size());
   }
-  job.outputs = outputs;
-  return written;
+  if (!options.quiet) fmt::print("{}", replay_text(paths, command));
+  return exit_status::done;
 }
 
 std::string_view kind_text(BadSample::Kind kind) {
@@ -73,34 +67,55 @@ std::string reason_text(Ended ended) {
   return "";
 }
 
+/// What was rendered of the whole, when not all of it was asked for.
+std::string passes_text(const Job& job) {
+  if (!job.passes) return "";
+  const auto step = std::int64_t(job.samples_per_pass());
+  return fmt::format("passes {}:{} of 0:{}, {} samples per pixel each\n", job.passes->begin, job.passes->end,
+                     (job.renderer->samples + step - 1) / step, step);
+}
+
 void report_result(const Progress& progress, Ended ended, const std::vector<std::string>& written, ProgressDisplay::Kind kind,
-                   const Job& job, bool quiet) {
+                   const Job& job, const RenderOptions& options) {
   if (kind == ProgressDisplay::Kind::json) {
-    const nlohmann::ordered_json json = {{"event", "done"},
-                                         {"outputs", written},
-                                         {"seconds", progress.seconds},
-                                         {"samples", progress.samples},
-                                         {"samples_per_second", progress.samples_per_second},
-                                         {"bad_samples", job.image->bad_samples()},
-                                         {"ended", name(ended)}};
+    nlohmann::ordered_json json = {{"event", "done"},
+                                   {"outputs", written},
+                                   {"seconds", progress.seconds},
+                                   {"samples", progress.samples},
+                                   {"samples_per_second", progress.samples_per_second},
+                                   {"bad_samples", job.image->bad_samples()},
+                                   {"ended", name(ended)}};
+    if (!job.checkpoint_file.empty()) json["checkpoint"] = job.checkpoint_file;
+    if (job.passes) json["samples_per_pass"] = job.samples_per_pass();
     fmt::print("{}\n", json.dump());
-  } else if (!quiet) {
+  } else if (!options.quiet) {
     for (const std::string& path : written) fmt::print("{}\n", path);
-    fmt::print("{} samples per pixel in {}, {:.2f} Msamples/s{}\n", progress.samples, duration_text(progress.seconds),
-               progress.samples_per_second * 1e-6, reason_text(ended));
+    fmt::print("{} samples per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, duration_text(progress.seconds),
+               progress.samples_per_second * 1e-6, reason_text(ended), passes_text(job));
+    if (ended == Ended::interrupted && !job.checkpoint_file.empty()) fmt::print("to go on: {}\n", options.resume_command());
   }
   std::fflush(stdout);
 }
 
 int render(const RenderOptions& options) {
   const Ref<Job> job = options.load();
-  if (options.sample) return replay(*job, options);
+  if (!options.pixel.empty()) return replay(*job, options);
 
+  // A checkpoint remembers the outputs of the file, whatever -o says; a part of the passes is not what they are for.
+  const std::vector<Ref<Output>> described = job->outputs;
+  const bool no_outputs = job->passes && options.outputs.empty();
+  choose_outputs(*job, options.outputs);
+  if (no_outputs) job->outputs.clear();
+  const std::vector<Ref<Output>> chosen = job->outputs;
   prepare_tree(*job);
   check_output_folders(*job);
+  advise(*job);
+  if (options.fireflies > 0) job->image->keep_largest(size_t(options.fireflies));
+  if (!job->checkpoint_file.empty()) check_folder(job->checkpoint_file, {});
 
   const ProgressDisplay::Kind kind = ProgressDisplay::kind_for(options.progress, options.quiet);
   ProgressDisplay display(kind, options.open_ended());
+  const std::string resumed = options.resumed_file();
   Ended ended;
   std::vector<Error> errors;
   std::vector<std::string> written;
@@ -110,13 +125,18 @@ int render(const RenderOptions& options) {
       display.show(progress);
       interruption.remind();
     };
-    ended = job->render();
+    job->outputs = described;
+    ended = resumed.empty() ? job->render() : job->resume(resumed);
+    job->outputs = chosen;
     display.clear();
-    if (ended != Ended::aborted) written = write_all(*job, stem_of(options.file), errors);
+    if (ended != Ended::aborted) written = write_each_output(*job, stem_of(options.file), errors);
   }
 
+  if (!job->checkpoint_failure().empty()) errors.emplace_back(job->checkpoint_failure());
   report_bad_samples(*job->image, options);
-  report_result(display.last(), ended, written, kind, *job, options.quiet);
+  report_result(display.last(), ended, written, kind, *job, options);
+  if (options.fireflies > 0 && ended != Ended::aborted)
+    report_fireflies(*job, options.picture_command(), kind == ProgressDisplay::Kind::json ? stderr : stdout);
   for (const Error& error : errors) fmt::print(stderr, "{}\n", show(error));
   if (!errors.empty()) return exit_status::failed;
   return ended == Ended::interrupted || ended == Ended::aborted ? exit_status::interrupted : exit_status::done;
@@ -136,6 +156,10 @@ void add_render_command(CLI::App& program, Run& run) {
       "  etendue render box.etd --set renderer.max_depth=2        direct light only\n"
       "  etendue render box.etd --time 5m                         five minutes' worth of samples\n"
       "  etendue render box.etd --pixel 17,40 --sample 3          the path of one sample, vertex by vertex\n"
+      "  etendue render box.etd --pixel 17,40                     the brightest paths of a pixel\n"
+      "  etendue render box.etd --fireflies 10                    and where the brightest samples are\n"
+      "  etendue render box.etd --continue box.checkpoint         begin, or go on after whatever stopped it\n"
+      "  etendue render box.etd --passes 0:8 --checkpoint a.part  a part, for 'etendue image merge'\n"
       "\nThe first Ctrl-C ends the render after the current pass and writes what there is, a second one aborts it.\n"
       "The picture depends on the file and the seed alone, never on the number of threads.");
   command->callback([options, &run] { run = [options] { return render(*options); }; });

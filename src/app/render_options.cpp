@@ -10,6 +10,7 @@
 
 #include "app/text.h"
 #include "etendue/language.h"
+#include "job/checkpoint.h"
 
 namespace etendue {
 
@@ -40,12 +41,73 @@ void RenderOptions::add_to(CLI::App& command) {
           "auto: a bar on a terminal, else a line now and then; bar; json: a JSON object per line on standard output; none")
       ->type_name("KIND")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}));
+  const std::vector<CLI::Option*> checkpoint_options = add_checkpoint_options(command);
   CLI::Option* pixel_option =
-      command.add_option("--pixel", pixel, "With --sample: compute one sample of this pixel alone and print its path")
+      command.add_option("--pixel", pixel, "Render nothing: compute this pixel's samples and print the brightest paths")
           ->type_name("X,Y");
-  CLI::Option* sample_option = command.add_option("--sample", sample, "Which sample of --pixel, from 0")->type_name("N");
-  pixel_option->needs(sample_option);
+  CLI::Option* sample_option =
+      command.add_option("--sample", sample, "With --pixel: compute and print this sample alone, from 0")->type_name("N");
   sample_option->needs(pixel_option);
+  command.add_option("--paths", paths, "With --pixel: how many paths to print [5]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1 << 20).description(""))
+      ->needs(pixel_option)
+      ->excludes(sample_option);
+  command.add_option("--replay", replay, "With --pixel: write the paths to this file, too, as JSON")
+      ->type_name("FILE")
+      ->needs(pixel_option);
+  command.add_option("--fireflies", fireflies, "List the N samples that brought most light, with the commands to replay them")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1 << 20).description(""))
+      ->excludes(pixel_option);
+  for (CLI::Option* option : checkpoint_options) pixel_option->excludes(option);
+}
+
+std::vector<CLI::Option*> RenderOptions::add_checkpoint_options(CLI::App& command) {
+  CLI::Option* checkpoint_option =
+      command.add_option("--checkpoint", checkpoint, "Keep the state of the render in this file, to go on from")
+          ->type_name("FILE");
+  CLI::Option* resume_option =
+      command
+          .add_option("--resume", resume,
+                      "Go on from this checkpoint, to the same bits as without a break; and keep the state there, unless "
+                      "--checkpoint names another file")
+          ->type_name("FILE");
+  CLI::Option* continue_option =
+      command.add_option("--continue", continue_file, "--resume this file if it is there, else begin with it as --checkpoint")
+          ->type_name("FILE")
+          ->excludes(resume_option)
+          ->excludes(checkpoint_option);
+  CLI::Option* every_option =
+      command.add_option("--every", every, "How often the checkpoint is written, at the end of a pass [60s]; 0s: after each")
+          ->type_name("TIME");
+  CLI::Option* passes_option =
+      command
+          .add_option("--passes", passes,
+                      "Render these passes only, B not included, into the checkpoint; 'image merge' makes a picture of such "
+                      "parts. Pictures of the part are written where -o says")
+          ->type_name("A:B");
+  return {checkpoint_option, resume_option, continue_option, every_option, passes_option};
+}
+
+std::optional<IndexRange> RenderOptions::parse_passes() const {
+  if (passes.empty()) return {};
+  const Location at{intern("--passes"), 0, 0};
+  int n[2];
+  parse_integers(passes, ':', 2, n, "--passes", "A:B, such as 0:16");
+  if (n[0] < 0 || n[1] <= n[0]) throw Error(fmt::format("'{}' are no passes: A:B are those from A to B - 1", passes), at);
+  if (checkpoint_file().empty()) throw Error("the passes need a file to keep their sums in: give --checkpoint as well", at);
+  return IndexRange{std::uint32_t(n[0]), std::uint32_t(n[1])};
+}
+
+std::string RenderOptions::resumed_file() const {
+  std::error_code ignored;
+  if (!continue_file.empty()) return std::filesystem::exists(continue_file, ignored) ? continue_file : std::string();
+  return resume;
+}
+
+const std::string& RenderOptions::checkpoint_file() const {
+  return !continue_file.empty() ? continue_file : (checkpoint.empty() ? resume : checkpoint);
 }
 
 std::vector<RenderOptions::Override> RenderOptions::overrides() const {
@@ -71,7 +133,14 @@ std::vector<RenderOptions::Override> RenderOptions::overrides() const {
 }
 
 Ref<Job> RenderOptions::load() const {
-  const std::vector<Override> list = overrides();  // a command line that makes no sense is told before a long load
+  // A command line that makes no sense is told before a long load.
+  const std::vector<Override> list = overrides();
+  const std::optional<IndexRange> range = parse_passes();
+  double interval = make<Job>()->checkpoint_interval;
+  if (!every.empty()) interval = every == "0" || every == "0s" ? 0 : parse_duration(every, "--every");
+  if (!every.empty() && checkpoint_file().empty())
+    throw Error("there is no checkpoint to be written: give --checkpoint as well", {intern("--every"), 0, 0});
+  if (const std::string from = resumed_file(); !from.empty()) read_checkpoint_header(from);
   Ref<Job> job = SceneOptions::load();
   std::vector<Error> errors;
   for (const Override& override : list) {
@@ -84,8 +153,10 @@ Ref<Job> RenderOptions::load() const {
     }
   }
   if (!errors.empty()) throw Errors(std::move(errors));
-  choose_outputs(*job, outputs);
   job->threads = threads;
+  job->checkpoint_file = checkpoint_file();
+  job->checkpoint_interval = interval;
+  job->passes = range;
   job->metadata["file"] = file;
   job->metadata["file_hash"] = file_hash();
   job->metadata["command_line"] = picture_command();
@@ -99,6 +170,13 @@ std::string RenderOptions::picture_command() const {
   for (const auto& [name, value] : rest)
     if (!value->empty()) text += fmt::format(" {} {}", name, shell_quoted(*value));
   return text;
+}
+
+std::string RenderOptions::resume_command() const {
+  std::string text = picture_command();
+  for (const std::string& output : outputs) text += " -o " + shell_quoted(output);
+  if (!passes.empty()) text += " --passes " + passes;
+  return text + " --resume " + shell_quoted(checkpoint_file());
 }
 
 std::string RenderOptions::file_hash() const {
@@ -154,18 +232,32 @@ void choose_outputs(Job& job, const std::vector<std::string>& files) {
   if (!outputs.empty()) job.outputs = std::move(outputs);
 }
 
-void check_output_folders(const Job& job) {
-  for (const Ref<Output>& output : job.outputs) {
-    if (!output) continue;
-    const std::string path = output->file.empty() ? "." : output->file.resolved();
-    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-    if (!std::filesystem::is_directory(folder))
-      throw Error(fmt::format("cannot write '{}': there is no folder '{}'", path, folder.string()),
-                  output->location_of("file"));
-    if (access(folder.c_str(), W_OK) != 0)
-      throw Error(fmt::format("cannot write '{}': the folder '{}' cannot be written to", path, folder.string()),
-                  output->location_of("file"));
+std::vector<std::string> write_each_output(Job& job, const std::string& stem, std::vector<Error>& errors) {
+  std::vector<std::string> written;
+  const std::vector<Ref<Output>> outputs = job.outputs;
+  for (const Ref<Output>& output : outputs) {
+    job.outputs = {output};
+    try {
+      for (const std::string& path : job.write_outputs(stem)) written.push_back(path);
+    } catch (const Error& error) {
+      errors.push_back(error);
+    }
   }
+  job.outputs = outputs;
+  return written;
+}
+
+void check_folder(const std::string& path, Location at) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw Error(fmt::format("cannot write '{}': there is no folder '{}'", path, folder.string()), at);
+  if (access(folder.c_str(), W_OK) != 0)
+    throw Error(fmt::format("cannot write '{}': the folder '{}' cannot be written to", path, folder.string()), at);
+}
+
+void check_output_folders(const Job& job) {
+  for (const Ref<Output>& output : job.outputs)
+    if (output) check_folder(output->file.empty() ? "./" : output->file.resolved(), output->location_of("file"));
 }
 
 }  // namespace etendue

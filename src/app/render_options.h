@@ -15,15 +15,25 @@ struct RenderOptions : SceneOptions {
   int threads = 0;
   bool quiet = false;
   std::string progress = "auto";
+  std::string checkpoint, resume, continue_file, every, passes;  ///< as written
   std::string pixel;
   std::optional<std::uint32_t> sample;
+  int paths = 5;       ///< how many of a pixel's samples are told
+  std::string replay;  ///< the JSON file they are written to; empty: none
+  int fireflies = 0;   ///< how many samples are listed after the render
 
   void add_to(CLI::App& command);
 
-  /// Loads the file and applies all overrides, outputs included. Throws Errors.
+  /// Loads the file and applies all overrides but the outputs. Throws Errors.
   Ref<Job> load() const;
+  /// The file to go on from; empty: the render begins.
+  std::string resumed_file() const;
+  /// The file to keep the state in; empty: none.
+  const std::string& checkpoint_file() const;
   /// The command line that gives the same picture: without what changes only how or where it is computed.
   std::string picture_command() const;
+  /// The command line that goes on with this render from its checkpoint.
+  std::string resume_command() const;
   /// 16 hexadecimal digits that change with the file's text and every override of it.
   std::string file_hash() const;
   /// Whether something other than a number of samples is to stop the render.
@@ -35,13 +45,20 @@ struct RenderOptions : SceneOptions {
     std::string option, path, expression;
   };
   std::vector<Override> overrides() const;
+  std::vector<CLI::Option*> add_checkpoint_options(CLI::App& command);
+  std::optional<IndexRange> parse_passes() const;
 };
 
 /// Replaces a job's outputs by files whose endings choose the format. The settings of an output of the same class that
 /// the job has are kept. Without files, a job that has no output gets a PNG.
 void choose_outputs(Job&, const std::vector<std::string>& files);
 
+/// Writes each output by itself, with file names from `stem` for those without: when one fails, the others are still
+/// written. Returns what was written.
+std::vector<std::string> write_each_output(Job&, const std::string& stem, std::vector<Error>& errors);
+
 /// Throws an Error now if a folder to be written to is not there, rather than after the render.
 void check_output_folders(const Job&);
+void check_folder(const std::string& path, Location);
 
 }  // namespace etendue

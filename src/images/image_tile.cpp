@@ -190,7 +190,8 @@ void ImageTile::splat(Point2 film, int px, int py, std::uint32_t sample, const S
   if (to_color(value, wavelengths, color, kind)) [[likely]] {
     splats_.push_back({film, color, length});
     if (buffer_->largest_wanted_ > 0) [[unlikely]]
-      note_large({color.y * double(buffer_->width) * double(buffer_->height), px, py, sample, film, true});
+      note_large(
+          {color.y * (double(buffer_->width) * double(buffer_->height) / double(pixels(all))), px, py, sample, film, true});
   } else {
     note(px, py, sample, kind);
   }

@@ -1,7 +1,10 @@
 #include "etendue/job.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
+#include "job/checkpoint.h"
 #include "job/pass_runner.h"
 
 namespace etendue {
@@ -34,14 +37,6 @@ Ref<T> created(const char* name) {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Samples per pixel of each pass: few for large pictures, many for small ones. A function of the size alone, so that
-/// passes are the same however a render is stopped or continued.
-std::uint32_t samples_per_pass(const PixelArea& area) {
-  constexpr std::uint64_t wanted = std::uint64_t(1) << 19;
-  const auto pixels = std::uint64_t(area.width()) * std::uint64_t(area.height());
-  return std::uint32_t(std::bit_floor(std::clamp<std::uint64_t>(wanted / std::max<std::uint64_t>(pixels, 1), 1, 1 << 14)));
-}
-
 }  // namespace
 
 Job::Job()
@@ -67,31 +62,101 @@ void Job::prepare() {
 
 RenderContext Job::context() const { return {*scene, *camera, *image, *wavelengths, seed}; }
 
-Ended Job::render() {
+// Few for large pictures, many for small ones. A function of the size alone, so that passes are the same however a render
+// is stopped or continued.
+std::uint32_t Job::samples_per_pass() const {
+  constexpr std::uint64_t wanted = std::uint64_t(1) << 19;
+  const PixelArea& area = image->area();
+  const auto pixels = std::uint64_t(area.width()) * std::uint64_t(area.height());
+  return std::uint32_t(std::bit_floor(std::clamp<std::uint64_t>(wanted / std::max<std::uint64_t>(pixels, 1), 1, 1 << 14)));
+}
+
+IndexRange Job::wanted_samples() const {
+  const auto samples = std::uint32_t(renderer->samples);
+  if (!passes) return {0, samples};
+  const std::uint64_t step = samples_per_pass(), count = (samples + step - 1) / step;
+  if (passes->begin >= passes->end)
+    throw Error(fmt::format("passes {}:{} are none: the second number is the first pass left out", passes->begin, passes->end));
+  if (passes->end > count)
+    throw Error(fmt::format("there are no passes {}:{}: {} samples per pixel are {} pass{} of {} each", passes->begin,
+                            passes->end, samples, count, count == 1 ? "" : "es", step));
+  return {std::uint32_t(passes->begin * step), std::uint32_t(std::min<std::uint64_t>(passes->end * step, samples))};
+}
+
+Ended Job::render() { return run(nullptr, {}); }
+
+Ended Job::resume(const std::string& checkpoint) {
+  if (!prepared_) prepare_tree(*this);
+  const Checkpoint from = read_checkpoint(checkpoint);
+  return run(&from, checkpoint);
+}
+
+void Job::restore(const Checkpoint& c) {
+  image->load_state(c.state.image);
+  if (renderer) renderer->load_state(c.state.renderer);
+  done_ = c.done;
+  seconds_ = c.seconds;
+}
+
+namespace {
+
+/// Throws Error when a checkpoint is not of this job or holds too much.
+void require_continuable(const Checkpoint& from, const std::string& name, const Checkpoint& job) {
+  std::string reason = mismatch(from, "the checkpoint", job, "this job");
+  if (reason.empty() && !from.done.empty() && from.done.back().end > job.samples_wanted)
+    reason = fmt::format("it holds {} of each pixel, but only {} are wanted", samples_text(from.done), job.samples_wanted);
+  if (!reason.empty()) throw Error(fmt::format("cannot continue from '{}': {}", name, reason));
+}
+
+}  // namespace
+
+Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   if (!prepared_) prepare_tree(*this);
   const RenderContext context = this->context();
-  image->clear();
-  renderer->begin(context);
-  samples_done_ = 0;
+  const IndexRange part = wanted_samples();
+  const std::uint32_t step = samples_per_pass();
+  const bool keeps = !checkpoint_file.empty();
+  Checkpoint kept;
+  if (keeps || from) kept = empty_checkpoint(*this);
+  if (from) require_continuable(*from, from_file, kept);
+  if (keeps) remove_leftovers(checkpoint_file);
+  checkpoint_failure_.clear();
   stop_ = 0;
 
-  const auto wanted = std::uint32_t(renderer->samples);
-  const std::uint32_t step = samples_per_pass(image->area());
+  image->clear();
+  renderer->begin(context);
+  done_.clear();
+  seconds_ = 0;
+  if (from) {
+    restore(*from);
+    kept.before_short_pass = from->before_short_pass;
+    if (from->before_short_pass && part.end > done_.back().end) {
+      image->load_state(from->before_short_pass->image);
+      renderer->load_state(from->before_short_pass->renderer);
+      drop_short_pass(done_, step);
+    }
+  }
+  std::vector<IndexRange> all = done_;
+  insert(all, part);
+  const std::uint32_t wanted = count(all);
+
   const double pixels = double(image->area().width()) * image->area().height();
-  const double begun = now();
-  double shown = 0, error = 0;
+  const double begun = now() - seconds_;
+  double shown = seconds_, kept_at = now(), error = 0;
+  bool written = from && from_file == checkpoint_file;
+  IndexRange pass;
 
   const auto report = [&](double in_pass, bool finished) {
     const double seconds = now() - begun;
     if (!on_progress || (!finished && seconds - shown < progress_interval)) return;
     shown = seconds;
     Progress p;
-    p.samples = samples_done_;
+    p.samples = count(done_);
     p.samples_wanted = wanted;
     p.seconds = seconds;
     p.error = error;
     p.finished = finished;
-    const double samples = samples_done_ + in_pass * std::min(step, wanted - samples_done_);
+    const double samples = p.samples + in_pass * (pass.end - pass.begin);
     p.samples_per_second = samples * pixels / std::max(seconds, 1e-9);
     p.fraction = samples / wanted;
     if (time_limit > 0) p.fraction = std::max(p.fraction, seconds / time_limit);
@@ -102,42 +167,70 @@ Ended Job::render() {
     p.seconds_left = p.fraction > 0 ? seconds * (1 - p.fraction) / p.fraction : -1;
     on_progress(p);
   };
+  const auto keep = [&] {
+    kept.done = done_;
+    kept.seconds = seconds_;
+    kept.state = {image->save_state(), renderer->save_state()};
+    try {
+      write_checkpoint(kept, checkpoint_file);
+      checkpoint_failure_.clear();
+    } catch (const Error& e) {  // a full disk must not end a render that may still write its picture
+      checkpoint_failure_ = e.what();
+      warn(checkpoint_failure_);
+    }
+    kept.state = {};
+    kept_at = now();
+    written = true;
+  };
+  /// What is learned from one pass to the next cannot be had from a part of them.
+  const auto require_independent_passes = [&] {
+    if (missing(done_, {0, pass.begin}).empty() || renderer->save_state().empty()) return;
+    renderer->fail({}, "learns from one pass to the next, so passes cannot be rendered without those before them");
+  };
+  /// Whether a rule other than the number of samples says stop.
+  const auto stopped = [&]() -> std::optional<Ended> {
+    if (error_limit > 0) error = image->relative_error();
+    if (missing(done_, part).empty()) return Ended::samples;
+    if (stop_.load() == 1) return Ended::interrupted;
+    if (time_limit > 0 && seconds_ >= time_limit) return Ended::time;
+    if (error_limit > 0 && error <= error_limit) return Ended::error;
+    return {};
+  };
 
   PassRunner runner(*image, threads, stop_,
                     [&](std::uint64_t done, std::uint64_t count) { report(double(done) / double(count), false); });
-  Ended ended = Ended::samples;
-  while (samples_done_ < wanted) {
-    runner.begin = samples_done_;
-    runner.end = std::min(samples_done_ + step, wanted);
+  std::optional<Ended> ended;
+  if (from) ended = stopped();
+  while (!ended) {
+    const IndexRange rest = missing(done_, part).front();
+    pass = {rest.begin, std::min(rest.end, (rest.begin / step + 1) * step)};
+    require_independent_passes();
+    kept.before_short_pass.reset();
+    if (keeps && pass.end % step != 0 && pass.end == part.end)
+      kept.before_short_pass = Checkpoint::State{image->save_state(), renderer->save_state()};
+    runner.begin = pass.begin;
+    runner.end = pass.end;
     renderer->pass(context, runner);
     if (stop_.load() == 2) return Ended::aborted;
-    samples_done_ = runner.end;
+    require_independent_passes();
+    insert(done_, pass);
     seconds_ = now() - begun;
-    if (error_limit > 0) error = image->relative_error();
-    if (samples_done_ == wanted) break;
-    if (stop_.load() == 1) {
-      ended = Ended::interrupted;
-      break;
-    }
-    if (time_limit > 0 && seconds_ >= time_limit) {
-      ended = Ended::time;
-      break;
-    }
-    if (error_limit > 0 && error <= error_limit) {
-      ended = Ended::error;
-      break;
-    }
+    written = false;
+    ended = stopped();
+    if (keeps && !ended && now() - kept_at >= checkpoint_interval) keep();
   }
+  pass = {};
+  if (keeps && !written) keep();
   report(0, true);
-  return ended;
+  return *ended;
 }
 
 Image Job::picture() const {
   Image picture = image->develop();
   for (const auto& [key, text] : metadata) picture.metadata[key] = text;
   picture.metadata["seed"] = std::to_string(seed);
-  picture.metadata["samples"] = std::to_string(samples_done_);
-  picture.metadata["renderer"] = renderer->class_info().name;
+  picture.metadata["samples"] = std::to_string(count(done_));
+  if (renderer) picture.metadata["renderer"] = renderer->class_info().name;
   picture.metadata["version"] = ETENDUE_VERSION;
   return picture;
 }

@@ -22,7 +22,7 @@ class PowerLightSampler final : public LightSampler {
     std::vector<double> powers;
     double total = 0;
     for (const SceneObject* luminaire : luminaires_) {
-      powers.push_back(power(*luminaire, scene.radius()));
+      powers.push_back(power(*luminaire));
       total += powers.back();
     }
     // A power may be an estimate (of a map, by samples) that misses what little there is: nothing that emits may have
@@ -73,7 +73,7 @@ class PowerLightSampler final : public LightSampler {
   float mixed(float by_power) const { return uniform / float(luminaires_.size()) + (1 - uniform) * by_power; }
 
   /// Power [W] over the visible range: the mean over 64 wavelengths at equal steps, times the range.
-  static double power(const SceneObject& luminaire, float scene_radius) {
+  static double power(const SceneObject& luminaire) {
     constexpr int sets = 16;
     constexpr float range = wavelength_high - wavelength_low, step = range / (sets * spectrum_size);
     double sum = 0;
@@ -83,8 +83,6 @@ class PowerLightSampler final : public LightSampler {
       sum += double(luminaire.emission->power(luminaire, w).average());
     }
     double watts = sum / sets * double(range);
-    // A luminaire at infinity says what passes through a disc of radius 1 m: the scene's own disc is larger or smaller.
-    if (luminaire.infinite()) watts *= double(scene_radius) * double(scene_radius);
     if (!(watts >= 0 && std::isfinite(watts)))
       luminaire.emission->fail({}, "the power of the luminaire is not a finite number: " + std::to_string(watts) + " W");
     return watts;

@@ -21,21 +21,25 @@ namespace {
 std::string reason(int code) { return std::generic_category().message(code); }
 
 /// 0 or what went wrong.
-int write_all(int descriptor, const void* data, size_t size) {
-  const char* at = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t done = ::write(descriptor, at, size);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return done < 0 ? errno : EIO;
-    at += done;
-    size -= size_t(done);
-  }
+int write_all(int descriptor, std::span<const std::span<const std::byte>> pieces) {
+  for (std::span<const std::byte> rest : pieces)
+    while (!rest.empty()) {
+      const ssize_t done = ::write(descriptor, rest.data(), rest.size());
+      if (done < 0 && errno == EINTR) continue;
+      if (done <= 0) return done < 0 ? errno : EIO;
+      rest = rest.subspan(size_t(done));
+    }
   return 0;
 }
 
 }  // namespace
 
 void write_whole_file(const std::string& path, const void* data, size_t size) {
+  const std::span<const std::byte> piece(static_cast<const std::byte*>(data), size);
+  write_whole_file(path, std::span(&piece, 1));
+}
+
+void write_whole_file(const std::string& path, std::span<const std::span<const std::byte>> pieces) {
   namespace fs = std::filesystem;
   if (path.empty()) refuse(path, "the file has no name");
   std::error_code code;
@@ -50,7 +54,7 @@ void write_whole_file(const std::string& path, const void* data, size_t size) {
   if (existed && !S_ISREG(old.st_mode)) {
     const int descriptor = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0) refuse(path, reason(errno));
-    const int failure = write_all(descriptor, data, size);
+    const int failure = write_all(descriptor, pieces);
     ::close(descriptor);
     if (failure) refuse(path, reason(failure));
     return;
@@ -61,7 +65,7 @@ void write_whole_file(const std::string& path, const void* data, size_t size) {
   const std::string beside = (folder / fmt::format(".{}.part-{}", target.filename().string(), ::getpid())).string();
   const int descriptor = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) refuse(path, reason(errno));
-  int failure = write_all(descriptor, data, size);
+  int failure = write_all(descriptor, pieces);
   if (!failure && existed && ::fchmod(descriptor, old.st_mode & 07777) != 0) failure = errno;
   if (!failure && ::fsync(descriptor) != 0) failure = errno;
   if (::close(descriptor) != 0 && !failure) failure = errno;

@@ -2,6 +2,7 @@
 // Files that are either whole or as they were before.
 
 #include <cstddef>
+#include <span>
 #include <string>
 
 namespace etendue {
@@ -10,5 +11,7 @@ namespace etendue {
 /// there. Devices and pipes are written straight. Throws Error naming the path and the reason; the path then holds what
 /// it held before and nothing is left beside it.
 void write_whole_file(const std::string& path, const void* data, size_t size);
+/// The same for bytes that lie in several places, one after the other.
+void write_whole_file(const std::string& path, std::span<const std::span<const std::byte>> pieces);
 
 }  // namespace etendue

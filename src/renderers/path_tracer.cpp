@@ -6,11 +6,19 @@
 // the path itself meeting one. Both find the same light, so they are combined by multiple importance sampling; a path
 // that comes from a specular lobe can meet luminaires in the second way only and takes that in full (Kajiya 1986;
 // Veach 1997, section 9). Russian roulette ends paths with a probability that keeps their expectation.
+//
+// In media a path may be scattered between surfaces: the distance is drawn by transport/media.h, T changes by the weight
+// found there, and the phase function takes the place of f |cos|. Surfaces that light passes straight on are no vertices:
+// the direction before them stays the one that was sampled. Weights compare the densities of directions alone, which is
+// the same comparison whichever strategy made the path, so they add up to one.
 
 #include "etendue/renderer.h"
 #include "transport/direct_light.h"
+#include "transport/media.h"
 #include "transport/medium_tracking.h"
 #include "transport/record.h"
+#include "transport/seeded_bug.h"
+#include "transport/visibility.h"
 
 namespace etendue {
 
@@ -39,10 +47,24 @@ class PathTracer final : public Renderer {
                       : "luminaires that paths cannot meet";
   }
 
+  std::vector<Advice> misses(const SceneTraits& traits) const override {
+    std::vector<Advice> advice;
+    std::vector<std::string> delta = traits.points;
+    delta.insert(delta.end(), traits.distant.begin(), traits.distant.end());
+    if (delta.empty()) return advice;
+    if (!next_event)
+      advice.push_back({"light of " + some_of(delta) + " without next event estimation", "PathTracer { next_event: true }"});
+    else if (!traits.specular.empty() && (!traits.smooth.empty() || !traits.media.empty()))
+      advice.push_back(
+          {"caustics of " + some_of(delta) + " by " + some_of(traits.specular), "BidirectionalPathTracer, LightTracer"});
+    return advice;
+  }
+
   Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
     const Scene& scene = context.scene;
-    const bool track_media = scene.has_interiors();
+    const bool track_media = scene.has_interiors(), simple_shadows = !track_media && !scene.has_null_surfaces();
     MediumStack media;
+    if (track_media) media_at(scene, camera_ray.origin, camera_ray.time, media);
     Spectrum radiance, throughput(1.0f);
     Ray ray = camera_ray;
     // How the current ray's direction was found: its solid-angle density [1/sr], and whether by a specular lobe.
@@ -51,12 +73,31 @@ class PathTracer final : public Renderer {
     Point3 from;
     Normal3 from_normal;
 
-    const auto emitted_at = [&](const SurfacePoint& point) {
-      const Vector3 out = -ray.direction;
-      const Spectrum emitted = point.object->emission->radiance(point, out, sample.wavelengths);
-      if (specular || !next_event || emitted.black()) return throughput * emitted;
-      const float light_density = direct_light_density(*light_sampler, from, from_normal, ray.direction, point);
-      return throughput * emitted * heuristic_weight(heuristic, direction_density, light_density);
+    const auto arrive = [&](int length, const Spectrum& light) {
+      if (seeded(SeededBug::skipped_length) && length == 4) return;
+      radiance += light;
+      sample.note_length(length, light);
+    };
+    const auto meet = [&](const SurfacePoint& point, int length) {
+      const Spectrum emitted = throughput * point.object->emission->radiance(point, -ray.direction, sample.wavelengths);
+      float weight = 1;
+      if (!specular && next_event && !emitted.black() && !seeded(SeededBug::luminaire_twice)) {
+        const float light_density = direct_light_density(*light_sampler, from, from_normal, ray.direction, point);
+        weight = heuristic_weight(heuristic, direction_density, light_density);
+        if (seeded(SeededBug::wrong_mis_weight)) weight = std::sqrt(weight);
+      }
+      arrive(length, emitted * weight);
+      record_emission(sample.record, emitted * weight, length, weight);
+    };
+    // Whether the path survives. The factor undoes the change of radiance by refraction, which comes back when the path
+    // leaves the medium.
+    const auto roulette = [&](int depth) {
+      if (depth >= roulette_depth) {
+        const float survival = std::min(1.0f, throughput.maximum() * eta_squared);
+        if (sample.random.next() >= survival) return false;
+        if (!seeded(SeededBug::roulette_undivided)) throughput /= survival;
+      }
+      return !throughput.black();
     };
 
     const bool one_luminaire = scene.luminaires().size() == 1;
@@ -66,20 +107,41 @@ class PathTracer final : public Renderer {
     bool awaits_light = false, goes_on = true;
     for (int depth = 1;; ++depth) {
       // The last vertex's shadow ray and the ray on from it need nothing of each other: the processor traces both at once.
-      const bool lit = awaits_light && !scene.any(direct.shadow);
+      const bool lit = awaits_light && !(simple_shadows && scene.any(direct.shadow));
       const bool found = goes_on && scene.nearest(ray, hit);
       if (lit) {
-        radiance += direct.light;
-        record_direct(sample.record, direct.light);
+        arrive(depth, direct.light);
+        record_direct(sample.record, direct.light, depth, direct.weight);
       }
       awaits_light = false;
       if (!goes_on) break;
+      if (track_media)
+        if (const VolumeShader* volume = volume_of(media)) {
+          const float reach = found ? hit.distance : infinity;
+          if (volume->emits()) arrive(depth, throughput * emitted_along(*volume, ray, reach, sample.wavelengths));
+          const FreeFlight flight = sample_free_flight(*volume, ray, reach, throughput, sample.wavelengths, sample.random);
+          throughput *= flight.weight;
+          if (throughput.black()) break;
+          if (flight.scattered) {
+            if (depth >= max_depth) break;
+            ray.origin = ray(flight.distance);
+            from = ray.origin;
+            from_normal = {};
+            record_volume(sample.record, from, throughput);
+            awaits_light = next_event && light_in_volume(scene, *volume, ray, media, throughput, sample, direct);
+            const Vector3 out = -ray.direction;
+            ray.direction = volume->sample_phase(from, out, sample.random.next_pair(), direction_density);
+            if (seeded(SeededBug::phase_density)) throughput *= direction_density * (4 * pi);
+            specular = false;
+            goes_on = roulette(depth);
+            continue;
+          }
+        }
       if (!found) {
         for (const SceneObject* far : scene.infinite_luminaires()) {
           far->surface_point(ray, hit, point);
-          const Spectrum light = emitted_at(point);
-          radiance += light;
-          record_escape(sample.record, *far, ray, throughput, light);
+          record_escape(sample.record, *far, ray, throughput);
+          meet(point, depth);
         }
         break;
       }
@@ -95,17 +157,15 @@ class PathTracer final : public Renderer {
       }
       const Vector3 out = -ray.direction;
       record_surface(sample.record, point, throughput);
-      if (point.object->luminaire()) {
-        const Spectrum light = emitted_at(point);
-        radiance += light;
-        record_emission(sample.record, light);
-      }
+      if (point.object->luminaire()) meet(point, depth);
       const bool first = depth == 1 && sample.features;
-      if (depth >= max_depth && !first) break;
+      // Behind the last vertex a surface that light passes straight on may still show a luminaire.
+      const bool last = depth >= max_depth;
+      if (last && !first && !scene.has_null_surfaces()) break;
 
       const Scatter* scatter = scattering_at(point, out, sample);
       if (first) note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths);
-      if (!scatter || depth >= max_depth) break;
+      if (!scatter || (last && !scatter->has(pass_through))) break;
 
       // All of the bounce's numbers at once: they depend on nothing, so the processor finds them while it does the rest.
       SampleStream& random = sample.random;
@@ -114,28 +174,38 @@ class PathTracer final : public Renderer {
       const float lobe_choice = scatter->has_choice() ? random.next() : (random.skip(), 0.0f);
       const Point2 scatter_direction = random.next_pair();
 
-      if (next_event && scatter->has(smooth_lobes)) {
+      const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : Transport::radiance;
+      const std::optional<ScatterSample> next = scatter->sample(out, lobe_choice, scatter_direction, transport);
+      if (next_event && !last && scatter->has(smooth_lobes)) {
         awaits_light = propose_direct_light(*light_sampler, point, *scatter, out, sample.wavelengths, light_choice, light_point,
                                             heuristic, direct);
-        if (awaits_light) direct.light *= throughput;
+        if (awaits_light) {
+          direct.light *= throughput;
+          if (seeded(SeededBug::lost_cosine)) direct.light /= scatter->cosine(direct.shadow.direction);
+          if (!simple_shadows) awaits_light = light_arrives(scene, point, out, media, sample, direct);
+        }
       }
 
       goes_on = false;
-      const std::optional<ScatterSample> next = scatter->sample(out, lobe_choice, scatter_direction);
-      if (!next) continue;
+      if (!next || (last && next->lobe != pass_through)) continue;
       throughput *= next->weight;
+      record_scatter(sample.record, *next);
+      if (next->lobe == pass_through) {
+        goes_on = !throughput.black();
+        if (track_media) cross_boundary(media, *point.object, point.normal, next->direction);
+        ray.origin = point.exit(ray.direction);
+        if (awaits_light) {
+          arrive(depth + 1, direct.light);
+          record_direct(sample.record, direct.light, depth + 1, direct.weight);
+          awaits_light = false;
+        }
+        --depth;
+        continue;
+      }
       eta_squared *= next->eta * next->eta;
       if (next->dispersive) throughput *= sample.wavelengths.drop_secondary();
-      record_scatter(sample.record, *next);
-
-      // The factor undoes the change of radiance by refraction, which comes back when the path leaves the medium.
-      if (depth >= roulette_depth) {
-        const float survival = std::min(0.95f, throughput.maximum() * eta_squared);
-        if (random.next() >= survival) continue;
-        throughput /= survival;
-      }
-      if (throughput.black()) continue;
-      goes_on = true;
+      goes_on = roulette(depth);
+      if (!goes_on) continue;
 
       if (track_media && next->transmitted()) cross_boundary(media, *point.object, point.normal, next->direction);
       from = point.position;
@@ -155,6 +225,30 @@ class PathTracer final : public Renderer {
  private:
   /// Growth of the footprint after a rough reflection [per distance]: maps seen indirectly are filtered coarsely.
   static constexpr float diffuse_spread = 0.1f;
+
+  /// Light sampled from a point in a medium, with what the way to it lets through.
+  bool light_in_volume(const Scene& scene, const VolumeShader& volume, const Ray& arriving, const MediumStack& media,
+                       const Spectrum& throughput, SampleContext& sample, DirectLight& direct) const {
+    const float choice = sample.random.next();
+    if (!propose_direct_light(*light_sampler, volume, arriving.origin, -arriving.direction, arriving.time, sample.wavelengths,
+                              choice, sample.random.next_pair(), heuristic, direct))
+      return false;
+    direct.light *= throughput * visible_fraction(scene, direct.shadow, &media, sample.wavelengths, sample.arena);
+    return !direct.light.black();
+  }
+
+  /// Shadow rays through media and past surfaces that light passes straight on.
+  static bool light_arrives(const Scene& scene, const SurfacePoint& point, const Vector3& out, const MediumStack& media,
+                            SampleContext& sample, DirectLight& direct) {
+    MediumStack around = media;
+    const bool tracked = point.media != nullptr;
+    // On the other side of the surface than the path came from, the object's inside begins or ends.
+    const bool through = (dot(point.normal, out) > 0) != (dot(point.normal, direct.shadow.direction) > 0);
+    if (tracked && through && point.object->shader->transmits())
+      cross_boundary(around, *point.object, point.normal, direct.shadow.direction);
+    direct.light *= visible_fraction(scene, direct.shadow, tracked ? &around : nullptr, sample.wavelengths, sample.arena);
+    return !direct.light.black();
+  }
 
   const Scatter* scattering_at(const SurfacePoint& point, const Vector3& out, SampleContext& sample) const {
     const SceneObject& object = *point.object;

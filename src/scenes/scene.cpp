@@ -73,6 +73,8 @@ void Scene::prepare() {
     if (object.luminaire() && seen.contains(&object))
       object.fail("", "a luminaire stands both in a scene and in one nested in it");
     if (object.infinite()) object.fail("", "an object at infinity cannot stand in a nested scene");
+    if (object.luminaire() && object.delta())
+      object.fail("", "a luminaire without extent in a nested scene would never be found: put it into the outermost one");
     object.luminaire_index = -1;
   });
   for (const Ref<SceneObject>& object : objects)

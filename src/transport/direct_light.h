@@ -11,36 +11,77 @@ namespace etendue {
 
 /// Light that reaches a point unless something lies on the shadow ray.
 struct DirectLight {
-  Spectrum light;  ///< reflected radiance [W m^-2 sr^-1 nm^-1]
+  Spectrum light;  ///< scattered radiance [W m^-2 sr^-1 nm^-1]
   Ray shadow;
+  float weight = 1;  ///< of multiple importance sampling, which is part of `light`
 };
 
-/// One sample of direct light by choosing a point on a luminaire. With out = direction the path came from, in = direction
-/// to the light, the reflected radiance is the integral over directions of f(out, in) L_e(in) V |cos(in)|. A luminaire is
-/// chosen with probability P and a point on it with solid-angle density p(in), so the estimate is
-///     w f L_e V |cos| / (P p),
-/// with the multiple-importance weight w of P p against the density with which the shader itself gives `in`.
-/// `shader_sampling` says whether that second strategy is used at all; if not, w = 1. `choice` picks the luminaire, `u` the
-/// point on it. All but V is computed here; false: nothing can come, and `direct` is not to be looked at.
-inline bool propose_direct_light(const LightSampler& lights, const SurfacePoint& point, const Scatter& scatter,
-                                 const Vector3& out, const Wavelengths& wavelengths, float choice, Point2 u,
-                                 Heuristic heuristic, DirectLight& direct, bool shader_sampling = true) {
-  const LightChoice light = lights.choose(point.position, point.normal, choice);
+/// One sample of direct light by choosing a point on a luminaire. The light scattered at a point is the integral over
+/// directions of s(in) L_e(in) V, with s = f |cos| on a surface and the phase function in a medium. A luminaire is chosen
+/// with probability P and a point on it with solid-angle density p(in), so the estimate is
+///     w s L_e V / (P p),
+/// with the multiple-importance weight w of P p against the density with which scattering itself gives `in`.
+/// `scattering(in)` returns s [1/sr] and that density; 0 as density: that strategy is not used, w = 1. `choice` picks the
+/// luminaire, `u` the point on it; `leave(in, ray)` lets a ray leave the point, `towards(sample, ray)` one to another point.
+/// All but V is computed here; false: nothing can come, and `direct` is not to be looked at.
+template <class Scattering, class Leave>
+bool propose_light(const LightSampler& lights, const Point3& from, const Normal3& normal, float time,
+                   const Wavelengths& wavelengths, float choice, Point2 u, Heuristic heuristic, DirectLight& direct,
+                   const Scattering& scattering, const Leave& leave) {
+  const LightChoice light = lights.choose(from, normal, choice);
   if (!light.luminaire) return false;
-  const SurfaceSample s = light.luminaire->sample_visible(point.position, u, point.time);
+  const SurfaceSample s = light.luminaire->sample_visible(from, u, time);
   if (!(s.density > 0)) return false;
-  const ScatterValue f = scatter.value_and_density(out, s.direction, Transport::radiance, smooth_lobes);
+  const ScatterValue f = scattering(s.direction);
   if (f.value.black()) return false;
   const Spectrum emitted = light.luminaire->emission->radiance(s.point, -s.direction, wavelengths);
   if (emitted.black()) return false;
-  if (s.infinite)
-    point.leave(s.direction, direct.shadow);
-  else
-    point.towards(s.point.position, s.point.error, direct.shadow);
+  leave(s, direct.shadow);
   const float density = light.probability * s.density;
-  const float weight = weight_over_density(heuristic, density, s.delta || !shader_sampling ? 0 : f.density);
-  direct.light = f.value * emitted * (scatter.cosine(s.direction) * weight);
+  const float weight = weight_over_density(heuristic, density, s.delta ? 0 : f.density);
+  direct.light = f.value * emitted * weight;
+  direct.weight = weight * density;
   return true;
+}
+
+/// On a surface; `out` is the direction the path came from. `shader_sampling` says whether directions are also sampled by
+/// the shader.
+inline bool propose_direct_light(const LightSampler& lights, const SurfacePoint& point, const Scatter& scatter,
+                                 const Vector3& out, const Wavelengths& wavelengths, float choice, Point2 u,
+                                 Heuristic heuristic, DirectLight& direct, bool shader_sampling = true) {
+  return propose_light(
+      lights, point.position, point.normal, point.time, wavelengths, choice, u, heuristic, direct,
+      [&](const Vector3& in) {
+        // Of all lobes, as the path will be continued by: the density is that of choosing this direction among them.
+        ScatterValue f = scatter.value_and_density(out, in, Transport::radiance);
+        f.value *= scatter.cosine(in);
+        if (!shader_sampling) f.density = 0;
+        return f;
+      },
+      [&](const SurfaceSample& s, Ray& ray) {
+        if (s.infinite)
+          point.leave(s.direction, ray);
+        else
+          point.towards(s.point.position, s.point.error, ray);
+      });
+}
+
+/// In a medium.
+inline bool propose_direct_light(const LightSampler& lights, const VolumeShader& volume, const Point3& at, const Vector3& out,
+                                 float time, const Wavelengths& wavelengths, float choice, Point2 u, Heuristic heuristic,
+                                 DirectLight& direct) {
+  return propose_light(
+      lights, at, {}, time, wavelengths, choice, u, heuristic, direct,
+      [&](const Vector3& in) {
+        const float phase = volume.phase(at, out, in);
+        return ScatterValue{Spectrum(phase), phase};
+      },
+      [&](const SurfaceSample& s, Ray& ray) {
+        ray.origin = at;
+        ray.direction = s.direction;
+        ray.time = time;
+        ray.maximum = s.infinite ? infinity : s.distance * (1 - 1e-4f) - 2 * s.point.error;
+      });
 }
 
 /// The solid-angle density [1/sr] with which the above would have given a point of a luminaire, seen from `from`.

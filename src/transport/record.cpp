@@ -6,12 +6,10 @@
 
 namespace etendue {
 
-namespace {
-std::string name_of(const SceneObject& object) {
+std::string object_name(const SceneObject& object) {
   const std::string& name = object.class_info().name;
   return object.origin && !object.origin->name.empty() ? object.origin->name + " (" + name + ")" : name;
 }
-}  // namespace
 
 std::string lobe_name(Lobe lobe) {
   switch (lobe) {
@@ -29,22 +27,28 @@ std::string lobe_name(Lobe lobe) {
 void record_surface_slowly(PathRecord& record, const SurfacePoint& p, const Spectrum& throughput) {
   PathRecord::Vertex v;
   v.kind = "surface";
-  v.object = name_of(*p.object);
+  v.object = object_name(*p.object);
   v.position = p.position;
   v.normal = p.normal;
   v.throughput = throughput;
   record.vertices.push_back(std::move(v));
 }
 
-void record_escape_slowly(PathRecord& record, const SceneObject& far, const Ray& ray, const Spectrum& throughput,
-                          const Spectrum& light) {
+void record_volume_slowly(PathRecord& record, const Point3& position, const Spectrum& throughput) {
+  PathRecord::Vertex v;
+  v.kind = "volume";
+  v.position = position;
+  v.throughput = throughput;
+  record.vertices.push_back(std::move(v));
+}
+
+void record_escape_slowly(PathRecord& record, const SceneObject& far, const Ray& ray, const Spectrum& throughput) {
   PathRecord::Vertex v;
   v.kind = "escaped";
-  v.object = name_of(far);
+  v.object = object_name(far);
   v.position = ray.origin;
   v.normal = Normal3(ray.direction);
   v.throughput = throughput;
-  v.emitted = light;
   record.vertices.push_back(std::move(v));
 }
 

@@ -1,0 +1,94 @@
+// What a renderer cannot find of the light in a scene, and which renderers can.
+
+#include "app/advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/text.h"
+#include "etendue/registry.h"
+
+namespace etendue {
+
+namespace {
+
+/// The names in "PathTracer, LightTracer"; empty when the text is something else, such as advice to change a part.
+std::vector<std::string> class_names(const std::string& text) {
+  std::vector<std::string> names;
+  size_t at = 0;
+  while (at < text.size()) {
+    size_t end = text.find_first_of(", ", at);
+    if (end == std::string::npos) end = text.size();
+    const std::string word = text.substr(at, end - at);
+    at = end + 1;
+    if (word.empty() || word == "and" || word == "or") continue;
+    const auto part_of_name = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    if (!std::isupper(static_cast<unsigned char>(word[0])) || !std::ranges::all_of(word, part_of_name)) return {};
+    names.push_back(word);
+  }
+  return names;
+}
+
+/// "a, b and c"
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+bool known_renderer(const std::string& name) {
+  const ClassInfo* renderer = Registry::instance().find("Renderer");
+  const ClassInfo* info = Registry::instance().find(name);
+  return info && renderer && info->is_a(*renderer) && !info->abstract();
+}
+
+}  // namespace
+
+std::string advice_text(const std::string& renderer, const Advice& advice) {
+  const std::string text = renderer + " cannot find " + advice.lost;
+  if (advice.instead.empty()) return text + "; no known renderer can";
+  std::vector<std::string> names = class_names(advice.instead);
+  if (names.empty()) return text + "; " + advice.instead + (advice.instead.ends_with("}") ? " can" : "");
+  // Renderers may come from plugins that are not loaded: those that cannot be had are not named.
+  std::erase_if(names, [](const std::string& name) { return !known_renderer(name); });
+  return text + "; " + (names.empty() ? "no known renderer" : listed(names)) + " can";
+}
+
+std::vector<std::string> advice_lines(const Job& job) {
+  std::vector<std::string> lines;
+  for (const Advice& advice : job.renderer->misses(scene_traits(*job.scene, *job.camera)))
+    lines.push_back(advice_text(job.renderer->class_info().name, advice));
+  return lines;
+}
+
+void advise(const Job& job) {
+  for (const std::string& line : advice_lines(job)) warn(line);
+}
+
+std::vector<std::string> renderers_that_find_all(const SceneTraits& traits) {
+  std::vector<std::string> names;
+  const ClassInfo* interface = Registry::instance().find("Renderer");
+  for (const ClassInfo* info : Registry::instance().subclasses(*interface))
+    if (info != interface && ref_cast<Renderer>(info->create())->misses(traits).empty()) names.push_back(info->name);
+  return names;
+}
+
+std::string luminaires_text(const SceneTraits& traits) {
+  std::uint64_t count = 0;
+  std::string kinds;
+  const auto add = [&](const std::vector<std::string>& list, const char* one, const char* several) {
+    if (list.empty()) return;
+    count += list.size();
+    kinds += fmt::format("{}{} {}", kinds.empty() ? ": " : ", ", grouped(list.size()), list.size() == 1 ? one : several);
+  };
+  add(traits.points, "point light", "point lights");
+  add(traits.distant, "distant light", "distant lights");
+  add(traits.areas, "area light", "area lights");
+  add(traits.environments, "environment", "environments");
+  add(traits.nested_luminaires, "in a nested scene", "in nested scenes");
+  add(traits.emissive_media, "emitting volume", "emitting volumes");
+  return grouped(count) + kinds;
+}
+
+}  // namespace etendue

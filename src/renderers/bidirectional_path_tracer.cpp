@@ -1,0 +1,300 @@
+// Bidirectional path tracing (Lafortune & Willems 1993; Veach & Guibas 1994; Veach 1997, chapter 10).
+//
+// For each sample one walk x_0, x_1, … begins at a luminaire and one z_0, z_1, … at the lens. Every vertex of the one
+// is connected to every vertex of the other: s vertices of the first and t of the second make a path of s + t - 1 segments,
+// whose estimate is
+//     C_{s,t} = w_{s,t} alpha_s c_{s,t} alpha_t,
+// with alpha the walks' throughputs, c the light that passes the connection (f |cos| V |cos| f / d^2 between two surfaces;
+// cosines are absent in media, and V includes what media let through) and w the multiple-importance weight of the
+// strategy among all that could have made the same path (transport/bidirectional_weight.h).
+//   s = 0: the camera walk meets a luminaire.        s = 1: a luminaire is sampled as seen from z_{t-1}.
+//   t = 1: a light walk goes to the lens, and the light falls on the film where it does.
+
+#include "transport/bidirectional_weight.h"
+#include "transport/record_walk.h"
+#include "transport/seeded_bug.h"
+#include "transport/subpaths.h"
+#include "transport/visibility.h"
+
+namespace etendue {
+
+class BidirectionalPathTracer final : public Renderer {
+  int max_depth = 64;
+  int roulette_depth = 5;
+  Heuristic heuristic = Heuristic::power;
+  int light_vertices = -1, camera_vertices = -1;
+  bool weighted = true;
+
+ public:
+  static void describe(Description<BidirectionalPathTracer>& d) {
+    d.summary("Paths from the luminaires and from the camera, connected in all ways and weighted by how well each does.",
+              "Lafortune & Willems 1993; Veach & Guibas 1994; Veach 1997, chapter 10")
+        .member<&BidirectionalPathTracer::max_depth>(
+            "max_depth", "1", "longest path, in segments: 1 shows luminaires only, 2 adds direct light", at_least(1))
+        .member<&BidirectionalPathTracer::roulette_depth>(
+            "roulette_depth", "1", "segments of either walk before Russian roulette may end it", at_least(1))
+        .member<&BidirectionalPathTracer::heuristic>("heuristic", "", "how strategies are weighted",
+                                                     choices("balance", "power"))
+        .member<&BidirectionalPathTracer::light_vertices>(
+            "light_vertices", "1", "shows the strategies with this many vertices from the luminaire alone; -1: all",
+            at_least(-1))
+        .member<&BidirectionalPathTracer::camera_vertices>(
+            "camera_vertices", "1", "shows the strategies with this many vertices from the camera alone; -1: all", at_least(-1))
+        .member<&BidirectionalPathTracer::weighted>("weighted", "",
+                                                    "whether strategies are weighted; without, each shows all light it finds");
+  }
+
+  std::string limits() const override {
+    return "specular reflections of light that comes from luminaires without extent by specular surfaces";
+  }
+  std::vector<Advice> misses(const SceneTraits& traits) const override {
+    std::vector<Advice> advice;
+    if (light_vertices >= 0 || camera_vertices >= 0 || !weighted)
+      advice.push_back({"all light: its members choose or do not weight strategies", ""});
+    std::vector<std::string> delta = traits.points;
+    delta.insert(delta.end(), traits.distant.begin(), traits.distant.end());
+    if (!delta.empty() && !traits.specular.empty())
+      advice.push_back({"mirror images of caustics of " + some_of(delta) + " by " + some_of(traits.specular),
+                        "(give the luminaire a small area)"});
+    return advice;
+  }
+
+  void begin(const RenderContext& context) override {
+    Renderer::begin(context);
+    parallel_ = has_parallel_rays(context.camera, context.image.width);
+  }
+
+  Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
+    if (sample.features) note_first_surface(context.scene, camera_ray, sample);
+    static thread_local std::vector<Vertex> camera, light;
+    Sample s{context, sample, camera, light, sample.wavelengths};
+    std::function<void(int, const Spectrum&)> emitted = [&](int length, const Spectrum& value) {
+      if (shows(0, length + 1)) add(s, length, 0, length + 1, 1, value);
+    };
+    walk_from_camera(context, camera_ray, parallel_, {max_depth + 1, roulette_depth}, sample.wavelengths, sample.random,
+                     sample.arena, camera, &emitted);
+    sample.random.jump(light_dimension);
+    walk_from_luminaire(context.scene, *light_sampler, camera_ray.time, {max_depth, roulette_depth}, s.light_wavelengths,
+                        sample.random, sample.arena, light, s.emitted);
+    if (light.size() > 1) s.direct = sampled_density(*light_sampler, light[1], light[0], light[1].out);
+
+    for (int t = 2; t <= int(camera.size()); ++t) {
+      const Vertex& z = camera[size_t(t - 1)];
+      meet(s, t);
+      if (!z.connectable()) continue;
+      if (t <= max_depth) sample_luminaire(s, t);
+      for (int n = 2; n <= int(light.size()) && n + t - 1 <= max_depth; ++n)
+        if (light[size_t(n - 1)].connectable()) connect(s, n, t);
+    }
+    for (int n = 2; n <= int(light.size()) && n <= max_depth; ++n)
+      if (light[size_t(n - 1)].connectable()) connect_to_lens(s, n);
+
+    if (sample.record) {
+      record_walk(sample.record->vertices, std::span<const Vertex>(camera).subspan(1));
+      record_walk(sample.record->light_vertices, light);
+    }
+    return s.radiance;
+  }
+
+ private:
+  // Parts of a sample keep their dimensions whatever the others used.
+  static constexpr std::uint32_t light_dimension = 2048, luminaire_dimension = 4096, lens_dimension = 6144;
+
+  struct Sample {
+    const RenderContext& context;
+    SampleContext& at;
+    std::vector<Vertex>& camera;
+    std::vector<Vertex>& light;
+    Wavelengths light_wavelengths;
+    Spectrum radiance{};
+    EmittedLight emitted{};
+    float direct = 0;  ///< density of light[0] when sampled as seen from light[1]
+
+    const Scene& scene() const { return context.scene; }
+    float radius() const { return context.scene.radius(); }
+  };
+
+  /// s = 0: the camera walk's last vertex lies on a luminaire.
+  void meet(Sample& s, int t) const {
+    const Vertex& z = s.camera[size_t(t - 1)];
+    const int length = t - 1;
+    if (!shows(0, t)) return;
+    const auto met = [&](const SurfacePoint& point) {
+      const Spectrum light = z.throughput * point.object->emission->radiance(point, z.out, s.at.wavelengths);
+      if (light.black()) return;
+      float weight = 1;
+      if (length > 1 && weighted) {
+        const Vertex& x1 = s.camera[size_t(t - 2)];
+        Vertex x0 = z;
+        x0.point = point;
+        ConnectedPath path{nullptr, 0, s.camera.data(), t, 0, 0, 0, 0, 0, 0, true};
+        path.begun = path.camera_last_from_light = begun_density(*light_sampler, x1, x0, -z.out);
+        path.direct = sampled_density(*light_sampler, x1, x0, -z.out);
+        path.camera_before_from_light = vertex_density(x0.infinite ? 1 : point.object->emission->density(point, z.out), x0, x1,
+                                                       z.out, z.chance, s.radius());
+        if (path.begun > 0 && !seeded(SeededBug::luminaire_twice)) weight = bidirectional_weight(path, heuristic);
+      }
+      add(s, length, 0, t, weight, light);
+    };
+    if (z.kind == Vertex::Kind::escape) {
+      SurfacePoint point;
+      Ray ray;
+      ray.origin = s.camera[size_t(t - 2)].point.position;
+      ray.direction = -z.out;
+      ray.time = s.camera[0].point.time;
+      for (const SceneObject* far : s.scene().infinite_luminaires()) {
+        far->surface_point(ray, {}, point);
+        met(point);
+      }
+    } else if (z.on_surface() && z.point.object->luminaire()) {
+      met(z.point);
+    }
+  }
+
+  /// s = 1.
+  void sample_luminaire(Sample& s, int t) const {
+    if (!shows(1, t)) return;
+    const Vertex& z = s.camera[size_t(t - 1)];
+    SampleStream& random = s.at.random;
+    random.jump(luminaire_dimension + 3 * std::uint32_t(t));
+    const float which = random.next();
+    const Point2 u = random.next_pair();
+    const LightChoice choice = light_sampler->choose(z.point.position, z.point.normal, which);
+    if (!choice.luminaire) return;
+    const SurfaceSample l = choice.luminaire->sample_visible(z.point.position, u, z.point.time);
+    if (!(l.density > 0)) return;
+    const ScatterValue f = scattering(z, z.out, l.direction, Transport::radiance);
+    if (f.value.black()) return;
+    const Spectrum emitted = choice.luminaire->emission->radiance(l.point, -l.direction, s.at.wavelengths);
+    Spectrum light = z.throughput * f.value * emitted / (choice.probability * l.density);
+    if (light.black()) return;
+
+    Vertex x0;
+    x0.kind = Vertex::Kind::luminaire;
+    x0.infinite = l.infinite;
+    x0.point = l.point;
+    MediumStack scratch;
+    const Spectrum visible = visible_fraction(s.scene(), l.infinite ? leaving_ray(z, l.direction) : connecting_ray(z, x0),
+                                              media_towards(z, l.direction, scratch), s.at.wavelengths, s.at.arena);
+    if (visible.black()) return;
+    light *= visible;
+    float weight = 1;
+    if (weighted) {
+      const float chance = visible.average(), radius = s.radius();
+      ConnectedPath path{&x0, 1, s.camera.data(), t, 0, 0, 0, 0, 0, 0, !l.delta};
+      path.begun = begun_density(*light_sampler, z, x0, l.direction);
+      path.direct = sampled_density(*light_sampler, z, x0, l.direction);
+      path.light_last_from_camera = vertex_density(f.density, z, x0, l.direction, chance, radius);
+      path.camera_last_from_light = vertex_density(l.infinite ? 1 : choice.luminaire->emission->density(l.point, -l.direction),
+                                                   x0, z, -l.direction, chance, radius);
+      path.camera_before_from_light = before_from(s.camera, t, l.direction, Transport::importance, radius);
+      if (path.begun > 0 && path.direct > 0) weight = bidirectional_weight(path, heuristic);
+    }
+    if (seeded(SeededBug::wrong_measure) && !l.infinite) light *= 1 / (1 + l.distance);
+    add(s, t, 1, t, weight, light);
+  }
+
+  /// s > 1, t > 1.
+  void connect(Sample& s, int n, int t) const {
+    if (!shows(n, t)) return;
+    const Vertex &y = s.light[size_t(n - 1)], &z = s.camera[size_t(t - 1)];
+    const Vector3 d = y.point.position - z.point.position;
+    const float squared = length_squared(d);
+    if (!(squared > 0)) return;
+    const Vector3 direction = d / std::sqrt(squared);
+    const ScatterValue at_camera = scattering(z, z.out, direction, Transport::radiance);
+    if (at_camera.value.black()) return;
+    const ScatterValue at_light = scattering(y, y.out, -direction, Transport::importance);
+    Spectrum light = y.throughput * at_light.value * at_camera.value * z.throughput / squared;
+    // Both walks have made up for the wavelengths they dropped: once is enough.
+    if (y.single && z.single) light /= float(spectrum_size);
+    if (light.black()) return;
+    MediumStack scratch;
+    const Spectrum visible =
+        visible_fraction(s.scene(), connecting_ray(z, y), media_towards(z, direction, scratch), s.at.wavelengths, s.at.arena);
+    if (visible.black()) return;
+    light *= visible;
+    float weight = 1;
+    if (weighted) {
+      const float chance = visible.average(), radius = s.radius();
+      ConnectedPath path{s.light.data(),        n, s.camera.data(), t, 0, 0, 0, 0, s.direct, s.light[0].forward,
+                         can_be_met(s.light[0])};
+      path.light_last_from_camera = vertex_density(at_camera.density, z, y, direction, chance, radius);
+      path.light_before_from_camera = before_from(s.light, n, -direction, Transport::radiance, radius);
+      path.camera_last_from_light = vertex_density(at_light.density, y, z, -direction, chance, radius);
+      path.camera_before_from_light = before_from(s.camera, t, direction, Transport::importance, radius);
+      weight = bidirectional_weight(path, heuristic);
+    }
+    add(s, n + t - 1, n, t, weight, light);
+  }
+
+  /// t = 1.
+  void connect_to_lens(Sample& s, int n) const {
+    if (!shows(n, 1)) return;
+    const Vertex& y = s.light[size_t(n - 1)];
+    s.at.random.jump(lens_dimension + 2 * std::uint32_t(n));
+    const auto lens = s.context.camera.sample_lens(y.point.position, y.point.time, s.at.random.next_pair());
+    if (!lens || !(lens->density > 0)) return;
+    const ScatterValue f = scattering(y, y.out, lens->direction, Transport::importance);
+    Spectrum light = y.throughput * f.value * (lens->importance / lens->density);
+    if (seeded(SeededBug::lens_importance)) light *= square(lens->distance) / lens->density;
+    if (light.black()) return;
+    MediumStack scratch;
+    const Spectrum visible = visible_fraction(s.scene(), lens_ray(y, *lens), media_towards(y, lens->direction, scratch),
+                                              s.light_wavelengths, s.at.arena);
+    if (visible.black()) return;
+    light *= visible;
+    float weight = 1;
+    if (weighted) {
+      const float radius = s.radius();
+      Vertex z = s.camera[0];
+      z.point.position = lens->lens;
+      Ray ray;
+      ray.origin = lens->lens;
+      ray.direction = -lens->direction;
+      ray.time = y.point.time;
+      ConnectedPath path{s.light.data(), n, &z, 1, 0, 0, 0, 0, s.direct, s.light[0].forward, can_be_met(s.light[0])};
+      path.light_last_from_camera = vertex_density(camera_direction_density(s.context.camera, parallel_, ray), z, y,
+                                                   ray.direction, visible.average(), radius);
+      path.light_before_from_camera = before_from(s.light, n, lens->direction, Transport::radiance, radius);
+      weight = bidirectional_weight(path, heuristic);
+    }
+    if (seeded(SeededBug::skipped_length) && n == 4) return;
+    light *= weight;
+    s.at.splat(lens->film, light, s.light_wavelengths, n);
+    note(s, n, n, 1, weight, light, lens->film, true);
+  }
+
+  bool shows(int s, int t) const {
+    return (light_vertices < 0 || s == light_vertices) && (camera_vertices < 0 || t == camera_vertices);
+  }
+
+  void add(Sample& s, int length, int n, int t, float weight, Spectrum light) const {
+    if (seeded(SeededBug::skipped_length) && length == 4) return;
+    light *= weight;
+    s.radiance += light;
+    s.at.note_length(length, light);
+    note(s, length, n, t, weight, light, {}, false);
+  }
+  void note(Sample& s, int length, int n, int t, float weight, const Spectrum& light, Point2 film, bool splat) const {
+    if (!s.at.record) [[likely]]
+      return;
+    s.at.record->contributions.push_back({std::to_string(n) + " from the luminaire, " + std::to_string(t) + " from the camera",
+                                          length, weight, light, film, splat});
+  }
+
+  /// The density of a walk's vertex before its last, `count` vertices long, had a walk come from `from` through the last.
+  static float before_from(const std::vector<Vertex>& walk, int count, const Vector3& from, Transport transport, float radius) {
+    if (count < 2) return 0;
+    const Vertex &last = walk[size_t(count - 1)], &before = walk[size_t(count - 2)];
+    return vertex_density(scattering_density(last, from, last.out, transport), last, before, last.out, last.chance, radius);
+  }
+
+  static bool can_be_met(const Vertex& luminaire) { return !luminaire.point.object->delta(); }
+
+  bool parallel_ = false;
+};
+
+static const Register<BidirectionalPathTracer> registered;
+
+}  // namespace etendue

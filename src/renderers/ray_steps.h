@@ -1,0 +1,127 @@
+#pragma once
+// Steps that renderers which follow rays from the camera have in common.
+
+#include "etendue/renderer.h"
+#include "transport/media.h"
+#include "transport/medium_tracking.h"
+
+namespace etendue {
+
+/// The media around the beginning of a camera ray; null when the scene has nothing that a ray could be in.
+inline MediumStack* media_around(const Scene& scene, const Ray& ray, MediumStack& media) {
+  if (!scene.has_interiors()) return nullptr;
+  media_at(scene, ray.origin, ray.time, media);
+  return &media;
+}
+
+/// The nearest surface on a ray; boundaries inside something of higher priority are crossed on the way, which moves the
+/// ray's origin. `media` are those around the ray; null: nothing is tracked.
+inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& hit, SurfacePoint& point) {
+  while (scene.nearest(ray, hit)) {
+    scene.locate(ray, hit, point);
+    point.media = media;
+    if (!media || !hidden_by_priority(*media, *point.object)) return true;
+    cross_boundary(*media, *point.object, point.normal, ray.direction);
+    ray.origin = point.exit(ray.direction);
+  }
+  return false;
+}
+
+/// How light is scattered towards `out`; null: it is not.
+inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& out, const Wavelengths& wavelengths,
+                                    Arena& arena) {
+  const SceneObject& object = *point.object;
+  if (!object.shader) return nullptr;
+  if (object.sides != Sides::both && (dot(point.normal, out) > 0) != (object.sides == Sides::front)) return nullptr;
+  return object.shader->bind(point, wavelengths, arena);
+}
+
+/// Makes a ray go on from a point in a sampled direction; `media` are changed when it goes through the surface. Straight
+/// on, its footprint stays what it is.
+inline void go_on(const SurfacePoint& point, const ScatterSample& next, Ray& ray, MediumStack* media) {
+  constexpr float diffuse_spread = 0.1f;  // per distance: maps seen by way of rough surfaces are filtered coarsely
+  if (media && next.transmitted()) cross_boundary(*media, *point.object, point.normal, next.direction);
+  ray.origin = point.exit(next.direction);
+  ray.direction = next.direction;
+  ray.maximum = infinity;
+  ray.width = point.footprint;
+  if (!next.specular()) ray.spread = std::max(ray.spread, diffuse_spread);
+}
+
+/// Light that a luminaire sends to a point, if nothing lies on the shadow ray.
+struct LuminaireSample {
+  Vector3 direction;  ///< unit, to the luminaire
+  Spectrum radiance;  ///< [W m^-2 sr^-1 nm^-1]
+  float density = 0;  ///< [1/sr], without the probability of choosing this luminaire
+  bool delta = false;
+  Ray shadow;
+};
+
+/// Chooses a point on a luminaire; false: no light comes from there.
+inline bool sample_luminaire(const SceneObject& luminaire, const SurfacePoint& point, const Wavelengths& wavelengths, Point2 u,
+                             LuminaireSample& light) {
+  const SurfaceSample s = luminaire.sample_visible(point.position, u, point.time);
+  if (!(s.density > 0)) return false;
+  light.radiance = luminaire.emission->radiance(s.point, -s.direction, wavelengths);
+  if (light.radiance.black()) return false;
+  if (s.infinite)
+    point.leave(s.direction, light.shadow);
+  else
+    point.towards(s.point.position, s.point.error, light.shadow);
+  light.direction = s.direction;
+  light.density = s.density;
+  light.delta = s.delta;
+  return true;
+}
+
+/// A ray and all that belongs to it alone: branches of a tree may be in different media, and carry different wavelengths.
+struct RayBranch {
+  Ray ray;
+  Spectrum throughput{1.0f};
+  Wavelengths wavelengths;
+  MediumStack media = {};
+  bool tracked = false;  ///< whether media are
+  int depth = 1;         ///< segments from the camera to the ray's end
+
+  RayBranch(const Scene& scene, const Ray& camera_ray, const Wavelengths& w) : ray(camera_ray), wavelengths(w) {
+    tracked = media_around(scene, ray, media) != nullptr;
+  }
+  MediumStack* around() { return tracked ? &media : nullptr; }
+};
+
+/// What all branches of one sample's tree work on, and the light they gather.
+struct RayTree {
+  const Scene& scene;
+  SampleContext& sample;
+  Spectrum radiance = {};
+
+  void add(int length, const Spectrum& light) {
+    radiance += light;
+    sample.note_length(length, light);
+  }
+};
+
+/// What a renderer that knows nothing of media misses.
+inline void miss_media(const SceneTraits& traits, std::vector<Advice>& list) {
+  if (!traits.media.empty())
+    list.push_back({"absorption and scattering in " + some_of(traits.media), "PathTracer, BidirectionalPathTracer"});
+  if (!traits.emissive_media.empty())
+    list.push_back({"light that " + some_of(traits.emissive_media) + " send out from within", "PathTracer"});
+}
+
+/// The names of all luminaires without extent.
+inline std::vector<std::string> delta_names(const SceneTraits& traits) {
+  std::vector<std::string> names = traits.points;
+  names.insert(names.end(), traits.distant.begin(), traits.distant.end());
+  return names;
+}
+
+/// What a renderer whose paths all begin at the camera misses: no path meets a luminaire without extent.
+inline void miss_caustics(const SceneTraits& traits, std::vector<Advice>& list) {
+  if (traits.delta_luminaires() && !traits.specular.empty() && !traits.smooth.empty())
+    list.push_back({"light of " + some_of(delta_names(traits)) + " that " + some_of(traits.specular) + " throw onto " +
+                        some_of(traits.smooth) + " (caustics)",
+                    "BidirectionalPathTracer"});
+}
+
+}  // namespace etendue

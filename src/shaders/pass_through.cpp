@@ -1,0 +1,47 @@
+// PassThrough: a boundary that is not there for light.
+
+#include "etendue/shader.h"
+
+namespace etendue {
+namespace {
+
+class PassThroughScatter final : public Scatter {
+ public:
+  // Around the geometric normal: interpolated normals play no part, and where they disagree with the surface nothing may
+  // be lost.
+  explicit PassThroughScatter(const SurfacePoint& p) : Scatter(p, Frame(p.normal), pass_through) { has_choice_ = false; }
+
+ protected:
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
+  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
+    s.in = -out;
+    s.value = Spectrum(1.0f);
+    s.density = 1;
+    s.lobe = pass_through;
+    s.eta = 1;
+    return true;
+  }
+  Spectrum local_albedo(const Vector3&, Lobes which) const override {
+    return (which & pass_through) ? Spectrum(1.0f) : Spectrum();
+  }
+};
+
+class PassThrough final : public Shader {
+ public:
+  static void describe(Description<PassThrough>& d) {
+    d.summary(
+        "Everything goes straight on, undiminished: the boundary of a medium that neither reflects nor refracts, such as "
+        "that of a cloud. The index of what lies inside is 1.");
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths&, Arena& arena) const override {
+    return arena.make<PassThroughScatter>(p);
+  }
+  Lobes possible_lobes() const override { return pass_through; }
+};
+
+const Register<PassThrough> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,38 @@
+#pragma once
+// Multiple importance sampling over the ways to build one path from both ends.
+//
+// A path x_0 (on a luminaire) … x_k (on the lens) can be made by k + 1 strategies: strategy j takes x_0 … x_{j-1} from a
+// walk that began at the luminaire, the others from one that began at the lens, and connects the two. With L_i the density
+// of x_i in the first kind of walk and E_i in the second, its density is
+//     p_j = prod_{i<j} L_i  prod_{i>=j} E_i,
+// so neighbouring strategies differ by p_{j+1} / p_j = L_j / E_j, and the weight of the strategy at hand, s, is
+//     w_s = 1 / sum_j (p_j / p_s)^beta,   beta = 1 (balance) or 2 (power)            (Veach 1997, section 10.2).
+// Strategy 1 does not take x_0 from a walk but samples a luminaire as seen from x_1, with a density D_0 of its own: in p_1,
+// and there alone, D_0 stands for L_0.
+// A strategy that would connect at a vertex whose scattering is specular, or meet a luminaire without extent, cannot
+// happen and is left out, as is meeting the lens.
+
+#include "transport/multiple_importance.h"
+#include "transport/vertex.h"
+
+namespace etendue {
+
+/// A path: `light[0 … s-1]` from the luminaire, `camera[0 … t-1]` from the lens, and what the connection changes. The vertices
+/// hold the densities of their own walks; those next to the connection are seen from the other side with these.
+struct ConnectedPath {
+  const Vertex* light = nullptr;
+  int s = 0;
+  const Vertex* camera = nullptr;
+  int t = 0;
+  float light_last_from_camera = 0;    ///< E of light[s-1]
+  float light_before_from_camera = 0;  ///< E of light[s-2]
+  float camera_last_from_light = 0;    ///< L of camera[t-1]
+  float camera_before_from_light = 0;  ///< L of camera[t-2]
+  float direct = 0;                    ///< D_0
+  float begun = 0;                     ///< L_0
+  bool luminaire_can_be_met = true;
+};
+
+float bidirectional_weight(const ConnectedPath&, Heuristic);
+
+}  // namespace etendue

@@ -1,0 +1,74 @@
+#include "transport/vertex.h"
+
+#include "transport/medium_tracking.h"
+#include "transport/seeded_bug.h"
+
+namespace etendue {
+
+ScatterValue scattering(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
+  if (v.kind == Vertex::Kind::volume) {
+    const float phase = v.volume->phase(v.point.position, out, in);
+    return {Spectrum(phase), phase};
+  }
+  if (!v.scatter) return {};
+  if (seeded(SeededBug::no_squared_index)) transport = Transport::importance;
+  ScatterValue f = v.scatter->value_and_density(out, in, transport, smooth_lobes);
+  // The walk chooses among all lobes.
+  if (v.scatter->has(specular_lobes)) f.density = v.scatter->density(out, in, transport);
+  if (!seeded(SeededBug::lost_cosine)) f.value *= v.scatter->cosine(in);
+  return f;
+}
+
+float scattering_density(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
+  if (v.kind == Vertex::Kind::volume) return v.volume->phase(v.point.position, out, in);
+  return v.scatter ? v.scatter->density(out, in, transport) : 0;
+}
+
+float vertex_density(float density, const Vertex& a, const Vertex& b, const Vector3& direction, float chance,
+                     float scene_radius) {
+  density *= chance;
+  if (b.infinite || b.kind == Vertex::Kind::escape) return density;
+  if (b.kind == Vertex::Kind::volume)
+    density *= b.extinction;
+  else if (b.point.normal != Normal3{})
+    density *= std::abs(dot(b.point.normal, direction));
+  if (a.parallel) return density;
+  if (a.infinite) return density / (pi * square(scene_radius));
+  return density / length_squared(b.point.position - a.point.position);
+}
+
+Ray leaving_ray(const Vertex& from, const Vector3& direction) {
+  if (from.on_surface() || (from.kind == Vertex::Kind::luminaire && from.point.normal != Normal3{}))
+    return from.point.leave(direction);
+  Ray ray;
+  ray.origin = from.point.position;
+  ray.direction = direction;
+  ray.time = from.point.time;
+  return ray;
+}
+
+Ray connecting_ray(const Vertex& from, const Vertex& to) {
+  Ray ray = leaving_ray(from, normalize(to.point.position - from.point.position));
+  const Vector3 d = to.point.position - ray.origin;
+  const float reach = length(d);
+  ray.direction = d / reach;
+  ray.maximum = reach * (1 - 1e-4f) - 2 * to.point.error;
+  return ray;
+}
+
+Ray lens_ray(const Vertex& v, const LensSample& lens) {
+  Ray ray = leaving_ray(v, lens.direction);
+  ray.maximum = lens.distance * (1 - 1e-4f);
+  return ray;
+}
+
+const MediumStack* media_towards(const Vertex& v, const Vector3& direction, MediumStack& scratch) {
+  if (!v.media || !v.on_surface()) return v.media;
+  const bool through = (dot(v.point.normal, v.out) > 0) != (dot(v.point.normal, direction) > 0);
+  if (!through || !v.point.object->shader || !v.point.object->shader->transmits()) return v.media;
+  scratch = *v.media;
+  cross_boundary(scratch, *v.point.object, v.point.normal, direction);
+  return &scratch;
+}
+
+}  // namespace etendue

@@ -1,0 +1,49 @@
+#include "transport/visibility.h"
+
+#include "transport/media.h"
+#include "transport/medium_tracking.h"
+
+namespace etendue {
+
+Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const MediumStack* around,
+                                 const Wavelengths& wavelengths, Arena& arena) {
+  MediumStack media;
+  if (around) media = *around;
+  Ray ray = shadow;
+  const Point3 end = std::isfinite(ray.maximum) ? ray(ray.maximum) : Point3{};
+  Spectrum fraction(1.0f);
+  SurfacePoint point;
+  for (;;) {
+    Hit hit;
+    const bool found = scene.nearest(ray, hit);
+    if (around)
+      if (const VolumeShader* volume = volume_of(media)) {
+        fraction *= transmittance(*volume, ray, found ? hit.distance : ray.maximum, wavelengths);
+        if (fraction.black()) return fraction;
+      }
+    if (!found) return fraction;
+
+    const SceneObject& object = *hit.object;
+    if (!object.shader) return {};
+    const bool hidden = around && hidden_by_priority(media, object);
+    if (!hidden && !(object.shader->possible_lobes() & pass_through)) return {};
+    scene.locate(ray, hit, point);
+    if (!hidden) {
+      if (object.sides != Sides::both && (dot(point.normal, ray.direction) < 0) != (object.sides == Sides::front)) return {};
+      point.media = around ? &media : nullptr;
+      const Scatter* scatter = object.shader->bind(point, wavelengths, arena);
+      const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, Transport::radiance, pass_through) : std::nullopt;
+      if (!straight) return {};
+      // Asked alone, the lobe is certain, and its weight the fraction that gets through.
+      fraction *= straight->weight;
+    }
+    if (around) cross_boundary(media, object, point.normal, ray.direction);
+    ray.origin = point.exit(ray.direction);
+    if (std::isfinite(ray.maximum)) {
+      ray.maximum = dot(end - ray.origin, ray.direction);
+      if (!(ray.maximum > 0)) return fraction;
+    }
+  }
+}
+
+}  // namespace etendue

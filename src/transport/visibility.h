@@ -1,0 +1,23 @@
+#pragma once
+// How much of the light gets along a ray: past surfaces that let it pass straight on, and through media.
+
+#include "etendue/medium_stack.h"
+#include "etendue/sampler.h"
+#include "etendue/scene.h"
+#include "etendue/shader.h"
+
+namespace etendue {
+
+/// The fraction of light that gets along a shadow ray, per wavelength: 0 when something opaque lies on it. `media` are
+/// those at the ray's origin, on the side it leaves to; null: vacuum, where nothing is tracked. Unbiased; exact for
+/// homogeneous media and for surfaces that only pass light on or block it.
+Spectrum visible_fraction_slowly(const Scene&, const Ray&, const MediumStack* media, const Wavelengths&, Arena&);
+
+inline Spectrum visible_fraction(const Scene& scene, const Ray& ray, const MediumStack* media, const Wavelengths& wavelengths,
+                                 Arena& arena) {
+  if (!scene.has_null_surfaces() && (!media || media->empty())) [[likely]]
+    return scene.any(ray) ? Spectrum() : Spectrum(1.0f);
+  return visible_fraction_slowly(scene, ray, media, wavelengths, arena);
+}
+
+}  // namespace etendue
