@@ -182,7 +182,7 @@ void ImageBuffer::add_splat(const ImageTile::Splat& splat) {
     sum[0] += weight * value.x;
     sum[1] += weight * value.y;
     sum[2] += weight * value.z;
-    sum[3] += square(weight * value.y);
+    sum[3] += weight * value.y * weight * value.y;
     if (path_lengths == 0 || splat.length < 1) return;
     double* part = &length_splats_[3 * (size_t(path_lengths) * index(x, y) + size_t(std::min(splat.length, path_lengths)) - 1)];
     part[0] += weight * value.x;

@@ -126,7 +126,7 @@ double ImageBuffer::variance_of_mean(const double* moment) {
 /// Splats add to a pixel's variance as arrivals that are independent of one another: scale^2 * sum of squares.
 double ImageBuffer::variance_of_pixel(size_t pixel) const {
   double variance = variance_of_mean(&moments_[3 * pixel]);
-  if (!splats_.empty()) variance += square(splat_scale()) * splats_[4 * pixel + 3] / square(splat_norm());
+  if (!splats_.empty()) variance += std::pow(splat_scale() / splat_norm(), 2) * splats_[4 * pixel + 3];
   return variance;
 }
 

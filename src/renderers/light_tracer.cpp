@@ -6,6 +6,7 @@
 // estimate beta f |cos| V W_e / p_l falls on the film where the camera images that direction.
 
 #include "transport/record_walk.h"
+#include "transport/seeded_bug.h"
 #include "transport/subpaths.h"
 #include "transport/visibility.h"
 
@@ -82,6 +83,7 @@ class LightTracer final : public Renderer {
       value = v.throughput * scattering(v, v.out, lens->direction, Transport::importance).value;
     }
     value *= lens->importance / lens->density;
+    if (seeded(SeededBug::lens_importance)) value *= square(lens->distance) / lens->density;
     if (value.black()) return;
 
     MediumStack scratch;
