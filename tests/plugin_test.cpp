@@ -55,6 +55,13 @@ Job { camera: PerspectiveCamera { from: [0, 0, -4], to: [0, 0, 0] }, image: Imag
   EXPECT_NE(output.find("purity"), std::string::npos) << output;
   EXPECT_EQ(run(program + " render " + f + "/gold.etd --set 'scene.objects[0].shader.purity=2'", &output), 2);
   EXPECT_NE(output.find("must be from 0 to 1"), std::string::npos) << output;
+
+  // The renderer of the other page renders what the built-in one does.
+  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
+                    "/build/libstudent_tracer.so --renderers PathTracer,StudentTracer --samples 512 --size 48x48 --quiet",
+                &output),
+            0)
+      << output;
 }
 
 TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
@@ -62,9 +69,13 @@ TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
     std::ifstream file(path);
     return std::string(std::istreambuf_iterator<char>(file), {});
   };
-  const std::string listing = text(ETENDUE_SOURCE_DIR "/tests/plugin/gold.cpp");
-  EXPECT_NE(text(ETENDUE_SOURCE_DIR "/docs/write-a-shader.md").find("```cpp\n" + listing + "```"), std::string::npos);
-  EXPECT_LT(std::count(listing.begin(), listing.end(), '\n'), 60);
+  const auto check = [&](const char* source, const char* page, int lines) {
+    const std::string listing = text(source);
+    EXPECT_NE(text(page).find("```cpp\n" + listing + "```"), std::string::npos) << page;
+    EXPECT_LT(std::count(listing.begin(), listing.end(), '\n'), lines) << source;
+  };
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/gold.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-shader.md", 60);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/student_tracer.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 80);
 }
 
 TEST_F(Plugin, RefusesWhatIsNone) {

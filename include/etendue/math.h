@@ -29,6 +29,12 @@ inline float safe_acos(float x) { return std::acos(clamp(x, -1, 1)); }
 
 inline float safe_asin(float x) { return std::asin(clamp(x, -1, 1)); }
 
+/// c ? a : b without a branch.
+constexpr float select(bool c, float a, float b) {
+  const std::uint32_t mask = 0u - std::uint32_t(c), x = std::bit_cast<std::uint32_t>(a), y = std::bit_cast<std::uint32_t>(b);
+  return std::bit_cast<float>((x & mask) | (y & ~mask));
+}
+
 constexpr float radians(float degrees) { return degrees * (pi / 180); }
 
 constexpr float degrees(float radians) { return radians * (180 / pi); }

@@ -71,8 +71,7 @@ struct SurfacePoint {
   }
   /// Where such a ray begins.
   Point3 exit(const Vector3& direction) const {
-    const float side = dot(normal, direction) < 0 ? -error : error;
-    return position + side * Vector3(normal);
+    return position + std::copysign(error, dot(normal, direction)) * Vector3(normal);
   }
   /// A ray to another point, of unit direction, that ends just before it.
   Ray towards(const Point3& p, float error_there) const {

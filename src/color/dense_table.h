@@ -2,6 +2,7 @@
 // One value a nanometre over 360-830 nm, linear between: what most spectra are evaluated from.
 
 #include <array>
+#include <cstring>
 
 #include "color/tables.h"
 #include "etendue/spectrum.h"
@@ -19,10 +20,24 @@ class DenseTable {
 
   Spectrum evaluate(const Wavelengths& wavelengths) const {
     detail::Lanes a{}, b{};
-    for (int i = 0; i < spectrum_size; ++i) {
-      const float* entry = &values_[size_t(wavelengths.table_index(i))];
-      a[i] = entry[0];
-      b[i] = entry[1];
+    if constexpr (spectrum_size == 4) {
+      // An entry and its neighbour are one load.
+      using Pair = float __attribute__((vector_size(8)));
+      const auto pair = [&](int i) {
+        Pair p;
+        std::memcpy(&p, &values_[size_t(wavelengths.table_index(i))], sizeof p);
+        return p;
+      };
+      const auto low = __builtin_shufflevector(pair(0), pair(1), 0, 1, 2, 3);
+      const auto high = __builtin_shufflevector(pair(2), pair(3), 0, 1, 2, 3);
+      a = __builtin_shufflevector(low, high, 0, 2, 4, 6);
+      b = __builtin_shufflevector(low, high, 1, 3, 5, 7);
+    } else {
+      for (int i = 0; i < spectrum_size; ++i) {
+        const float* entry = &values_[size_t(wavelengths.table_index(i))];
+        a[i] = entry[0];
+        b[i] = entry[1];
+      }
     }
     return Spectrum(a + wavelengths.table_fractions() * (b - a));
   }

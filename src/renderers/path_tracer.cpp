@@ -61,8 +61,15 @@ class PathTracer final : public Renderer {
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
-    const Scene& scene = context.scene;
-    const bool track_media = scene.has_interiors(), simple_shadows = !track_media && !scene.has_null_surfaces();
+    const bool clear = !context.scene.has_interiors() && !context.scene.has_null_surfaces();
+    return clear ? trace<true>(context.scene, camera_ray, sample) : trace<false>(context.scene, camera_ray, sample);
+  }
+
+ private:
+  /// `clear`: the scene has neither media nor boundaries that light passes through; what deals with them is left out.
+  template <bool clear>
+  Spectrum trace(const Scene& scene, const Ray& camera_ray, SampleContext& sample) const {
+    const bool track_media = !clear && scene.has_interiors(), null_surfaces = !clear && scene.has_null_surfaces();
     MediumStack media;
     if (track_media) media_at(scene, camera_ray.origin, camera_ray.time, media);
     Spectrum radiance, throughput(1.0f);
@@ -107,7 +114,7 @@ class PathTracer final : public Renderer {
     bool awaits_light = false, goes_on = true;
     for (int depth = 1;; ++depth) {
       // The last vertex's shadow ray and the ray on from it need nothing of each other: the processor traces both at once.
-      const bool lit = awaits_light && !(simple_shadows && scene.any(direct.shadow));
+      const bool lit = awaits_light && !(clear && scene.any(direct.shadow));
       const bool found = goes_on && scene.nearest(ray, hit);
       if (lit) {
         arrive(depth, direct.light);
@@ -161,11 +168,11 @@ class PathTracer final : public Renderer {
       const bool first = depth == 1 && sample.features;
       // Behind the last vertex a surface that light passes straight on may still show a luminaire.
       const bool last = depth >= max_depth;
-      if (last && !first && !scene.has_null_surfaces()) break;
+      if (last && !first && !null_surfaces) break;
 
       const Scatter* scatter = scattering_at(point, out, sample);
       if (first) note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths);
-      if (!scatter || (last && !scatter->has(pass_through))) break;
+      if (!scatter || (last && !(null_surfaces && scatter->has(pass_through)))) break;
 
       // All of the bounce's numbers at once: they depend on nothing, so the processor finds them while it does the rest.
       SampleStream& random = sample.random;
@@ -174,23 +181,23 @@ class PathTracer final : public Renderer {
       const float lobe_choice = scatter->has_choice() ? random.next() : (random.skip(), 0.0f);
       const Point2 scatter_direction = random.next_pair();
 
-      const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : Transport::radiance;
-      const std::optional<ScatterSample> next = scatter->sample(out, lobe_choice, scatter_direction, transport);
       if (next_event && !last && scatter->has(smooth_lobes)) {
         awaits_light = propose_direct_light(*light_sampler, point, *scatter, out, sample.wavelengths, light_choice, light_point,
                                             heuristic, direct);
         if (awaits_light) {
           direct.light *= throughput;
           if (seeded(SeededBug::lost_cosine)) direct.light /= scatter->cosine(direct.shadow.direction);
-          if (!simple_shadows) awaits_light = light_arrives(scene, point, out, media, sample, direct);
+          if (!clear) awaits_light = light_arrives(scene, point, out, media, sample, direct);
         }
       }
 
+      const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : Transport::radiance;
+      const std::optional<ScatterSample> next = scatter->sample(out, lobe_choice, scatter_direction, transport);
       goes_on = false;
       if (!next || (last && next->lobe != pass_through)) continue;
       throughput *= next->weight;
       record_scatter(sample.record, *next);
-      if (next->lobe == pass_through) {
+      if (!clear && next->lobe == pass_through) {
         goes_on = !throughput.black();
         if (track_media) cross_boundary(media, *point.object, point.normal, next->direction);
         ray.origin = point.exit(ray.direction);
@@ -222,7 +229,6 @@ class PathTracer final : public Renderer {
     return radiance;
   }
 
- private:
   /// Growth of the footprint after a rough reflection [per distance]: maps seen indirectly are filtered coarsely.
   static constexpr float diffuse_spread = 0.1f;
 
