@@ -40,6 +40,8 @@ class EmissionShader : public Component {
   virtual DirectionSample sample_incident(Point2) const { return {}; }
   virtual float incident_density(const Vector3&) const { return 0; }
   virtual bool knows_incident() const { return false; }
+  /// Whether it only makes sense at infinity: its light depends on where it comes from, not on a surface.
+  virtual bool only_at_infinity() const { return false; }
 
   /// A point without a normal, on an object without extent, emits in all directions.
   bool emits(const SurfacePoint& p, const Vector3& direction) const {

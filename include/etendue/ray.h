@@ -74,19 +74,26 @@ struct SurfacePoint {
     return position + std::copysign(error, dot(normal, direction)) * Vector3(normal);
   }
   /// A ray to another point, of unit direction, that ends just before it.
-  Ray towards(const Point3& p, float error_there) const {
+  Ray towards(const SurfacePoint& p) const {
     Ray ray;
-    towards(p, error_there, ray);
+    towards(p, ray);
     return ray;
   }
-  void towards(const Point3& p, float error_there, Ray& ray) const {
-    ray.origin = exit(p - position);
-    const Vector3 d = p - ray.origin;
-    const float reach = length(d);
-    ray.direction = d / reach;
-    ray.maximum = reach * (1 - 1e-4f) - 2 * error_there;
+  void towards(const SurfacePoint& p, Ray& ray) const {
+    ray.origin = exit(p.position - position);
+    end_at(p, ray);
     ray.time = time;
   }
+  /// Lets a ray end just before a point: on its side of that surface, beyond the error.
+  static void end_at(const SurfacePoint& p, Ray& ray) {
+    const Vector3 d = p.exit(ray.origin - p.position) - ray.origin;
+    const float reach = length(d);
+    ray.direction = d / reach;
+    ray.maximum = reach * almost_there;
+  }
+  /// What part of the way to a point is free of it for sure: intersections are exact to a few units in the last place of
+  /// the distance.
+  static constexpr float almost_there = 1 - 2e-6f;
 };
 
 }  // namespace etendue

@@ -98,6 +98,7 @@ class EnvironmentEmission final : public EmissionShader {
     return sum * (sphere_times_disc / (side * side));
   }
 
+  bool only_at_infinity() const override { return true; }
   bool knows_incident() const override { return total_ > 0; }
 
   DirectionSample sample_incident(Point2 u) const override {

@@ -71,8 +71,9 @@ class BidirectionalPathTracer final : public Renderer {
     std::function<void(int, const Spectrum&)> emitted = [&](int length, const Spectrum& value) {
       if (shows(0, length + 1)) add(s, length, 0, length + 1, 1, value);
     };
+    std::function<void()> crossed = [&] { meet(s, int(camera.size())); };
     walk_from_camera(context, camera_ray, parallel_, {max_depth + 1, roulette_depth}, sample.wavelengths, sample.random,
-                     sample.arena, camera, &emitted);
+                     sample.arena, camera, &emitted, &crossed);
     sample.random.jump(light_dimension);
     walk_from_luminaire(context.scene, *light_sampler, camera_ray.time, {max_depth, roulette_depth}, s.light_wavelengths,
                         sample.random, sample.arena, light, s.emitted);
@@ -98,7 +99,7 @@ class BidirectionalPathTracer final : public Renderer {
 
  private:
   // Parts of a sample keep their dimensions whatever the others used.
-  static constexpr std::uint32_t light_dimension = 2048, luminaire_dimension = 4096, lens_dimension = 6144;
+  static constexpr std::uint32_t light_dimension = 1u << 20, luminaire_dimension = 2u << 20, lens_dimension = 3u << 20;
 
   struct Sample {
     const RenderContext& context;

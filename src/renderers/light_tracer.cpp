@@ -5,6 +5,7 @@
 // and at each vertex it may go to the lens: with a point of the lens seen under the solid-angle density p_l, the
 // estimate beta f |cos| V W_e / p_l falls on the film where the camera images that direction.
 
+#include "transport/media.h"
 #include "transport/record_walk.h"
 #include "transport/seeded_bug.h"
 #include "transport/subpaths.h"
@@ -63,7 +64,7 @@ class LightTracer final : public Renderer {
   }
 
  private:
-  static constexpr std::uint32_t lens_dimension = 4096;
+  static constexpr std::uint32_t lens_dimension = 1u << 20;
 
   void connect(const RenderContext& context, const std::vector<Vertex>& path, size_t i, const EmittedLight& light,
                SampleContext& sample) const {
@@ -86,9 +87,14 @@ class LightTracer final : public Renderer {
     if (seeded(SeededBug::lens_importance)) value *= square(lens->distance) / lens->density;
     if (value.black()) return;
 
+    const Ray ray = lens_ray(v, *lens);
     MediumStack scratch;
-    value *= visible_fraction(context.scene, lens_ray(v, *lens), media_towards(v, lens->direction, scratch), sample.wavelengths,
-                              sample.arena);
+    const MediumStack* media = media_towards(v, lens->direction, scratch);
+    if (luminaire && media) {  // those of the walk are on the side where it began
+      media_at(context.scene, ray.origin, ray.time, scratch);
+      media = &scratch;
+    }
+    value *= visible_fraction(context.scene, ray, media, sample.wavelengths, sample.arena);
     if (value.black()) return;
     const int length = int(i) + 1;
     sample.splat(lens->film, value, sample.wavelengths, length);

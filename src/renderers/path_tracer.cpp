@@ -79,6 +79,7 @@ class PathTracer final : public Renderer {
     bool specular = true;
     Point3 from;
     Normal3 from_normal;
+    float crossed = 0;  // distance to the last boundary passed straight on [m]
 
     const auto arrive = [&](int length, const Spectrum& light) {
       if (seeded(SeededBug::skipped_length) && length == 4) return;
@@ -171,7 +172,7 @@ class PathTracer final : public Renderer {
       if (last && !first && !null_surfaces) break;
 
       const Scatter* scatter = scattering_at(point, out, sample);
-      if (first) note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths);
+      if (first) note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths, crossed);
       if (!scatter || (last && !(null_surfaces && scatter->has(pass_through)))) break;
 
       // All of the bounce's numbers at once: they depend on nothing, so the processor finds them while it does the rest.
@@ -195,10 +196,12 @@ class PathTracer final : public Renderer {
       const std::optional<ScatterSample> next = scatter->sample(out, lobe_choice, scatter_direction, transport);
       goes_on = false;
       if (!next || (last && next->lobe != pass_through)) continue;
+      if (next->transmitted() && point.object->sides != Sides::both) continue;
       throughput *= next->weight;
       record_scatter(sample.record, *next);
       if (!clear && next->lobe == pass_through) {
         goes_on = !throughput.black();
+        crossed += hit.distance;
         if (track_media) cross_boundary(media, *point.object, point.normal, next->direction);
         ray.origin = point.exit(ray.direction);
         if (awaits_light) {

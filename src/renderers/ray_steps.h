@@ -67,7 +67,7 @@ inline bool sample_luminaire(const SceneObject& luminaire, const SurfacePoint& p
   if (s.infinite)
     point.leave(s.direction, light.shadow);
   else
-    point.towards(s.point.position, s.point.error, light.shadow);
+    point.towards(s.point, light.shadow);
   light.direction = s.direction;
   light.density = s.density;
   light.delta = s.delta;

@@ -88,6 +88,11 @@ void Scene::prepare() {
   for (const Ref<SceneObject>& object : objects) {
     const Scene* inner = as_scene(object.get());
     object->luminaire_index = -1;
+    if (object->luminaire() && !object->infinite() && object->emission->only_at_infinity())
+      object->fail("emission", "this emission is of light from infinity: it belongs on an Environment");
+    if (object->interior && !inner && !object->closed())
+      warn(object->class_info().name + ": the surface is not closed, so its interior is never entered",
+           object->location_of("interior"));
     if (object->luminaire() && !inner) {
       object->luminaire_index = int(luminaires_.size());
       luminaires_.push_back(object.get());

@@ -22,7 +22,7 @@ struct DirectLight {
 ///     w s L_e V / (P p),
 /// with the multiple-importance weight w of P p against the density with which scattering itself gives `in`.
 /// `scattering(in)` returns s [1/sr] and that density; 0 as density: that strategy is not used, w = 1. `choice` picks the
-/// luminaire, `u` the point on it; `leave(in, ray)` lets a ray leave the point, `towards(sample, ray)` one to another point.
+/// luminaire, `u` the point on it; `leave(sample, ray)` makes the ray from the point to the sampled one.
 /// All but V is computed here; false: nothing can come, and `direct` is not to be looked at.
 template <class Scattering, class Leave>
 bool propose_light(const LightSampler& lights, const Point3& from, const Normal3& normal, float time,
@@ -55,6 +55,8 @@ inline bool propose_direct_light(const LightSampler& lights, const SurfacePoint&
         // Of all lobes, as the path will be continued by: the density is that of choosing this direction among them.
         ScatterValue f = scatter.value_and_density(out, in, Transport::radiance);
         f.value *= scatter.cosine(in);
+        // Through a surface of which one side absorbs, nothing goes.
+        if (point.object->sides != Sides::both && (dot(point.normal, out) > 0) != (dot(point.normal, in) > 0)) f.value = {};
         if (!shader_sampling) f.density = 0;
         return f;
       },
@@ -62,7 +64,7 @@ inline bool propose_direct_light(const LightSampler& lights, const SurfacePoint&
         if (s.infinite)
           point.leave(s.direction, ray);
         else
-          point.towards(s.point.position, s.point.error, ray);
+          point.towards(s.point, ray);
       });
 }
 
@@ -80,7 +82,8 @@ inline bool propose_direct_light(const LightSampler& lights, const VolumeShader&
         ray.origin = at;
         ray.direction = s.direction;
         ray.time = time;
-        ray.maximum = s.infinite ? infinity : s.distance * (1 - 1e-4f) - 2 * s.point.error;
+        ray.maximum = infinity;
+        if (!s.infinite) SurfacePoint::end_at(s.point, ray);
       });
 }
 

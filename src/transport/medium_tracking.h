@@ -5,8 +5,10 @@
 
 namespace etendue {
 
-/// The path goes through the surface of an object in a direction.
+/// The path goes through the surface of an object in a direction. One that is not closed has no inside: a sheet of it
+/// bounds nothing.
 inline void cross_boundary(MediumStack& media, const SceneObject& object, const Normal3& normal, const Vector3& direction) {
+  if (!object.closed()) return;
   if (dot(normal, direction) < 0)
     media.enter(object);
   else

@@ -35,7 +35,7 @@ class Walk {
   /// From one vertex to the next; false: the walk has ended.
   bool step() {
     Spectrum edge(1.0f);  // transmittance of the edge, for the strategies' densities
-    for (;;) {
+    while (!carried_.black()) {
       Hit hit;
       const bool found = scene_.nearest(ray_, hit);
       if (const VolumeShader* volume = track_ ? volume_of(media_) : nullptr) {
@@ -64,22 +64,41 @@ class Walk {
       const bool seen = object.sides == Sides::both || (dot(point.normal, out) > 0) == (object.sides == Sides::front);
       const Scatter* scatter = object.shader && seen ? object.shader->bind(point, wavelengths_, arena_) : nullptr;
 
+      if (scatter && scatter->has(pass_through) && passes(*scatter, out, point, edge)) continue;
       std::optional<ScatterSample> next;
       if (scatter) {
         const float choice = scatter->has_choice() ? random_.next() : (random_.skip(), 0.0f);
         const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : start_.transport;
-        next = scatter->sample(out, choice, random_.next_pair(), transport);
-        if (next && next->lobe == pass_through) {
-          carried_ *= next->weight;
-          if (const auto straight = scatter->sample(out, 0, {}, start_.transport, pass_through)) edge *= straight->weight;
-          cross(point);
-          continue;
-        }
+        next = scatter->sample(out, choice, random_.next_pair(), transport, vertex_lobes);
+        if (next && next->transmitted() && object.sides != Sides::both) next.reset();
       }
       Vertex& v = add(Vertex::Kind::surface, edge.average(), &point);
       v.scatter = scatter;
       return next && scatter_on_surface(v, *next);
     }
+    return false;
+  }
+
+  /// Whether the walk goes straight on, with a probability q that is the fraction of light that does. Both outcomes are made
+  /// up for before a vertex is made of the other, so that what is connected to it is as well.
+  bool passes(const Scatter& scatter, const Vector3& out, const SurfacePoint& point, Spectrum& edge) {
+    const auto straight = scatter.sample(out, 0, {}, start_.transport, pass_through);
+    const bool alone = scatter.lobes() == pass_through;
+    const Spectrum fraction = straight && point.object->sides == Sides::both ? straight->weight : Spectrum();
+    const float q = alone ? 1 : clamp(fraction.average(), 0, 1);
+    if (q < 1 && random_.next() >= q) {
+      carried_ /= 1 - q;
+      return false;
+    }
+    if (start_.crossed && alone && point.object->luminaire()) {
+      add(Vertex::Kind::surface, edge.average(), &point);
+      (*start_.crossed)();
+      path_.pop_back();
+    }
+    carried_ *= fraction / q;
+    edge *= fraction;
+    cross(point);
+    return true;
   }
 
   void cross(const SurfacePoint& point) {
@@ -113,7 +132,7 @@ class Walk {
     if (v.specular)
       density_ = 1;
     else
-      back = v.scatter->density(next.direction, v.out, start_.transport);
+      back = scattering_density(v, next.direction, v.out, start_.transport);
     set_reverse(v, back);
     if (track_ && next.transmitted()) cross_boundary(media_, *v.point.object, v.point.normal, next.direction);
     ray_.origin = v.point.exit(next.direction);

@@ -19,6 +19,8 @@ struct WalkStart {
   int roulette_depth = 5;  ///< segments before Russian roulette may end the walk
   /// Called for light that media themselves send towards the camera: its length in segments, and what it brings.
   std::function<void(int length, const Spectrum&)>* emitted = nullptr;
+  /// Called for luminaires whose surface passes light straight on, while they are the path's last vertex for a moment.
+  std::function<void()>* crossed = nullptr;
 };
 
 /// Continues a path whose first vertex is given by scattering until it is absorbed, leaves the scene, or is long enough.

@@ -60,9 +60,9 @@ void record_scatter_slowly(PathRecord& record, const ScatterSample& s) {
 }
 
 void note_features(Features& features, const Scene& scene, const SurfacePoint& point, const Hit& hit, const Scatter* scatter,
-                   const Vector3& out, const Wavelengths& wavelengths) {
+                   const Vector3& out, const Wavelengths& wavelengths, float distance_before) {
   features.normal = Vector3(dot(point.shading_normal, out) < 0 ? -point.shading_normal : point.shading_normal);
-  features.depth = hit.distance;
+  features.depth = distance_before + hit.distance;
   const SceneObject* top = hit.depth > 0 ? hit.scenes[hit.depth - 1] : hit.object;
   const auto place =
       std::find_if(scene.objects.begin(), scene.objects.end(), [&](const Ref<SceneObject>& o) { return o.get() == top; });

@@ -52,6 +52,6 @@ std::string lobe_name(Lobe);
 
 /// The auxiliary layers' values at the first surface of a camera path; scatter may be null (black).
 void note_features(Features&, const Scene&, const SurfacePoint&, const Hit&, const Scatter* scatter, const Vector3& out,
-                   const Wavelengths&);
+                   const Wavelengths&, float distance_before = 0);
 
 }  // namespace etendue

@@ -25,13 +25,24 @@ void record_walk(std::vector<PathRecord::Vertex>& vertices, std::span<const Vert
   }
 }
 
-void note_first_surface(const Scene& scene, const Ray& ray, SampleContext& sample) {
+void note_first_surface(const Scene& scene, const Ray& camera_ray, SampleContext& sample) {
+  Ray ray = camera_ray;
+  float crossed = 0;
   Hit hit;
-  if (!scene.nearest(ray, hit)) return;
   SurfacePoint point;
-  scene.locate(ray, hit, point);
-  const Scatter* scatter = hit.object->shader ? hit.object->shader->bind(point, sample.wavelengths, sample.arena) : nullptr;
-  note_features(*sample.features, scene, point, hit, scatter, -ray.direction, sample.wavelengths);
+  while (scene.nearest(ray, hit)) {
+    scene.locate(ray, hit, point);
+    const Shader* shader = point.object->shader.get();
+    if (shader && shader->possible_lobes() == pass_through) {
+      crossed += hit.distance;
+      ray.origin = point.exit(ray.direction);
+      hit = {};
+      continue;
+    }
+    const Scatter* scatter = shader ? shader->bind(point, sample.wavelengths, sample.arena) : nullptr;
+    note_features(*sample.features, scene, point, hit, scatter, -ray.direction, sample.wavelengths, crossed);
+    return;
+  }
 }
 
 }  // namespace etendue

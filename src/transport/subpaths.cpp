@@ -17,7 +17,7 @@ float camera_direction_density(const Camera& camera, bool parallel, const Ray& r
 
 void walk_from_camera(const RenderContext& context, const Ray& ray, bool parallel, const WalkLimits& limits,
                       Wavelengths& wavelengths, SampleStream& random, Arena& arena, std::vector<Vertex>& path,
-                      std::function<void(int, const Spectrum&)>* emitted) {
+                      std::function<void(int, const Spectrum&)>* emitted, std::function<void()>* crossed) {
   path.clear();
   Vertex& lens = path.emplace_back();
   lens.kind = Vertex::Kind::camera;
@@ -32,6 +32,7 @@ void walk_from_camera(const RenderContext& context, const Ray& ray, bool paralle
   start.longest = limits.longest;
   start.roulette_depth = limits.roulette_depth;
   start.emitted = emitted;
+  start.crossed = crossed;
   random_walk(context.scene, start, media, wavelengths, random, arena, path);
 }
 

@@ -22,9 +22,11 @@ bool has_parallel_rays(const Camera&, int film_width);
 /// Density of a camera ray's direction [1/sr]; of a camera with parallel rays that of its place [1/m^2].
 float camera_direction_density(const Camera&, bool parallel, const Ray&);
 
-/// The walk that begins with a camera ray. `emitted(length, light)` is called for light that media themselves send.
+/// The walk that begins with a camera ray. `emitted(length, light)` is called for light that media themselves send,
+/// `crossed()` for luminaires that are crossed, while they are the path's last vertex.
 void walk_from_camera(const RenderContext&, const Ray&, bool parallel, const WalkLimits&, Wavelengths&, SampleStream&, Arena&,
-                      std::vector<Vertex>& path, std::function<void(int, const Spectrum&)>* emitted);
+                      std::vector<Vertex>& path, std::function<void(int, const Spectrum&)>* emitted,
+                      std::function<void()>* crossed);
 
 /// A walk that begins at a luminaire, chosen by power. False: no light leaves there, and the path is empty.
 bool walk_from_luminaire(const Scene&, const LightSampler&, float time, const WalkLimits&, Wavelengths&, SampleStream&, Arena&,

@@ -14,14 +14,15 @@ ScatterValue scattering(const Vertex& v, const Vector3& out, const Vector3& in, 
   if (seeded(SeededBug::no_squared_index)) transport = Transport::importance;
   ScatterValue f = v.scatter->value_and_density(out, in, transport, smooth_lobes);
   // The walk chooses among all lobes.
-  if (v.scatter->has(specular_lobes)) f.density = v.scatter->density(out, in, transport);
+  if (v.scatter->has(specular_lobes)) f.density = scattering_density(v, out, in, transport);
+  if (!v.lets_through() && v.crosses(out, in)) return {};
   if (!seeded(SeededBug::lost_cosine)) f.value *= v.scatter->cosine(in);
   return f;
 }
 
 float scattering_density(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
   if (v.kind == Vertex::Kind::volume) return v.volume->phase(v.point.position, out, in);
-  return v.scatter ? v.scatter->density(out, in, transport) : 0;
+  return v.scatter ? v.scatter->density(out, in, transport, vertex_lobes) : 0;
 }
 
 float vertex_density(float density, const Vertex& a, const Vertex& b, const Vector3& direction, float chance,
@@ -49,16 +50,13 @@ Ray leaving_ray(const Vertex& from, const Vector3& direction) {
 
 Ray connecting_ray(const Vertex& from, const Vertex& to) {
   Ray ray = leaving_ray(from, normalize(to.point.position - from.point.position));
-  const Vector3 d = to.point.position - ray.origin;
-  const float reach = length(d);
-  ray.direction = d / reach;
-  ray.maximum = reach * (1 - 1e-4f) - 2 * to.point.error;
+  SurfacePoint::end_at(to.point, ray);
   return ray;
 }
 
 Ray lens_ray(const Vertex& v, const LensSample& lens) {
   Ray ray = leaving_ray(v, lens.direction);
-  ray.maximum = lens.distance * (1 - 1e-4f);
+  ray.maximum = lens.distance * SurfacePoint::almost_there;
   return ray;
 }
 

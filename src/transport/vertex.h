@@ -18,6 +18,9 @@
 
 namespace etendue {
 
+/// The lobes that make a vertex of a walk; what passes straight on makes none.
+inline constexpr Lobes vertex_lobes = Lobes(all_lobes & ~pass_through);
+
 struct Vertex {
   enum class Kind : std::uint8_t { camera, luminaire, surface, volume, escape };
 
@@ -36,6 +39,10 @@ struct Vertex {
   float chance = 1;                      ///< of getting along the edge from the vertex before
   float forward = 0, reverse = 0;        ///< densities from the walk's side and from the other
 
+  /// Whether two directions lie on different sides of the surface, and whether light may go from one to the other: not
+  /// when one side absorbs.
+  bool crosses(const Vector3& a, const Vector3& b) const { return (dot(point.normal, a) > 0) != (dot(point.normal, b) > 0); }
+  bool lets_through() const { return !on_surface() || point.object->sides == Sides::both; }
   bool on_surface() const { return kind == Kind::surface; }
   /// Whether a path that ends here can be connected to another: by what is not specular, whatever the walk chose.
   bool connectable() const { return on_surface() ? scatter && scatter->has(smooth_lobes) : kind != Kind::escape; }

@@ -29,7 +29,7 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
     if (!hidden && !(object.shader->possible_lobes() & pass_through)) return {};
     scene.locate(ray, hit, point);
     if (!hidden) {
-      if (object.sides != Sides::both && (dot(point.normal, ray.direction) < 0) != (object.sides == Sides::front)) return {};
+      if (object.sides != Sides::both) return {};
       point.media = around ? &media : nullptr;
       const Scatter* scatter = object.shader->bind(point, wavelengths, arena);
       const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, Transport::radiance, pass_through) : std::nullopt;
