@@ -100,7 +100,7 @@ TEST(Media, SlabOfAllOrders) {
     expect(job(r, 100000, 1024, view(true, 1), medium + beam), 0.085749, r);
     expect(job(r, 100000, 1024, view(false, 1), medium + beam), 0.078473, r);
   }
-  expect(job("LightTracer", 100000, 4096, view(true, 30), slab(30, 1, "scattering: 1") + beam), 0.085749, "LightTracer");
+  expect(job("LightTracer", 100000, 16384, view(true, 30), slab(30, 1, "scattering: 1") + beam), 0.085749, "LightTracer");
 }
 
 // A medium thin for short waves and thick for long ones: the walk is drawn for all of a path's wavelengths at once, and

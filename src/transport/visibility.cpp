@@ -40,8 +40,11 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
     if (around) cross_boundary(media, object, point.normal, ray.direction);
     ray.origin = point.exit(ray.direction);
     if (std::isfinite(ray.maximum)) {
-      ray.maximum = dot(end - ray.origin, ray.direction);
-      if (!(ray.maximum > 0)) return fraction;
+      // Aimed again: from the shifted origin the old direction might meet the luminaire's own surface too soon.
+      const Vector3 rest = end - ray.origin;
+      if (!(dot(rest, ray.direction) > 0)) return fraction;
+      ray.maximum = length(rest);
+      ray.direction = rest / ray.maximum;
     }
   }
 }
