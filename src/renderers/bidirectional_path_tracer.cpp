@@ -75,8 +75,9 @@ class BidirectionalPathTracer final : public Renderer {
     walk_from_camera(context, camera_ray, parallel_, {max_depth + 1, roulette_depth}, sample.wavelengths, sample.random,
                      sample.arena, camera, &emitted, &crossed);
     sample.random.jump(light_dimension);
+    EmittedLight emitted_light;
     walk_from_luminaire(context.scene, *light_sampler, camera_ray.time, {max_depth, roulette_depth}, s.light_wavelengths,
-                        sample.random, sample.arena, light, s.emitted);
+                        sample.random, sample.arena, light, emitted_light);
     if (light.size() > 1) s.direct = sampled_density(*light_sampler, light[1], light[0], light[1].out);
 
     for (int t = 2; t <= int(camera.size()); ++t) {
@@ -108,7 +109,6 @@ class BidirectionalPathTracer final : public Renderer {
     std::vector<Vertex>& light;
     Wavelengths light_wavelengths;
     Spectrum radiance{};
-    EmittedLight emitted{};
     float direct = 0;  ///< density of light[0] when sampled as seen from light[1]
 
     const Scene& scene() const { return context.scene; }
@@ -247,7 +247,6 @@ class BidirectionalPathTracer final : public Renderer {
     light *= visible;
     float weight = 1;
     if (weighted) {
-      const float radius = s.radius();
       Vertex z = s.camera[0];
       z.point.position = lens->lens;
       Ray ray;
@@ -256,8 +255,8 @@ class BidirectionalPathTracer final : public Renderer {
       ray.time = y.point.time;
       ConnectedPath path{s.light.data(), n, &z, 1, 0, 0, 0, 0, s.direct, s.light[0].forward, can_be_met(s.light[0])};
       path.light_last_from_camera = vertex_density(camera_direction_density(s.context.camera, parallel_, ray), z, y,
-                                                   ray.direction, visible.average(), radius);
-      path.light_before_from_camera = before_from(s.light, n, lens->direction, Transport::radiance, radius);
+                                                   ray.direction, visible.average(), s.radius());
+      path.light_before_from_camera = before_from(s.light, n, lens->direction, Transport::radiance, s.radius());
       weight = bidirectional_weight(path, heuristic);
     }
     if (seeded(SeededBug::skipped_length) && n == 4) return;
