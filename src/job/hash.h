@@ -16,6 +16,7 @@ namespace etendue {
 class Hash {
  public:
   void add(std::span<const std::byte> bytes) {
+    if (bytes.empty()) return;  // memcpy must not be given the null pointer of an empty span
     length_ += bytes.size();
     if (held_ > 0) {
       const size_t n = std::min(bytes.size(), block_.size() - held_);
