@@ -18,8 +18,10 @@ class VerifyScenes : public ::testing::TestWithParam<VerifyScene> {
  protected:
   TemporaryFolder folder;
   int verify(const std::vector<std::string>& more, std::string* text = nullptr) {
-    std::vector<std::string> arguments{"verify", std::string(ETENDUE_SOURCE_DIR "/scenes/verify/") + GetParam().name + ".etd",
-                                       "--size", "64x48", "--samples", std::to_string(GetParam().samples)};
+    std::vector<std::string> arguments{
+        "verify",    std::string(ETENDUE_SOURCE_DIR "/scenes/verify/") + GetParam().name + ".etd",
+        "--size",    "64x48",
+        "--samples", std::to_string(GetParam().samples)};
     arguments.insert(arguments.end(), more.begin(), more.end());
     Process process(ETENDUE_BINARY_DIR "/etendue", arguments, folder);
     const int status = process.wait();
@@ -43,8 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, VerifyScenes,
                          ::testing::Values(VerifyScene{"cornell_box", 256}, VerifyScene{"glossy_box", 192},
                                            VerifyScene{"caustic_through_glass", 512}, VerifyScene{"door_ajar", 256},
                                            VerifyScene{"mis_plates", 256}, VerifyScene{"fog_with_spot", 512},
-                                           VerifyScene{"nested_dielectrics", 512},
-                                           VerifyScene{"sphere_and_environment", 256}),
+                                           VerifyScene{"nested_dielectrics", 512}, VerifyScene{"sphere_and_environment", 256}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace
