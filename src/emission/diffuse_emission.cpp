@@ -1,7 +1,6 @@
 // DiffuseEmission: the same radiance in all directions.
 
-#include <atomic>
-
+#include "emission/per_object.h"
 #include "etendue/emission_shader.h"
 #include "etendue/object_map.h"
 #include "etendue/scene_object.h"
@@ -33,7 +32,6 @@ class DiffuseEmission final : public EmissionShader {
   void prepare() override {
     if (!map) fail("radiance", "a map or a colour is needed");
     constant_ = map->constant();
-    measured_.reset();
     integral_ = 0;
     if (constant_) {
       // Values at 1 nm, by the trapezoid rule: tables are linear between those.
@@ -48,7 +46,7 @@ class DiffuseEmission final : public EmissionShader {
       if (watts > 0 && !(sum > 0)) fail("radiance", "is black, so it cannot have the shape of the spectrum of a power");
       integral_ = sum;
     } else if (watts > 0) {
-      measured_ = std::make_unique<Measured[]>(slots);
+      measured_.reset();
     }
   }
 
@@ -87,13 +85,6 @@ class DiffuseEmission final : public EmissionShader {
   double watts = 0;
 
  private:
-  static constexpr size_t slots = 1024;
-  /// The integral of the mean radiance over wavelengths of one object; written once, whoever comes first, always the same.
-  struct Measured {
-    std::atomic<const SceneObject*> object{nullptr};
-    std::atomic<double> integral{-1};
-  };
-
   /// Of a point, which stands for a shrunk sphere, the inside does not count.
   float side_count(const SceneObject& object) const { return !object.delta() && sides == Sides::both ? 2.0f : 1.0f; }
 
@@ -119,22 +110,7 @@ class DiffuseEmission final : public EmissionShader {
   }
 
   double measure(const SceneObject& object) const {
-    const size_t first = size_t(mix_bits(reinterpret_cast<std::uintptr_t>(&object)));
-    for (size_t i = 0; i < slots; ++i) {
-      Measured& slot = measured_[(first + i) % slots];
-      const SceneObject* owner = slot.object.load(std::memory_order_acquire);
-      if (owner == &object) {
-        const double known = slot.integral.load(std::memory_order_acquire);
-        return known >= 0 ? known : integrate(object);
-      }
-      if (owner != nullptr) continue;
-      const double found = integrate(object);
-      if (slot.object.compare_exchange_strong(owner, &object) || owner == &object) {
-        slot.integral.store(found, std::memory_order_release);
-        return found;
-      }
-    }
-    return integrate(object);  // more objects than slots: slow, and right
+    return measured_.get(object, [&] { return integrate(object); });
   }
 
   /// The integral of mean(M) over wavelengths, at the middle of 48 equal steps.
@@ -153,7 +129,7 @@ class DiffuseEmission final : public EmissionShader {
 
   Color constant_;
   double integral_ = 0;  // of the one colour over wavelengths
-  std::unique_ptr<Measured[]> measured_;
+  PerObject measured_;
 };
 
 const Register<DiffuseEmission> registered;

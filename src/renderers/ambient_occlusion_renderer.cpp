@@ -8,7 +8,7 @@
 #include "etendue/renderer.h"
 #include "etendue/warp.h"
 #include "renderers/display_colors.h"
-#include "renderers/ray_steps.h"
+#include "transport/ray_steps.h"
 #include "transport/record.h"
 #include "transport/visibility.h"
 

@@ -11,6 +11,7 @@
 //   t = 1: a light walk goes to the lens, and the light falls on the film where it does.
 
 #include "transport/bidirectional_weight.h"
+#include "transport/ray_steps.h"
 #include "transport/record_walk.h"
 #include "transport/seeded_bug.h"
 #include "transport/subpaths.h"
@@ -51,8 +52,7 @@ class BidirectionalPathTracer final : public Renderer {
     std::vector<Advice> advice;
     if (light_vertices >= 0 || camera_vertices >= 0 || !weighted)
       advice.push_back({"all light: its members choose or do not weight strategies", ""});
-    std::vector<std::string> delta = traits.points;
-    delta.insert(delta.end(), traits.distant.begin(), traits.distant.end());
+    const std::vector<std::string> delta = delta_names(traits);
     if (!delta.empty() && !traits.specular.empty())
       advice.push_back({"mirror images of caustics of " + some_of(delta) + " by " + some_of(traits.specular),
                         "(give the luminaire a small area)"});

@@ -10,8 +10,8 @@
 // without extent: these count in full.
 
 #include "etendue/renderer.h"
-#include "renderers/ray_steps.h"
 #include "transport/direct_light.h"
+#include "transport/ray_steps.h"
 #include "transport/record.h"
 #include "transport/visibility.h"
 

@@ -20,8 +20,8 @@
 // of a path tracer, cut by Russian roulette, and with all kinds of lobes followed the expectation is the path tracer's.
 
 #include "etendue/renderer.h"
-#include "renderers/ray_steps.h"
 #include "transport/direct_light.h"
+#include "transport/ray_steps.h"
 #include "transport/record.h"
 #include "transport/visibility.h"
 

@@ -8,7 +8,7 @@
 #include "etendue/color.h"
 #include "etendue/renderer.h"
 #include "renderers/display_colors.h"
-#include "renderers/ray_steps.h"
+#include "transport/ray_steps.h"
 #include "transport/record.h"
 
 namespace etendue {

@@ -16,6 +16,7 @@
 #include "transport/direct_light.h"
 #include "transport/media.h"
 #include "transport/medium_tracking.h"
+#include "transport/ray_steps.h"
 #include "transport/record.h"
 #include "transport/seeded_bug.h"
 #include "transport/visibility.h"
@@ -49,8 +50,7 @@ class PathTracer final : public Renderer {
 
   std::vector<Advice> misses(const SceneTraits& traits) const override {
     std::vector<Advice> advice;
-    std::vector<std::string> delta = traits.points;
-    delta.insert(delta.end(), traits.distant.begin(), traits.distant.end());
+    const std::vector<std::string> delta = delta_names(traits);
     if (delta.empty()) return advice;
     if (!next_event)
       advice.push_back({"light of " + some_of(delta) + " without next event estimation", "PathTracer { next_event: true }"});
@@ -156,6 +156,7 @@ class PathTracer final : public Renderer {
       scene.locate(ray, hit, point);
       if (track_media) {
         if (hidden_by_priority(media, *point.object)) {
+          crossed += hit.distance;
           cross_boundary(media, *point.object, point.normal, ray.direction);
           ray.origin = point.exit(ray.direction);
           --depth;
@@ -171,8 +172,9 @@ class PathTracer final : public Renderer {
       const bool last = depth >= max_depth;
       if (last && !first && !null_surfaces) break;
 
-      const Scatter* scatter = scattering_at(point, out, sample);
-      if (first) note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths, crossed);
+      const Scatter* scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
+      if (first && !(scatter && scatter->lobes() == pass_through))
+        note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths, crossed);
       if (!scatter || (last && !(null_surfaces && scatter->has(pass_through)))) break;
 
       // All of the bounce's numbers at once: they depend on nothing, so the processor finds them while it does the rest.
@@ -232,9 +234,6 @@ class PathTracer final : public Renderer {
     return radiance;
   }
 
-  /// Growth of the footprint after a rough reflection [per distance]: maps seen indirectly are filtered coarsely.
-  static constexpr float diffuse_spread = 0.1f;
-
   /// Light sampled from a point in a medium, with what the way to it lets through.
   bool light_in_volume(const Scene& scene, const VolumeShader& volume, const Ray& arriving, const MediumStack& media,
                        const Spectrum& throughput, SampleContext& sample, DirectLight& direct) const {
@@ -257,13 +256,6 @@ class PathTracer final : public Renderer {
       cross_boundary(around, *point.object, point.normal, direct.shadow.direction);
     direct.light *= visible_fraction(scene, direct.shadow, tracked ? &around : nullptr, sample.wavelengths, sample.arena);
     return !direct.light.black();
-  }
-
-  const Scatter* scattering_at(const SurfacePoint& point, const Vector3& out, SampleContext& sample) const {
-    const SceneObject& object = *point.object;
-    if (!object.shader) return nullptr;
-    if (object.sides != Sides::both && (dot(point.normal, out) > 0) != (object.sides == Sides::front)) return nullptr;
-    return object.shader->bind(point, sample.wavelengths, sample.arena);
   }
 };
 

@@ -9,7 +9,7 @@
 // where refraction disperses light the refracted branch, alone, follows the hero wavelength.
 
 #include "etendue/renderer.h"
-#include "renderers/ray_steps.h"
+#include "transport/ray_steps.h"
 #include "transport/record.h"
 #include "transport/visibility.h"
 

@@ -2,13 +2,11 @@
 
 #include "transport/media.h"
 #include "transport/medium_tracking.h"
+#include "transport/ray_steps.h"
 #include "transport/seeded_bug.h"
 
 namespace etendue {
 namespace {
-
-/// Growth of the footprint after a rough reflection [per distance]: maps seen indirectly are filtered coarsely.
-constexpr float diffuse_spread = 0.1f;
 
 class Walk {
  public:
@@ -61,8 +59,7 @@ class Walk {
       }
       const Vector3 out = -ray_.direction;
       if (track_) point.media = arena_.make<MediumStack>(media_);
-      const bool seen = object.sides == Sides::both || (dot(point.normal, out) > 0) == (object.sides == Sides::front);
-      const Scatter* scatter = object.shader && seen ? object.shader->bind(point, wavelengths_, arena_) : nullptr;
+      const Scatter* scatter = scattering_at(point, out, wavelengths_, arena_);
 
       if (scatter && scatter->has(pass_through) && passes(*scatter, out, point, edge)) continue;
       std::optional<ScatterSample> next;

@@ -36,10 +36,12 @@ inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& ou
   return object.shader->bind(point, wavelengths, arena);
 }
 
+/// Growth of the footprint after a rough reflection [per distance]: maps seen indirectly are filtered coarsely.
+inline constexpr float diffuse_spread = 0.1f;
+
 /// Makes a ray go on from a point in a sampled direction; `media` are changed when it goes through the surface. Straight
 /// on, its footprint stays what it is.
 inline void go_on(const SurfacePoint& point, const ScatterSample& next, Ray& ray, MediumStack* media) {
-  constexpr float diffuse_spread = 0.1f;  // per distance: maps seen by way of rough surfaces are filtered coarsely
   if (media && next.transmitted()) cross_boundary(*media, *point.object, point.normal, next.direction);
   ray.origin = point.exit(next.direction);
   ray.direction = next.direction;
