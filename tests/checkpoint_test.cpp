@@ -582,7 +582,7 @@ TEST_F(CheckpointProgramTest, wrong_requests_are_explained) {
 }
 
 TEST_F(CheckpointProgramTest, an_interrupted_render_says_how_to_go_on) {
-  const std::string samples = std::to_string(40 * step);
+  const std::string samples = std::to_string(400 * step);
   {
     Process process(program,
                     {"render", "scene.etd", "--samples", samples, "--checkpoint", "state", "--set", "camera.fov=41", "-o",
@@ -595,7 +595,7 @@ TEST_F(CheckpointProgramTest, an_interrupted_render_says_how_to_go_on) {
                                        " -o a.npy --resume state\n"))
         << process.out();
   }
-  EXPECT_LT(count(read_checkpoint(folder / "state").done), 40u * step);
+  EXPECT_LT(count(read_checkpoint(folder / "state").done), 400u * step);
   ASSERT_EQ(run(rendering(samples, {"--set", "camera.fov=41", "--resume", "state", "-o", "a.npy"})), 0) << err;
   ASSERT_EQ(run(rendering(samples, {"--set", "camera.fov=41", "-o", "b.npy"})), 0) << err;
   EXPECT_TRUE(same_files("a.npy", "b.npy"));
