@@ -456,7 +456,9 @@ TEST_F(VerifyProgram, by_time_there_are_at_least_eight_passes) {
   EXPECT_EQ(run({"--renderers", "PathTracer,PathTracer{heuristic: balance}", "--samples", "16", "--time", "0.01s", "--json"}),
             0)
       << out << err;
-  for (const auto& renderer : nlohmann::json::parse(out)["renderers"]) EXPECT_GE(renderer["passes"].get<int>(), 8);
+  const auto report = nlohmann::json::parse(out);
+  ASSERT_EQ(report["renderers"].size(), 2u);
+  for (const auto& renderer : report["renderers"]) EXPECT_GE(renderer["passes"].get<int>(), 8);
 }
 
 TEST_F(VerifyProgram, quiet_says_nothing) {

@@ -22,8 +22,30 @@ class MediumStack {
     return top == nullptr || object.priority >= top->priority;
   }
 
-  /// The medium on the other side of the object's boundary: what would be current without it.
-  const SceneObject* outside_of(const SceneObject& object) const { return top_excluding(&object); }
+  /// The medium on the other side of the object's boundary: what would be current without it. Where the path is about to
+  /// leave the object, what it enters or leaves in the same place counts as well.
+  const SceneObject* outside_of(const SceneObject& object) const {
+    if (others_ == 0 || !inside(object)) return top_excluding(&object);
+    MediumStack beyond = *this;
+    beyond.cross_others();
+    return beyond.top_excluding(&object);
+  }
+
+  /// Boundaries that lie in the same place as the one the path has come to, in the direction it travels in: they are crossed
+  /// together with it, or not at all.
+  void forget_others() { others_ = 0; }
+  void note_other(const SceneObject& object, bool entered) {
+    if (others_ < most_others) other_[others_++] = {&object, entered};
+  }
+  void cross_others() {
+    for (int i = 0; i < others_; ++i) {
+      if (other_[i].entered)
+        enter(*other_[i].object);
+      else
+        leave(*other_[i].object);
+    }
+    others_ = 0;
+  }
 
   void enter(const SceneObject& object) {
     if (size_ == capacity) {
@@ -55,8 +77,21 @@ class MediumStack {
     return top;
   }
 
+  bool inside(const SceneObject& object) const {
+    for (int i = 0; i < size_; ++i)
+      if (inside_[i] == &object) return true;
+    return false;
+  }
+
+  static constexpr int most_others = 4;
+  struct Other {
+    const SceneObject* object;
+    bool entered;
+  };
+
   const SceneObject* inside_[capacity];
-  int size_ = 0;
+  Other other_[most_others];
+  int size_ = 0, others_ = 0;
 };
 
 }  // namespace etendue

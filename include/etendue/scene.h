@@ -21,6 +21,12 @@ class Scene : public SceneObject {
   /// Whether anything lies on the ray.
   virtual bool any(const Ray&) const = 0;
 
+  /// Every hit on a short ray, in no order; a scene that cannot tell gives the nearest.
+  virtual void all(const Ray& ray, HitList& list) const {
+    Hit hit;
+    if (nearest(ray, hit)) list.add(hit);
+  }
+
   /// The surface point of a hit found by `nearest`, through all the nested scenes it lies in.
   void locate(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
     if (hit.depth == 0) [[likely]]
@@ -54,6 +60,7 @@ class Scene : public SceneObject {
   Bounds3 bounds() const override;
   bool intersect(const Ray&, Hit&) const override;
   bool occludes(const Ray&) const override;
+  void all_hits(const Ray&, HitList&) const override;
   void surface_point(const Ray&, const Hit&, SurfacePoint&) const override;
   void tangents(SurfacePoint&) const override;
   float area(float time) const override;

@@ -15,6 +15,23 @@ namespace etendue {
 
 class Shader;
 
+/// Directions within an angle of an axis: a bound of an object's normals.
+struct NormalCone {
+  Vector3 axis{0, 0, 1};  ///< unit
+  float cosine = -1;      ///< of the angle; -1: any direction
+};
+
+/// A few hits: what lies in one place.
+struct HitList {
+  static constexpr int capacity = 8;
+  Hit hits[capacity];
+  int size = 0;
+  /// More than `capacity` are forgotten.
+  void add(const Hit& hit) {
+    if (size < capacity) hits[size++] = hit;
+  }
+};
+
 /// A point chosen on an object.
 struct SurfaceSample {
   SurfacePoint point;
@@ -58,6 +75,11 @@ class SceneObject : public Component {
     Hit hit;
     return intersect(ray, hit);
   }
+  /// Adds every hit on a short ray, where many surfaces may lie in one place. By default the nearest one.
+  virtual void all_hits(const Ray& ray, HitList& list) const {
+    Hit hit;
+    if (intersect(ray, hit)) list.add(hit);
+  }
   /// All that is known of the surface where a hit was found by a ray, tangents excepted.
   virtual void surface_point(const Ray&, const Hit&, SurfacePoint&) const = 0;
   /// Fills dpdu and dpdv of a point on this object.
@@ -74,6 +96,11 @@ class SceneObject : public Component {
   virtual SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const;
   /// The density [1/sr] with which sample_visible gives a point, seen from `from` in `direction` (unit).
   virtual float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const;
+
+  /// Where light of a luminaire begins, over all times; nowhere for one at infinity.
+  virtual Bounds3 luminaire_bounds() const { return bounds(); }
+  /// A bound of the geometric normals, over all times.
+  virtual NormalCone normals() const { return {}; }
 
   /// Encloses a volume: has an inside and an outside.
   virtual bool closed() const { return false; }

@@ -8,9 +8,13 @@
 #include "etendue/component.h"
 #include "etendue/description.h"
 #include "etendue/ray.h"
+#include "etendue/scene_object.h"
 #include "etendue/spectrum.h"
 
 namespace etendue {
+
+class SampleStream;
+class Scene;
 
 /// Kinds of scattering, as bits.
 enum Lobe : std::uint8_t {
@@ -74,7 +78,7 @@ class Scatter {
                                       Lobes = all_lobes) const;
   /// An estimate of the fraction of light from all asked lobes that leaves towards `out`, for Russian roulette and for
   /// choosing between lobes; exact where the model has a closed form.
-  Spectrum albedo(const Vector3& out, Lobes which = all_lobes) const { return local_albedo(frame_.to_local(out), which); }
+  Spectrum albedo(const Vector3& out, Lobes which = all_lobes) const;
 
   /// The lobes present at this point.
   Lobes lobes() const { return lobes_; }
@@ -86,9 +90,10 @@ class Scatter {
   const Frame& frame() const { return frame_; }
 
  protected:
-  Scatter(const SurfacePoint& p, Lobes lobes) : frame_(p.shading_normal), normal_(p.normal), lobes_(lobes) {}
+  Scatter(const SurfacePoint& p, Lobes lobes) : Scatter(p, Frame(p.shading_normal), lobes) {}
   /// With a tangent frame of its own (anisotropic models); frame.n must be on the side of the point's normal.
-  Scatter(const SurfacePoint& p, const Frame& frame, Lobes lobes) : frame_(frame), normal_(p.normal), lobes_(lobes) {}
+  Scatter(const SurfacePoint& p, const Frame& frame, Lobes lobes)
+      : frame_(frame), normal_(p.normal), lobes_(Lobes(lobes & let_through(p))) {}
   ~Scatter() = default;
 
   struct LocalSample {
@@ -117,6 +122,51 @@ class Scatter {
   Normal3 normal_;
   Lobes lobes_;
   bool has_choice_ = true;
+
+ private:
+  friend class ScatterCombination;
+  /// What an object of which one side absorbs leaves of its shader's lobes.
+  static Lobes let_through(const SurfacePoint& p) {
+    return p.object && p.object->sides != Sides::both ? reflection_lobes : all_lobes;
+  }
+
+  const class ScatterCombination& combination() const;
+
+  bool combined_ = false;
+};
+
+/// A Scatter made of others, each of which may have a shading normal of its own: it answers the public calls itself, in
+/// world directions, by asking the others' public calls, which do their own corrections. What the renderer multiplies by
+/// is the cosine with this one's normal, so values of the others go through `turned`.
+class ScatterCombination : public Scatter {
+ public:
+  // `which` holds the asked lobes that are present. Values are f of `Scatter::evaluate`, corrections included.
+  virtual ScatterValue combined_value_and_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const = 0;
+  virtual std::optional<ScatterSample> combined_sample(const Vector3& out, float choice, Point2 u, Transport,
+                                                       Lobes which) const = 0;
+  virtual Spectrum combined_albedo(const Vector3& out, Lobes which) const = 0;
+
+ protected:
+  ScatterCombination(const SurfacePoint& p, Lobes lobes) : Scatter(p, lobes) { combined_ = true; }
+  ~ScatterCombination() = default;
+
+  /// Of a part's value, what makes value * cosine(in) here the part's value * its own cosine.
+  float turned(const Scatter& part, const Vector3& in) const {
+    return part.frame().n == frame_.n ? 1 : part.cosine(in) / std::max(cosine(in), 1e-12f);
+  }
+
+ private:
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const final { return {}; }
+  float local_density(const Vector3&, const Vector3&, Lobes) const final { return 0; }
+  bool local_sample(const Vector3&, float, Point2, Lobes, LocalSample&) const final { return false; }
+  Spectrum local_albedo(const Vector3&, Lobes) const final { return {}; }
+};
+
+/// Where light that was let into a body leaves it again.
+struct SubsurfaceExit {
+  SurfacePoint point;                ///< on the surface of the body
+  Spectrum weight;                   ///< over the density by which the point was chosen
+  const Scatter* scatter = nullptr;  ///< scatters what comes from inside out of the body: called with `out` = point.normal
 };
 
 class Shader : public Component {
@@ -133,6 +183,21 @@ class Shader : public Component {
   virtual Spectrum interior_index(const Wavelengths&) const { return Spectrum(1.0f); }
   /// Whether a path through the surface enters or leaves the object's inside (so that media and indices nest).
   virtual bool transmits() const { return (possible_lobes() & transmission_lobes) != 0; }
+  /// Whether nothing is absorbed: as much light leaves as arrives, whatever the direction.
+  virtual bool lossless() const { return false; }
+  /// Whether f(out, in) = f(in, out), with the squared indices across refraction. Models that are not say why.
+  virtual bool reciprocal() const { return true; }
+  /// Whether `evaluate` of the Scatter is an unbiased estimate, which depends on the bits of its arguments, and `density`
+  /// that of something near what `sample` does: weights that compare densities stay right, and nothing else is asked of it.
+  virtual bool stochastic() const { return false; }
+  /// Whether light that goes into the body by `specular_transmission`, `glossy_transmission` or `diffuse_transmission` leaves
+  /// it elsewhere: renderers then ask `sample_exit` instead of following it inside.
+  virtual bool moves_exit() const { return false; }
+  /// Where light that enters at a point leaves. `random` gives as many numbers as are needed.
+  virtual std::optional<SubsurfaceExit> sample_exit(const SurfacePoint&, const Scene&, const Wavelengths&, SampleStream&,
+                                                    Arena&) const {
+    return std::nullopt;
+  }
 };
 
 }  // namespace etendue

@@ -155,6 +155,7 @@ class PathTracer final : public Renderer {
       }
       scene.locate(ray, hit, point);
       if (track_media) {
+        settle_coincident(scene, ray, hit, point, media);
         if (hidden_by_priority(media, *point.object)) {
           crossed += hit.distance;
           cross_boundary(media, *point.object, point.normal, ray.direction);
@@ -164,7 +165,7 @@ class PathTracer final : public Renderer {
         }
         point.media = &media;
       }
-      const Vector3 out = -ray.direction;
+      Vector3 out = -ray.direction;
       record_surface(sample.record, point, throughput);
       if (point.object->luminaire()) meet(point, depth);
       const bool first = depth == 1 && sample.features;
@@ -177,28 +178,49 @@ class PathTracer final : public Renderer {
         note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths, crossed);
       if (!scatter || (last && !(null_surfaces && scatter->has(pass_through)))) break;
 
-      // All of the bounce's numbers at once: they depend on nothing, so the processor finds them while it does the rest.
-      SampleStream& random = sample.random;
-      const float light_choice = one_luminaire ? (random.skip(), 0.0f) : random.next();
-      const Point2 light_point = random.next_pair();
-      const float lobe_choice = scatter->has_choice() ? random.next() : (random.skip(), 0.0f);
-      const Point2 scatter_direction = random.next_pair();
+      std::optional<ScatterSample> next;
+      for (bool moved = false;; moved = true) {
+        // All of the bounce's numbers at once: they depend on nothing, so the processor finds them while it does the rest.
+        SampleStream& random = sample.random;
+        const float light_choice = one_luminaire ? (random.skip(), 0.0f) : random.next();
+        const Point2 light_point = random.next_pair();
+        const float lobe_choice = scatter->has_choice() ? random.next() : (random.skip(), 0.0f);
+        const Point2 scatter_direction = random.next_pair();
 
-      if (next_event && !last && scatter->has(smooth_lobes)) {
-        awaits_light = propose_direct_light(*light_sampler, point, *scatter, out, sample.wavelengths, light_choice, light_point,
-                                            heuristic, direct);
-        if (awaits_light) {
-          direct.light *= throughput;
-          if (seeded(SeededBug::lost_cosine)) direct.light /= scatter->cosine(direct.shadow.direction);
-          if (!clear) awaits_light = light_arrives(scene, point, out, media, sample, direct);
+        if (next_event && !last && scatter->has(smooth_lobes)) {
+          awaits_light = propose_direct_light(*light_sampler, point, *scatter, out, sample.wavelengths, light_choice,
+                                              light_point, heuristic, direct);
+          if (awaits_light) {
+            direct.light *= throughput;
+            if (seeded(SeededBug::lost_cosine)) direct.light /= scatter->cosine(direct.shadow.direction);
+            if (!clear) awaits_light = light_arrives(scene, point, out, media, sample, direct);
+          }
         }
-      }
 
-      const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : Transport::radiance;
-      const std::optional<ScatterSample> next = scatter->sample(out, lobe_choice, scatter_direction, transport);
+        const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : Transport::radiance;
+        next = scatter->sample(out, lobe_choice, scatter_direction, transport);
+        if (!next || !next->transmitted() || moved || last || !point.object->shader->moves_exit()) break;
+
+        // Light that enters a body which scatters it leaves elsewhere: the path goes on from there. The way inside counts as
+        // one segment.
+        if (awaits_light && !(clear && scene.any(direct.shadow))) arrive(depth + 1, direct.light);
+        awaits_light = false;
+        throughput *= next->weight;
+        if (next->dispersive) throughput *= sample.wavelengths.drop_secondary();
+        record_scatter(sample.record, *next);
+        next.reset();
+        const std::optional<SubsurfaceExit> exit =
+            point.object->shader->sample_exit(point, scene, sample.wavelengths, random, sample.arena);
+        if (!exit || !exit->scatter || ++depth >= max_depth) break;
+        throughput *= exit->weight;
+        point = exit->point;
+        if (track_media) point.media = &media;
+        scatter = exit->scatter;
+        out = Vector3(point.normal);
+        record_surface(sample.record, point, throughput);
+      }
       goes_on = false;
       if (!next || (last && next->lobe != pass_through)) continue;
-      if (next->transmitted() && point.object->sides != Sides::both) continue;
       throughput *= next->weight;
       record_scatter(sample.record, *next);
       if (!clear && next->lobe == pass_through) {

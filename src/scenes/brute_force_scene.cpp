@@ -134,6 +134,28 @@ class BruteForceScene final : public Scene {
     return found;
   }
 
+  void all(const Ray& ray, HitList& list) const override {
+    const WideRay wide(ray);
+    for (size_t i = 0; i < blocks_.size(); ++i) {
+      Floats t, u, v;
+      const Ints mask = test(blocks_[i], wide, Floats{} + ray.maximum, t, u, v);
+      for (size_t lane = 0; lane < size_t(lanes) && any_of(mask); ++lane) {
+        if (!mask[lane]) continue;
+        const Slot& slot = slots_[i * lanes + lane];
+        Hit hit;
+        hit.distance = t[lane];
+        hit.object = slot.object;
+        hit.primitive = slot.primitive;
+        hit.u = u[lane];
+        hit.v = v[lane];
+        list.add(hit);
+      }
+    }
+    const Inverse inverse(ray);
+    for (const Other& other : others_)
+      if (inverse.meets(other.bounds, ray.maximum)) other.object->all_hits(ray, list);
+  }
+
   bool any(const Ray& ray) const override {
     if (!blocks_.empty()) {
       const WideRay wide(ray);

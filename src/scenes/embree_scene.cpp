@@ -25,7 +25,7 @@ class EmbreeScene final : public Scene {
   }
 
   bool nearest(const Ray& ray, Hit& hit) const override {
-    Context context{{}, &ray, &hit};
+    Context context{{}, &ray, &hit, nullptr};
     rtcInitIntersectContext(&context.embree);
     RTCRayHit query;
     set_embree_ray(query.ray, ray);
@@ -35,17 +35,39 @@ class EmbreeScene final : public Scene {
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     const Geometry& geometry = geometries_[query.hit.geomID];
     if (!geometry.triangles) return true;  // the object filled the hit
-    hit.distance = query.ray.tfar;
-    hit.object = geometry.object;
-    hit.primitive = query.hit.primID;
-    hit.u = query.hit.u;
-    hit.v = query.hit.v;
-    hit.depth = 0;
+    fill(hit, *geometry.object, query.ray.tfar, query.hit.primID, query.hit.u, query.hit.v);
     return true;
   }
 
+  // Hits are noted as Embree finds them, and denied, so that it goes on.
+  void all(const Ray& ray, HitList& list) const override {
+    struct Collector : Context {
+      const EmbreeScene* scene;
+    } context{{{}, &ray, nullptr, &list}, this};
+    rtcInitIntersectContext(&context.embree);
+    context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
+      const Collector& c = *reinterpret_cast<const Collector*>(arguments->context);
+      const RTCHit& found = *reinterpret_cast<const RTCHit*>(arguments->hit);
+      Hit hit;
+      fill(hit, *c.scene->geometries_[found.geomID].object, reinterpret_cast<const RTCRay*>(arguments->ray)->tfar, found.primID,
+           found.u, found.v);
+      c.list->add(hit);
+      arguments->valid[0] = 0;
+    };
+    RTCRayHit query;
+    set_embree_ray(query.ray, ray);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.get(), &context.embree, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
+    // Without interiors the scene was built without filters: the nearest triangle.
+    Hit hit;
+    fill(hit, *geometries_[query.hit.geomID].object, query.ray.tfar, query.hit.primID, query.hit.u, query.hit.v);
+    list.add(hit);
+  }
+
   bool any(const Ray& ray) const override {
-    Context context{{}, &ray, nullptr};
+    Context context{{}, &ray, nullptr, nullptr};
     rtcInitIntersectContext(&context.embree);
     RTCRay query;
     set_embree_ray(query, ray);
@@ -64,6 +86,7 @@ class EmbreeScene final : public Scene {
     int flags = RTC_SCENE_FLAG_NONE;
     if (robust) flags |= RTC_SCENE_FLAG_ROBUST;
     if (compact) flags |= RTC_SCENE_FLAG_COMPACT;
+    if (has_interiors()) flags |= RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;  // for `all`, which only asks about interiors
     rtcSetSceneFlags(scene_.get(), RTCSceneFlags(flags));
     geometries_.assign(finite.size(), {});
     for (const SceneObject* object : finite) {
@@ -87,7 +110,17 @@ class EmbreeScene final : public Scene {
     RTCIntersectContext embree;
     const Ray* ray;
     Hit* hit;
+    HitList* list;  ///< where to note all hits instead
   };
+
+  static void fill(Hit& hit, const SceneObject& object, float distance, std::uint32_t primitive, float u, float v) {
+    hit.distance = distance;
+    hit.object = &object;
+    hit.primitive = primitive;
+    hit.u = u;
+    hit.v = v;
+    hit.depth = 0;
+  }
 
   unsigned attach_object(const SceneObject* object) {
     RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_USER);
@@ -123,6 +156,7 @@ class EmbreeScene final : public Scene {
     const Context& context = *reinterpret_cast<const Context*>(arguments->context);
     Ray ray = *context.ray;
     ray.maximum = query.ray.tfar;
+    if (context.list) return static_cast<const SceneObject*>(arguments->geometryUserPtr)->all_hits(ray, *context.list);
     if (!static_cast<const SceneObject*>(arguments->geometryUserPtr)->intersect(ray, *context.hit)) return;
     query.ray.tfar = context.hit->distance;
     query.hit.geomID = arguments->geomID;

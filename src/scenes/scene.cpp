@@ -122,6 +122,14 @@ bool Scene::intersect(const Ray& ray, Hit& hit) const {
   return true;
 }
 
+void Scene::all_hits(const Ray& ray, HitList& list) const {
+  Transform scratch;
+  const Transform& t = placed(transform, ray.time, scratch);
+  const int before = list.size;
+  all(t.identity() ? ray : ray_into(t, ray), list);
+  for (int i = before; i < list.size; ++i) list.hits[i].scenes[list.hits[i].depth++] = this;
+}
+
 bool Scene::occludes(const Ray& ray) const {
   Transform scratch;
   const Transform& t = placed(transform, ray.time, scratch);

@@ -41,10 +41,18 @@ bool asked(const Pair& pair, Lobes which) {
 
 }  // namespace
 
+const ScatterCombination& Scatter::combination() const { return static_cast<const ScatterCombination&>(*this); }
+
+Spectrum Scatter::albedo(const Vector3& out, Lobes which) const {
+  which &= lobes_;
+  return combined_ ? combination().combined_albedo(out, which) : local_albedo(frame_.to_local(out), which);
+}
+
 float Scatter::relative_index(const Vector3&, const Vector3&) const { return 1; }
 
 Spectrum Scatter::evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
   which &= lobes_;
+  if (combined_) return combination().combined_value_and_density(out, in, transport, which).value;
   const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
   if (!pair.sides_agree() || !asked(pair, which)) return {};
   const Spectrum value = local_evaluate(pair.out, pair.in, which);
@@ -53,8 +61,9 @@ Spectrum Scatter::evaluate(const Vector3& out, const Vector3& in, Transport tran
   return value / square(relative_index(pair.out, pair.in));
 }
 
-float Scatter::density(const Vector3& out, const Vector3& in, Transport, Lobes which) const {
+float Scatter::density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
   which &= lobes_;
+  if (combined_) return combination().combined_value_and_density(out, in, transport, which).density;
   const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
   if (!pair.sides_agree() || !asked(pair, which)) return 0;
   return local_density(pair.out, pair.in, which);
@@ -62,6 +71,7 @@ float Scatter::density(const Vector3& out, const Vector3& in, Transport, Lobes w
 
 ScatterValue Scatter::value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
   which &= lobes_;
+  if (combined_) return combination().combined_value_and_density(out, in, transport, which);
   const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
   if (!pair.sides_agree() || !asked(pair, which)) return {};
   const ScatterValue local = local_value_and_density(pair.out, pair.in, which);
@@ -76,6 +86,7 @@ ScatterValue Scatter::value_and_density(const Vector3& out, const Vector3& in, T
 std::optional<ScatterSample> Scatter::sample(const Vector3& out, float choice, Point2 u, Transport transport,
                                              Lobes which) const {
   which &= lobes_;
+  if (combined_) return which == no_lobes ? std::nullopt : combination().combined_sample(out, choice, u, transport, which);
   Pair pair;
   pair.out = frame_.to_local(out);
   pair.out_geometric = dot(normal_, out);

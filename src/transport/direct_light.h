@@ -55,8 +55,6 @@ inline bool propose_direct_light(const LightSampler& lights, const SurfacePoint&
         // Of all lobes, as the path will be continued by: the density is that of choosing this direction among them.
         ScatterValue f = scatter.value_and_density(out, in, Transport::radiance);
         f.value *= scatter.cosine(in);
-        // Through a surface of which one side absorbs, nothing goes.
-        if (point.object->sides != Sides::both && (dot(point.normal, out) > 0) != (dot(point.normal, in) > 0)) f.value = {};
         if (!shader_sampling) f.density = 0;
         return f;
       },

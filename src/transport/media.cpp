@@ -78,6 +78,17 @@ void media_at_slowly(const Scene& scene, const Point3& p, float time, MediumStac
   while (crossings.size() < most && scene.nearest(ray, hit)) {
     scene.locate(ray, hit, point);
     crossings.push_back({point.object, point.normal});
+    HitList others;
+    Ray probe;
+    coincident_hits(scene, ray, point, probe, others);
+    for (int i = 0; i < others.size; ++i) {
+      scene.locate(probe, others.hits[i], point);
+      crossings.push_back({point.object, point.normal});
+    }
+    if (others.size > 0) {
+      scene.locate(ray, hit, point);
+      point.error = std::max(point.error, length(probe.origin - point.position));
+    }
     ray.origin = point.exit(ray.direction);
     hit = {};
   }

@@ -2,22 +2,34 @@
 // What a path does to its medium stack when it crosses a surface.
 
 #include "etendue/medium_stack.h"
+#include "etendue/scene.h"
 
 namespace etendue {
 
 /// The path goes through the surface of an object in a direction. One that is not closed has no inside: a sheet of it
 /// bounds nothing.
 inline void cross_boundary(MediumStack& media, const SceneObject& object, const Normal3& normal, const Vector3& direction) {
-  if (!object.closed()) return;
-  if (dot(normal, direction) < 0)
-    media.enter(object);
-  else
-    media.leave(object);
+  if (object.closed()) {
+    if (dot(normal, direction) < 0)
+      media.enter(object);
+    else
+      media.leave(object);
+  }
+  media.cross_others();
 }
 
 /// Whether the object's boundary means nothing here because the path is inside something of higher priority.
 inline bool hidden_by_priority(const MediumStack& media, const SceneObject& object) {
   return object.shader && object.shader->transmits() && !media.visible(object);
 }
+
+/// Surfaces of other objects in the same place as a hit, within the error of its position: each object once. `probe` is the
+/// ray, across the surface, that found them.
+void coincident_hits(const Scene&, const Ray&, const SurfacePoint&, Ray& probe, HitList&);
+
+/// After a path has come to a surface, decides which one it has come to where several lie in the same place, and lets `media`
+/// know of the others. One that lets nothing through comes first (a glass stands on the table, with no air between), then
+/// that of the highest priority, as everywhere.
+void settle_coincident(const Scene&, const Ray&, Hit&, SurfacePoint&, MediumStack& media);
 
 }  // namespace etendue

@@ -50,10 +50,10 @@ class Walk {
         if (start_.transport == Transport::radiance) add(Vertex::Kind::escape, edge.average());
         return false;
       }
-      const SceneObject& object = *hit.object;
       SurfacePoint point;
       scene_.locate(ray_, hit, point);
-      if (track_ && hidden_by_priority(media_, object)) {
+      if (track_) settle_coincident(scene_, ray_, hit, point, media_);
+      if (track_ && hidden_by_priority(media_, *point.object)) {
         cross(point);
         continue;
       }
@@ -67,7 +67,6 @@ class Walk {
         const float choice = scatter->has_choice() ? random_.next() : (random_.skip(), 0.0f);
         const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : start_.transport;
         next = scatter->sample(out, choice, random_.next_pair(), transport, vertex_lobes);
-        if (next && next->transmitted() && object.sides != Sides::both) next.reset();
       }
       Vertex& v = add(Vertex::Kind::surface, edge.average(), &point);
       v.scatter = scatter;
@@ -81,7 +80,7 @@ class Walk {
   bool passes(const Scatter& scatter, const Vector3& out, const SurfacePoint& point, Spectrum& edge) {
     const auto straight = scatter.sample(out, 0, {}, start_.transport, pass_through);
     const bool alone = scatter.lobes() == pass_through;
-    const Spectrum fraction = straight && point.object->sides == Sides::both ? straight->weight : Spectrum();
+    const Spectrum fraction = straight ? straight->weight : Spectrum();
     const float q = alone ? 1 : clamp(fraction.average(), 0, 1);
     if (q < 1 && random_.next() >= q) {
       carried_ /= 1 - q;

@@ -19,6 +19,7 @@ inline MediumStack* media_around(const Scene& scene, const Ray& ray, MediumStack
 inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& hit, SurfacePoint& point) {
   while (scene.nearest(ray, hit)) {
     scene.locate(ray, hit, point);
+    if (media) settle_coincident(scene, ray, hit, point, *media);
     point.media = media;
     if (!media || !hidden_by_priority(*media, *point.object)) return true;
     cross_boundary(*media, *point.object, point.normal, ray.direction);

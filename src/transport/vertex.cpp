@@ -15,7 +15,6 @@ ScatterValue scattering(const Vertex& v, const Vector3& out, const Vector3& in, 
   ScatterValue f = v.scatter->value_and_density(out, in, transport, smooth_lobes);
   // The walk chooses among all lobes.
   if (v.scatter->has(specular_lobes)) f.density = scattering_density(v, out, in, transport);
-  if (!v.lets_through() && v.crosses(out, in)) return {};
   if (!seeded(SeededBug::lost_cosine)) f.value *= v.scatter->cosine(in);
   return f;
 }

@@ -39,10 +39,8 @@ struct Vertex {
   float chance = 1;                      ///< of getting along the edge from the vertex before
   float forward = 0, reverse = 0;        ///< densities from the walk's side and from the other
 
-  /// Whether two directions lie on different sides of the surface, and whether light may go from one to the other: not
-  /// when one side absorbs.
+  /// Whether two directions lie on different sides of the surface.
   bool crosses(const Vector3& a, const Vector3& b) const { return (dot(point.normal, a) > 0) != (dot(point.normal, b) > 0); }
-  bool lets_through() const { return !on_surface() || point.object->sides == Sides::both; }
   bool on_surface() const { return kind == Kind::surface; }
   /// Whether a path that ends here can be connected to another: by what is not specular, whatever the walk chose.
   bool connectable() const { return on_surface() ? scatter && scatter->has(smooth_lobes) : kind != Kind::escape; }

@@ -23,13 +23,17 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
       }
     if (!found) return fraction;
 
+    if (!hit.object->shader) return {};
+    if (around) {
+      scene.locate(ray, hit, point);
+      settle_coincident(scene, ray, hit, point, media);
+    }
     const SceneObject& object = *hit.object;
     if (!object.shader) return {};
     const bool hidden = around && hidden_by_priority(media, object);
     if (!hidden && !(object.shader->possible_lobes() & pass_through)) return {};
-    scene.locate(ray, hit, point);
+    if (!around) scene.locate(ray, hit, point);
     if (!hidden) {
-      if (object.sides != Sides::both) return {};
       point.media = around ? &media : nullptr;
       const Scatter* scatter = object.shader->bind(point, wavelengths, arena);
       const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, Transport::radiance, pass_through) : std::nullopt;
