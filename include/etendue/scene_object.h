@@ -51,6 +51,10 @@ struct TriangleView {
   std::span<const std::array<std::uint32_t, 3>> triangles;
 };
 
+/// A number for the name of an attribute of surfaces, the same as long as the program runs: maps and objects ask for it when
+/// they are prepared, so that no names are compared while rendering.
+int attribute_number(const std::string& name);
+
 class SceneObject : public Component {
  public:
   using Interface = SceneObject;
@@ -116,6 +120,9 @@ class SceneObject : public Component {
   virtual void enclose(const Point3& /*centre*/, float /*radius*/) {}
   /// The object as triangles, when that is what it is and it does not move.
   virtual std::optional<TriangleView> triangles() const { return std::nullopt; }
+  /// Up to four numbers at a point of this object, such as a mesh's colour there. `number` is attribute_number of their name.
+  /// Returns how many; 0: the object has none by this name.
+  virtual int attribute(int /*number*/, const SurfacePoint&, float* /*values*/) const { return 0; }
 
   /// Place among the luminaires of the scene the renderer sees; -1: none. Set by Scene::prepare.
   int luminaire_index = -1;

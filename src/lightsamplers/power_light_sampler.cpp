@@ -1,6 +1,7 @@
 // PowerLightSampler: luminaires by the power they emit.
 
 #include "etendue/light_sampler.h"
+#include "lightsamplers/luminaire_power.h"
 
 namespace etendue {
 namespace {
@@ -17,36 +18,15 @@ class PowerLightSampler final : public LightSampler {
             range(0, 1));
   }
 
-  void build(const Scene& scene) override {
-    luminaires_.assign(scene.luminaires().begin(), scene.luminaires().end());
-    std::vector<double> powers;
-    double total = 0;
-    for (const SceneObject* luminaire : luminaires_) {
-      powers.push_back(power(*luminaire));
-      total += powers.back();
-    }
-    // A power may be an estimate (of a map, by samples) that misses what little there is: nothing that emits may have
-    // probability 0, so each gets at least a thousandth of the mean. Without any power, all are alike.
-    const double count = double(powers.size());
-    const double least = total > 0 ? 1e-3 * total / count : 1;
-    total += least * count;
-    cumulative_.clear();
-    probabilities_.clear();
-    double sum = 0;
-    for (const double p : powers) {
-      sum += p + least;
-      probabilities_.push_back(float((p + least) / total));
-      cumulative_.push_back(float(sum / total));
-    }
-  }
+  void build(const Scene& scene) override { table_.build(scene.luminaires(), luminaire_powers(scene.luminaires())); }
 
   // P = uniform / n + (1 - uniform) P_power.
   LightChoice choose(const Point3&, const Normal3&, float u) const override {
-    if (luminaires_.size() < 2) return choose(u);
+    if (count() < 2) return choose(u);
     const SceneObject* luminaire = nullptr;
     if (u < uniform) {
-      const size_t i = size_t(u / uniform * float(luminaires_.size()));
-      luminaire = luminaires_[std::min(i, luminaires_.size() - 1)];
+      const size_t i = size_t(u / uniform * float(count()));
+      luminaire = table_.luminaires()[std::min(i, count() - 1)];
     } else {
       luminaire = choose(std::min((u - uniform) / (1 - uniform), one_minus_epsilon)).luminaire;
     }
@@ -54,42 +34,18 @@ class PowerLightSampler final : public LightSampler {
   }
   float probability(const Point3&, const Normal3&, const SceneObject& luminaire) const override {
     const float by_power = probability(luminaire);
-    return by_power > 0 && luminaires_.size() > 1 ? mixed(by_power) : by_power;
+    return by_power > 0 && count() > 1 ? mixed(by_power) : by_power;
   }
-  LightChoice choose(float u) const override {
-    if (luminaires_.empty()) return {};
-    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), u);
-    const size_t i = std::min(size_t(found - cumulative_.begin()), luminaires_.size() - 1);
-    return {luminaires_[i], probabilities_[i]};
-  }
-  float probability(const SceneObject& luminaire) const override {
-    const size_t index = size_t(luminaire.luminaire_index);
-    return index < luminaires_.size() && luminaires_[index] == &luminaire ? probabilities_[index] : 0;
-  }
+  LightChoice choose(float u) const override { return table_.choose(u); }
+  float probability(const SceneObject& luminaire) const override { return table_.probability(luminaire); }
 
   float uniform = 0.5f;
 
  private:
-  float mixed(float by_power) const { return uniform / float(luminaires_.size()) + (1 - uniform) * by_power; }
+  size_t count() const { return table_.luminaires().size(); }
+  float mixed(float by_power) const { return uniform / float(count()) + (1 - uniform) * by_power; }
 
-  /// Power [W] over the visible range: the mean over 64 wavelengths at equal steps, times the range.
-  static double power(const SceneObject& luminaire) {
-    constexpr int sets = 16;
-    constexpr float range = wavelength_high - wavelength_low, step = range / (sets * spectrum_size);
-    double sum = 0;
-    for (int set = 0; set < sets; ++set) {
-      Wavelengths w;
-      for (int i = 0; i < spectrum_size; ++i) w.place(i, wavelength_low + (float(i * sets + set) + 0.5f) * step, 1 / range);
-      sum += double(luminaire.emission->power(luminaire, w).average());
-    }
-    double watts = sum / sets * double(range);
-    if (!(watts >= 0 && std::isfinite(watts)))
-      luminaire.emission->fail({}, "the power of the luminaire is not a finite number: " + std::to_string(watts) + " W");
-    return watts;
-  }
-
-  std::vector<const SceneObject*> luminaires_;
-  std::vector<float> probabilities_, cumulative_;
+  PowerTable table_;
 };
 
 const Register<PowerLightSampler> registered;

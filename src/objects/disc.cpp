@@ -64,6 +64,11 @@ class Disc final : public SceneObject {
     p.dpdv = 2 * w.axis_v;
   }
 
+  NormalCone normals() const override {
+    World scratch;
+    return transform.animated() ? NormalCone{} : NormalCone{Vector3(world(0, scratch).normal), 1};
+  }
+
   float area(float time) const override {
     World scratch;
     return world(time, scratch).area;

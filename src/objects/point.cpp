@@ -31,6 +31,11 @@ class Point final : public SceneObject {
   bool delta() const override { return true; }
 
   Bounds3 bounds() const override { return {}; }
+  Bounds3 luminaire_bounds() const override {
+    Bounds3 b;
+    b.add(position);
+    return swept(transform, b);
+  }
   bool intersect(const Ray&, Hit&) const override { return false; }
   bool occludes(const Ray&) const override { return false; }
   void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override { fill(ray.time, p); }

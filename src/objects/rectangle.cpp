@@ -53,6 +53,12 @@ class Rectangle final : public SceneObject {
     return true;
   }
 
+  NormalCone normals() const override {
+    if (transform.animated()) return {};
+    std::optional<World> scratch;
+    return {Vector3(world(0, scratch).normal), 1};
+  }
+
   void surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const override {
     std::optional<World> scratch;
     const World& w = world(ray.time, scratch);

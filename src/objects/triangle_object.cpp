@@ -66,7 +66,11 @@ void TriangleObject::adopt(MeshData mesh) {
   mesh_.positions.push_back({});
   bounds_ = transform.animated() ? swept(transform, stored_bounds_) : stored_bounds_;
   // What will surely be asked for is made now, the rest when it is.
-  if (emission) cumulative_areas();
+  light_tree_ = {};
+  if (emission) {
+    cumulative_areas();
+    if (!transform.animated() && mesh_.triangles.size() > few) build_light_tree();
+  }
   if (transform.animated() && mesh_.triangles.size() > few) accelerator();
 }
 

@@ -6,6 +6,7 @@
 
 #include "etendue/scene_object.h"
 #include "etendue/shader.h"  // objects own shaders
+#include "lightsamplers/light_tree.h"
 #include "mesh_data.h"
 
 namespace etendue {
@@ -30,6 +31,7 @@ class TriangleObject : public SceneObject {
   float area_density(const SurfacePoint&) const override;
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
   float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
+  NormalCone normals() const override;
   bool closed() const override;
   std::optional<TriangleView> triangles() const override;
 
@@ -47,6 +49,10 @@ class TriangleObject : public SceneObject {
   /// Chooses a triangle by its area in the stored coordinates; `x` becomes a fresh number in [0, 1).
   std::uint32_t choose(float& x, float other) const;
   float stored_area(std::uint32_t primitive) const;
+  /// The same as seen from a point, by the tree when there is one.
+  std::uint32_t choose_visible(const Point3& from, Point2& u, float& chance) const;
+  float visible_chance(const Point3& from, std::uint32_t primitive) const;
+  void build_light_tree();
   const std::vector<double>& cumulative_areas() const;
   const EmbreeTriangles& accelerator() const;
   TriangleView view() const { return {{mesh_.positions.data(), vertices_}, mesh_.triangles}; }
@@ -60,7 +66,8 @@ class TriangleObject : public SceneObject {
   std::vector<Plane> planes_;  // in the stored coordinates; none for large meshes
   MeshData mesh_;              // its positions have one more at the end: padding, which Embree asks for
   size_t vertices_ = 0;
-  double area_ = 0;  // in the stored coordinates [m^2]
+  LightTree light_tree_;  // of a still luminaire of many triangles
+  double area_ = 0;       // in the stored coordinates [m^2]
   Bounds3 bounds_, stored_bounds_;
 
   // Made when first asked for: few objects need them.

@@ -36,13 +36,21 @@ const std::vector<double>& TriangleObject::cumulative_areas() const {
   return lazy_->cumulative;
 }
 
+namespace {
+
+/// A float has 24 bits, too few to choose among millions of triangles and a point in one: bits below them are filled by a
+/// hash of both numbers.
+double finer(float x, float other) {
+  const std::uint64_t bits = (std::uint64_t(std::bit_cast<std::uint32_t>(x)) << 32) | std::bit_cast<std::uint32_t>(other);
+  return std::min(double(x) + double(mix_bits(bits + 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-77, 1 - 0x1p-53);
+}
+
+}  // namespace
+
 std::uint32_t TriangleObject::choose(float& x, float other) const {
   if (mesh_.triangles.size() == 1) return 0;
   const std::vector<double>& table = cumulative_areas();
-  // A float has 24 bits, too few to choose among millions of triangles and a point in one: bits below them are filled
-  // by a hash of both numbers.
-  const std::uint64_t bits = (std::uint64_t(std::bit_cast<std::uint32_t>(x)) << 32) | std::bit_cast<std::uint32_t>(other);
-  const double fine = std::min(double(x) + double(mix_bits(bits + 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-77, 1 - 0x1p-53);
+  const double fine = finer(x, other);
   const size_t i = std::min(size_t(std::upper_bound(table.begin(), table.end(), fine) - table.begin()), table.size() - 1);
   const double low = i > 0 ? table[i - 1] : 0, width = table[i] - low;
   x = width > 0 ? clamp(float((fine - low) / width), 0, one_minus_epsilon) : 0;
@@ -76,10 +84,63 @@ bool near(const Point3& from, const Point3 (&p)[3], float area) {
 
 }  // namespace
 
+NormalCone TriangleObject::normals() const {
+  if (transform.animated()) return {};
+  Vector3 sum{};
+  const auto area_normal = [this](const auto& t) {
+    return area_vector(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]);
+  };
+  for (const auto& t : mesh_.triangles) sum += area_normal(t);
+  const float l = length(sum);
+  if (!(l > 0)) return {};
+  NormalCone cone{sum / l, 1};
+  for (const auto& t : mesh_.triangles) {
+    const Vector3 n = area_normal(t);
+    const float m = length(n);
+    if (m > 0) cone.cosine = std::min(cone.cosine, dot(cone.axis, n) / m);
+  }
+  cone.cosine = std::max(cone.cosine - 1e-5f, -1.0f);
+  return cone;
+}
+
+void TriangleObject::build_light_tree() {
+  std::vector<LightBounds> lights(mesh_.triangles.size());
+  for (size_t i = 0; i < lights.size(); ++i) {
+    const auto& t = mesh_.triangles[i];
+    const Vector3 n = area_vector(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]);
+    const float l = length(n);
+    for (const std::uint32_t k : t) lights[i].bounds.add(mesh_.positions[k]);
+    if (l > 0) lights[i].normals = {n * ((emission->sides == Sides::back ? -1 : 1) / l), 1 - 1e-6f};
+    lights[i].both_sides = emission->sides == Sides::both;
+    lights[i].power = l / 2;  // of a map's variation nothing is known here
+  }
+  light_tree_.build(lights);
+}
+
+std::uint32_t TriangleObject::choose_visible(const Point3& from, Point2& u, float& chance) const {
+  if (light_tree_.empty()) {
+    const std::uint32_t primitive = choose(u.x, u.y);
+    chance = visible_chance(from, primitive);
+    return primitive;
+  }
+  double x = finer(u.x, u.y);
+  const LightTree::Choice choice = light_tree_.sample(from, {}, x);
+  u.x = clamp(float(x), 0, one_minus_epsilon);
+  chance = choice.probability;
+  return choice.emitter;
+}
+
+float TriangleObject::visible_chance(const Point3& from, std::uint32_t primitive) const {
+  if (!light_tree_.empty()) return light_tree_.probability(from, {}, primitive);
+  return mesh_.triangles.size() == 1 ? 1 : float(stored_area(primitive) / area_);
+}
+
 SurfaceSample TriangleObject::sample_visible(const Point3& from, Point2 u, float time) const {
   SurfaceSample s;
   if (mesh_.triangles.empty()) return s;
-  const std::uint32_t primitive = choose(u.x, u.y);
+  float chance = 0;
+  const std::uint32_t primitive = choose_visible(from, u, chance);
+  if (!(chance > 0)) return s;
   const Corners c = corners(primitive, time);
   const Vector3 e1 = c.p[1] - c.p[0], e2 = c.p[2] - c.p[0], n = cross(e1, e2);
   const float area = 0.5f * length(n);
@@ -95,14 +156,13 @@ SurfaceSample TriangleObject::sample_visible(const Point3& from, Point2 u, float
       h.v = clamp(h.v, 0, 1 - h.u);
       const bool flipped = transform.animated() && transform.at(time).flips();
       fill(primitive, flipped ? h.v : h.u, flipped ? h.u : h.v, time, s.point);
-      const float chance = mesh_.triangles.size() == 1 ? 1 : float(stored_area(primitive) / area_);
       complete_by_angle(s, from, chance / triangle.solid_angle());
       return s;
     }
   }
   const Point2 b = warp::triangle(u);
   fill(primitive, b.x, b.y, time, s.point);
-  complete_by_area(s, from, area_density(s.point));
+  complete_by_area(s, from, chance / area);
   return s;
 }
 
@@ -112,12 +172,11 @@ float TriangleObject::visible_density(const Point3& from, const Vector3& directi
   if (near(from, c.p, area)) {
     const SphericalTriangle triangle(from, c.p[0], c.p[1], c.p[2]);
     if (triangle.usable()) {
-      const float chance = mesh_.triangles.size() == 1 ? 1 : float(stored_area(p.primitive) / area_);
-      return chance / triangle.solid_angle();
+      return visible_chance(from, p.primitive) / triangle.solid_angle();
     }
   }
   const float cosine = std::abs(dot(p.normal, direction));
-  return cosine > 0 ? area_density(p) * distance_squared(p.position, from) / cosine : 0;
+  return cosine > 0 ? visible_chance(from, p.primitive) / area * distance_squared(p.position, from) / cosine : 0;
 }
 
 }  // namespace etendue

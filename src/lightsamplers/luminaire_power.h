@@ -1,0 +1,67 @@
+#pragma once
+// The power of luminaires, for choosing between them.
+
+#include "etendue/light_sampler.h"
+
+namespace etendue {
+
+/// Power [W] over the visible range: the mean over 64 wavelengths at equal steps, times the range.
+inline double luminaire_power(const SceneObject& luminaire) {
+  constexpr int sets = 16;
+  constexpr float range = wavelength_high - wavelength_low, step = range / (sets * spectrum_size);
+  double sum = 0;
+  for (int set = 0; set < sets; ++set) {
+    Wavelengths w;
+    for (int i = 0; i < spectrum_size; ++i) w.place(i, wavelength_low + (float(i * sets + set) + 0.5f) * step, 1 / range);
+    sum += double(luminaire.emission->power(luminaire, w).average());
+  }
+  const double watts = sum / sets * double(range);
+  if (!(watts >= 0 && std::isfinite(watts)))
+    luminaire.emission->fail({}, "the power of the luminaire is not a finite number: " + std::to_string(watts) + " W");
+  return watts;
+}
+
+/// The powers of a scene's luminaires. A power may be an estimate (of a map, by samples) that misses what little there is:
+/// nothing that emits may have none, so each gets a thousandth of the mean besides; all alike where no power is known.
+inline std::vector<double> luminaire_powers(std::span<const SceneObject* const> luminaires) {
+  std::vector<double> powers;
+  double total = 0;
+  for (const SceneObject* luminaire : luminaires) total += powers.emplace_back(luminaire_power(*luminaire));
+  const double least = total > 0 ? 1e-3 * total / double(powers.size()) : 1;
+  for (double& p : powers) p += least;
+  return powers;
+}
+
+/// Luminaires in proportion to their powers.
+class PowerTable {
+ public:
+  void build(std::span<const SceneObject* const> luminaires, std::span<const double> powers) {
+    luminaires_.assign(luminaires.begin(), luminaires.end());
+    double total = 0, sum = 0;
+    for (const double p : powers) total += p;
+    cumulative_.clear();
+    probabilities_.clear();
+    for (const double p : powers) {
+      sum += p;
+      probabilities_.push_back(float(p / total));
+      cumulative_.push_back(float(sum / total));
+    }
+  }
+  std::span<const SceneObject* const> luminaires() const { return luminaires_; }
+  LightChoice choose(float u) const {
+    if (luminaires_.empty()) return {};
+    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), u);
+    const size_t i = std::min(size_t(found - cumulative_.begin()), luminaires_.size() - 1);
+    return {luminaires_[i], probabilities_[i]};
+  }
+  float probability(const SceneObject& luminaire) const {
+    const size_t index = size_t(luminaire.luminaire_index);
+    return index < luminaires_.size() && luminaires_[index] == &luminaire ? probabilities_[index] : 0;
+  }
+
+ private:
+  std::vector<const SceneObject*> luminaires_;
+  std::vector<float> probabilities_, cumulative_;
+};
+
+}  // namespace etendue
