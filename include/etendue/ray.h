@@ -55,6 +55,7 @@ struct SurfacePoint {
   std::uint32_t primitive = 0;
   float u = 0, v = 0;                  ///< of the hit
   const MediumStack* media = nullptr;  ///< media around the ray that came here; null: vacuum
+  Vector3 ray_direction;               ///< of the ray that came here: the footprint is longer along it; zero: unknown
 
   /// A ray that leaves the surface without meeting it again: the origin is moved along the normal beyond the error.
   Ray leave(const Vector3& direction) const {

@@ -23,7 +23,10 @@ struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool open_low = false;
-  bool contains(double x) const { return (open_low ? x > low : x >= low) && x <= high; }
+  /// A member may be a float: its ends count as what they are there.
+  bool contains(double x) const {
+    return (open_low ? x > low : x >= low || float(x) >= float(low)) && (x <= high || float(x) <= float(high));
+  }
   std::string text() const;
 };
 

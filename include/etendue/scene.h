@@ -35,6 +35,7 @@ class Scene : public SceneObject {
       locate_nested(ray, hit, point);
     point.footprint = ray.width + ray.spread * hit.distance;
     point.footprint_cosine = std::abs(dot(point.normal, ray.direction));
+    point.ray_direction = ray.direction;
   }
 
   /// Objects that emit, those at infinity included.

@@ -23,6 +23,7 @@ struct SceneTraits {
   std::vector<std::string> nested_luminaires;  ///< luminaires in nested scenes, which can only be met, not sampled
   std::vector<std::string> media;              ///< objects with a scattering or absorbing volume
   std::vector<std::string> emissive_media;     ///< objects with a volume that emits
+  std::vector<std::string> moved_exits;        ///< surfaces that light which enters leaves elsewhere (subsurface scattering)
   std::vector<std::string> pass_through;       ///< surfaces that let light pass straight on
   bool pinhole = true;                         ///< the camera's lens is a point (or its rays parallel): no path meets it
 

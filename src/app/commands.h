@@ -25,5 +25,6 @@ void add_schema_command(CLI::App& program, Run& run);
 void add_manual_command(CLI::App& program, Run& run);
 void add_image_command(CLI::App& program, Run& run);
 void add_verify_command(CLI::App& program, Run& run);
+void add_conform_command(CLI::App& program, Run& run);
 
 }  // namespace etendue

@@ -19,6 +19,7 @@ First steps
   etendue classes PathTracer                             one class: its members, units, defaults and ranges
   etendue image diff a.exr b.exr                         how much two pictures differ
   etendue verify box.etd                                 whether all algorithms agree on a scene
+  etendue conform Shader                                 whether parts do what their interfaces promise
 
 Help on one command: etendue render --help
 Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
@@ -43,6 +44,7 @@ int main(int argument_count, char** arguments) {
   add_manual_command(program, run);
   add_image_command(program, run);
   add_verify_command(program, run);
+  add_conform_command(program, run);
 
   try {
     program.parse(argument_count, arguments);

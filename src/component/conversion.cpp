@@ -29,6 +29,7 @@ double in_member_unit(double value, Dimension dimension, const Member& m, Locati
 
 void check_range(double x, const Member& m, Location at) {
   if (!std::isfinite(x)) throw Error("must be a finite number", at);
+  if (std::abs(x) > double(std::numeric_limits<float>::max())) throw Error("is too large", at);
   if (m.range && !m.range->contains(x)) {
     const std::string unit = m.unit == "1" || m.unit.empty() ? "" : " " + m.unit;
     throw Error(fmt::format("must be {}{}, not {:.9g}{}", m.range->text(), unit, x, unit), at);
@@ -55,11 +56,7 @@ bool to_bool(const Value& v) {
 }
 
 double to_number(const Value& v, const Member& m) {
-  if (const auto* n = v.as<Number>()) {
-    const double x = checked(n->value, n->dimension, m, v.location);
-    if (std::abs(x) > double(std::numeric_limits<float>::max())) throw Error("is too large", v.location);
-    return x;
-  }
+  if (const auto* n = v.as<Number>()) return checked(n->value, n->dimension, m, v.location);
   mismatch("a number", v);
 }
 

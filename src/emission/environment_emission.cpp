@@ -1,5 +1,6 @@
 // EnvironmentEmission: light from all around, from an image or of a map.
 
+#include "emission/quantity.h"
 #include "etendue/color.h"
 #include "etendue/emission_shader.h"
 #include "etendue/object_map.h"
@@ -29,6 +30,9 @@ class EnvironmentEmission final : public EmissionShader {
         .member<&EnvironmentEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
                                            "radiance when there is no image; maps see (u, v) of the direction, v upwards")
         .member<&EnvironmentEmission::scale>("scale", "1", "multiplies the radiance", at_least(0))
+        .member<&EnvironmentEmission::lux>(
+            "illuminance", "lx", "on a plane that faces +y of the object, instead of what the scale gives; 0: not asked for",
+            at_least(0))
         .member<&EnvironmentEmission::color_space>("color_space", "", "primaries and white of the image's RGB")
         .member<&EnvironmentEmission::transfer>("transfer", "",
                                                 "how its numbers are encoded; auto: srgb for integers, linear for floats");
@@ -40,6 +44,7 @@ class EnvironmentEmission final : public EmissionShader {
     total_ = 0;
     if (!map) fail("radiance", "a map or a colour is needed");
     constant_map_ = bool(map->constant());
+    factor_ = scale;
     try {
       space_ = &rgb_space(color_space);
     } catch (const Error& e) {
@@ -50,7 +55,10 @@ class EnvironmentEmission final : public EmissionShader {
     } catch (const Error& e) {
       fail("transfer", e.what());
     }
-    if (file.empty()) return;
+    if (file.empty()) {
+      if (lux > 0) ask_for(map_illuminance());
+      return;
+    }
     try {
       image_ = read_linear_image(file.resolved(), transfer);
     } catch (const Error& e) {
@@ -58,15 +66,16 @@ class EnvironmentEmission final : public EmissionShader {
     }
     check_pixels();
     build();
+    if (lux > 0) ask_for(image_illuminance());
   }
 
   Spectrum radiance(const SurfacePoint& p, const Vector3&, const Wavelengths& w) const override {
     const Vector3 towards = p.object_position - Point3{};
     if (!image_.rgb.empty()) {
       const std::array<float, 3> rgb = look_up(place(towards));
-      return rgb_spectrum(*space_, scale * rgb[0], scale * rgb[1], scale * rgb[2], ColorUse::radiance, w);
+      return rgb_spectrum(*space_, factor_ * rgb[0], factor_ * rgb[1], factor_ * rgb[2], ColorUse::radiance, w);
     }
-    if (constant_map_) return map->color(p, w, ColorUse::radiance) * scale;
+    if (constant_map_) return map->color(p, w, ColorUse::radiance) * factor_;
     return map_radiance(p, towards, w);
   }
 
@@ -83,10 +92,10 @@ class EnvironmentEmission final : public EmissionShader {
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
     const float sphere_times_disc = pi * object.area();
     if (!image_.rgb.empty())
-      return rgb_spectrum(*space_, scale * mean_[0], scale * mean_[1], scale * mean_[2], ColorUse::radiance, w) *
+      return rgb_spectrum(*space_, factor_ * mean_[0], factor_ * mean_[1], factor_ * mean_[2], ColorUse::radiance, w) *
              sphere_times_disc;
     SurfacePoint p;
-    if (constant_map_) return map->color(p, w, ColorUse::radiance) * (scale * sphere_times_disc);
+    if (constant_map_) return map->color(p, w, ColorUse::radiance) * (factor_ * sphere_times_disc);
     constexpr int side = 32;
     Spectrum sum;
     for (int i = 0; i < side; ++i)
@@ -122,6 +131,7 @@ class EnvironmentEmission final : public EmissionShader {
   FilePath file;
   Ref<ObjectMap> map = constant(1.0f);
   float scale = 1;
+  double lux = 0;
   std::string color_space = "srgb", transfer = automatic_transfer;
 
  private:
@@ -139,7 +149,7 @@ class EnvironmentEmission final : public EmissionShader {
     p.uv = {at.x, 1 - at.y};
     p.footprint = 0;
     p.object_normal = Normal3(-towards);
-    return map->color(p, w, ColorUse::radiance) * scale;
+    return map->color(p, w, ColorUse::radiance) * factor_;
   }
 
   std::array<float, 3> look_up(Point2 at) const {
@@ -155,6 +165,42 @@ class EnvironmentEmission final : public EmissionShader {
     return rgb;
   }
   const float* texel(int x, int y) const { return image_.rgb.data() + (size_t(y) * size_t(image_.width) + size_t(x)) * 3; }
+
+  /// Given what a factor of 1 gives [lx].
+  void ask_for(double given) {
+    if (!(given > 0)) fail("illuminance", "nothing that the eye sees shines from above");
+    factor_ = float(lux / given);
+  }
+  /// E = 683.002 integral of V L cos dw over the upper half; of an image, luminances are Y times 106.857 nm.
+  double image_illuminance() const {
+    const size_t width = size_t(image_.width);
+    double sum = 0;
+    for (size_t y = 0; y + 1 < row_cosines_.size(); ++y) {
+      const double top = std::max(row_cosines_[y], 0.0), bottom = std::max(row_cosines_[y + 1], 0.0);
+      const double projected = 3.14159265358979323846 / double(width) * (top * top - bottom * bottom);  // integral of cos dw
+      for (size_t x = 0; x < width && projected > 0; ++x) {
+        const float* rgb = &image_.rgb[(y * width + x) * 3];
+        for (size_t c = 0; c < 3; ++c) sum += projected * space_->to_xyz[3 + c] * double(rgb[c]);
+      }
+    }
+    return luminous_efficacy * observer_y_integral() * sum;
+  }
+  double map_illuminance() {
+    factor_ = 1;
+    return integrate_wavelengths(Quantity::illuminance, [&](const Wavelengths& w) {
+      SurfacePoint p;
+      if (constant_map_) return map->color(p, w, ColorUse::radiance) * pi;
+      constexpr int side = 32;
+      Spectrum sum;
+      for (int i = 0; i < side * side; ++i) {
+        const Vector3 local = warp::cosine_hemisphere({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side});
+        const Vector3 d{local.y, local.z, local.x};
+        p.object_position = Point3{} + d;
+        sum += map_radiance(p, d, w);
+      }
+      return sum * (pi / (side * side));
+    });
+  }
 
   void check_pixels() {
     size_t bad = 0, negative = 0;
@@ -234,6 +280,7 @@ class EnvironmentEmission final : public EmissionShader {
 
   const RgbSpace* space_ = nullptr;
   bool constant_map_ = true;
+  float factor_ = 1;  // multiplies all radiance
   LinearImage image_;
   std::array<float, 3> mean_{};        // RGB over the sphere
   std::vector<float> importance_;      // per texel

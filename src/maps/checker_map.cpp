@@ -1,14 +1,18 @@
 // A checkerboard of two maps.
 
-#include "etendue/object_map.h"
+#include "maps/blend.h"
+#include "maps/periodic.h"
 
 namespace etendue {
 namespace {
 
 enum class Space : std::uint8_t { uv, object };
 
-class CheckerMap final : public ObjectMap {
+// The board is (1 - s(x) s(y) s(z)) / 2 of `second` with square waves s of period 2. Its mean over a box is that with the mean
+// of each wave over the box's side: exact for a footprint along the squares, and a box of the same second moments otherwise.
+class CheckerMap final : public BlendMap {
  public:
+  CheckerMap() : BlendMap(0.2f, 0.8f) {}
   static void describe(Description<CheckerMap>& d) {
     d.summary("A checkerboard of two maps, over surface coordinates or through the object's space.")
         .member<&CheckerMap::first>("first", "1", "the map of the square at the origin and every other one")
@@ -21,29 +25,36 @@ class CheckerMap final : public ObjectMap {
   }
 
   void prepare() override {
-    if (!first) fail("first", "a map is needed");
-    if (!second) fail("second", "a map is needed");
+    BlendMap::prepare();
     if (!is_finite(repeat)) fail("repeat", "must be finite numbers");
   }
 
-  Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse use) const override { return at(p).color(p, w, use); }
-  float scalar(const SurfacePoint& p) const override { return at(p).scalar(p); }
-
-  Ref<ObjectMap> first = etendue::constant(0.2f), second = etendue::constant(0.8f);
   Vector3 repeat{8, 8, 8};
   Space space = Space::uv;
 
  private:
-  const ObjectMap& at(const SurfacePoint& p) const {
-    float cells = 0;
+  float fraction(const SurfacePoint& p) const override {
+    float wave = 1;
     if (space == Space::uv) {
-      cells = std::floor(p.uv.x * repeat.x) + std::floor(p.uv.y * repeat.y);
+      const Vector2 box = uv_footprint(p).box();
+      wave = square_wave_mean(p.uv.x * repeat.x, box.x * std::abs(repeat.x)) *
+             square_wave_mean(p.uv.y * repeat.y, box.y * std::abs(repeat.y));
     } else {
+      Vector3 longer, shorter;
+      if (p.footprint > 0) {
+        const Footprint f = footprint_of(p);
+        Transform scratch;
+        const Transform& t = placement(p, scratch);
+        longer = t.back(f.longer);
+        shorter = t.back(f.shorter);
+      }
       // A surface that lies exactly between two layers of cubes would flicker by rounding: look a ten-thousandth of a
       // cube below the surface.
-      for (int i = 0; i < 3; ++i) cells += std::floor(p.object_position[i] * repeat[i] - 1e-4f * p.object_normal[i]);
+      for (int i = 0; i < 3; ++i)
+        wave *= square_wave_mean(p.object_position[i] * repeat[i] - 1e-4f * p.object_normal[i],
+                                 std::hypot(longer[i], shorter[i]) * std::abs(repeat[i]));
     }
-    return std::fmod(cells, 2.0f) == 0 ? *first : *second;
+    return 0.5f - 0.5f * wave;
   }
 };
 

@@ -37,17 +37,42 @@ class Decoder {
 
 constexpr char separator = '|';
 
+bool same_name(const std::string& a, const std::string& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
+    return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
+  });
+}
+
+/// The places of the channels that are meant, one or three; empty: there are none.
+std::vector<int> find_channels(const OIIO::ImageSpec& spec, const std::string& channel) {
+  if (channel.empty()) return spec.nchannels >= 3 ? std::vector<int>{0, 1, 2} : std::vector<int>{0};
+  const auto place = [&](const std::string& name) {
+    for (size_t i = 0; i < spec.channelnames.size(); ++i)
+      if (same_name(spec.channelnames[i], name)) return int(i);
+    return -1;
+  };
+  if (const int one = place(channel); one >= 0) return {one};
+  const std::vector<int> layer{place(channel + ".R"), place(channel + ".G"), place(channel + ".B")};
+  if (std::find(layer.begin(), layer.end(), -1) == layer.end()) return layer;
+  if (const int one = place(channel + ".Y"); one >= 0) return {one};
+  return {};
+}
+
 class LinearInput final : public OIIO::ImageInput {
  public:
   const char* format_name() const override { return "etendue_linear"; }
 
   bool open(const std::string& key, OIIO::ImageSpec& spec) override {
-    const size_t first = key.find(separator), second = key.find(separator, first + 1), third = key.find(separator, second + 1);
-    if (third == std::string::npos) {
-      errorfmt("'{}' is no key of an image", key);
-      return false;
+    size_t at[5] = {};  // behind each separator
+    for (size_t i = 1; i < 5; ++i) {
+      at[i] = key.find(separator, at[i - 1]) + 1;
+      if (at[i] == 0) {
+        errorfmt("'{}' is no key of an image", key);
+        return false;
+      }
     }
-    const std::string path = key.substr(third + 1);
+    const auto part = [&](size_t i) { return key.substr(at[i], at[i + 1] - 1 - at[i]); };
+    const std::string path = key.substr(at[4]);
     file_ = OIIO::ImageInput::open(path);
     if (!file_) {
       errorfmt("{}", OIIO::geterror());
@@ -59,10 +84,18 @@ class LinearInput final : public OIIO::ImageInput {
       file_.reset();
       return false;
     }
-    decoder_ = Decoder(key.substr(first + 1, second - first - 1), native.format);
+    channels_ = find_channels(native, part(2));
+    if (channels_.empty()) {
+      errorfmt("it has no channel '{}'", part(2));
+      file_.reset();
+      return false;
+    }
+    // Alpha is a fraction, not light: it is never encoded.
+    const bool alpha = channels_.size() == 1 && channels_[0] == native.alpha_channel && part(1) == automatic_transfer;
+    decoder_ = Decoder(alpha ? "linear" : part(1), native.format);
     strip_begin_ = strip_end_ = native.y;
     // Only what places the pixels is taken over: other attributes speak of the numbers as they are in the file.
-    m_spec = OIIO::ImageSpec(native.width, native.height, native.nchannels >= 3 ? 3 : 1, OIIO::TypeDesc::FLOAT);
+    m_spec = OIIO::ImageSpec(native.width, native.height, int(channels_.size()), OIIO::TypeDesc::FLOAT);
     m_spec.x = native.x;
     m_spec.y = native.y;
     m_spec.full_x = native.full_x;
@@ -93,14 +126,17 @@ class LinearInput final : public OIIO::ImageInput {
   /// Reads the row of tiles, or the few scanlines, that hold a scanline.
   bool read_strip(int y) {
     const OIIO::ImageSpec& native = file_->spec();
-    const int channels = m_spec.nchannels, end = native.y + native.height;
+    // All channels from the first to the last that are wanted are read, then the wanted ones picked.
+    const auto [least, most] = std::minmax_element(channels_.begin(), channels_.end());
+    const int first = *least, stop_channel = *most + 1, end = native.y + native.height;
+    const size_t channels = size_t(stop_channel - first);
     const int rows = native.tile_width ? native.tile_height : 16;
     const int begin = native.y + (y - native.y) / rows * rows, stop = std::min(begin + rows, end);
-    strip_.resize(size_t(native.width) * size_t(rows) * size_t(channels));
-    const bool good = native.tile_width
-                          ? file_->read_tiles(0, 0, native.x, native.x + native.width, begin, stop, 0, 1, 0, channels,
-                                              OIIO::TypeDesc::FLOAT, strip_.data())
-                          : file_->read_scanlines(0, 0, begin, stop, 0, 0, channels, OIIO::TypeDesc::FLOAT, strip_.data());
+    strip_.resize(size_t(native.width) * size_t(rows) * channels);
+    const bool good = native.tile_width ? file_->read_tiles(0, 0, native.x, native.x + native.width, begin, stop, 0, 1, first,
+                                                            stop_channel, OIIO::TypeDesc::FLOAT, strip_.data())
+                                        : file_->read_scanlines(0, 0, begin, stop, 0, first, stop_channel,
+                                                                OIIO::TypeDesc::FLOAT, strip_.data());
     if (!good) {
       strip_begin_ = strip_end_ = native.y;
       errorfmt("{}", file_->geterror());
@@ -108,12 +144,24 @@ class LinearInput final : public OIIO::ImageInput {
     }
     strip_begin_ = begin;
     strip_end_ = stop;
-    decoder_(strip_.data(), size_t(native.width) * size_t(stop - begin) * size_t(channels));
+    const size_t pixels = size_t(native.width) * size_t(stop - begin), wanted = channels_.size();
+    if (wanted != channels || !std::is_sorted(channels_.begin(), channels_.end())) pick(pixels, channels, first);
+    decoder_(strip_.data(), pixels * wanted);
     return true;
+  }
+
+  /// Keeps of each pixel the wanted channels, in place: there are never more of them than were read.
+  void pick(size_t pixels, size_t channels, int first) {
+    float pixel[3] = {};
+    for (size_t i = 0; i < pixels; ++i) {
+      for (size_t c = 0; c < channels_.size(); ++c) pixel[c] = strip_[i * channels + size_t(channels_[c] - first)];
+      std::copy_n(pixel, channels_.size(), strip_.data() + i * channels_.size());
+    }
   }
 
   std::unique_ptr<OIIO::ImageInput> file_;
   Decoder decoder_;
+  std::vector<int> channels_;
   std::vector<float> strip_;
   int strip_begin_ = 0, strip_end_ = 0;
 };
@@ -128,12 +176,26 @@ void check_transfer(const std::string& transfer) {
     throw Error("unknown transfer function '" + transfer + "'" + suggestion(transfer, known));
 }
 
+void check_channel(const std::string& path, const std::string& channel) {
+  const auto file = channel.empty() ? nullptr : OIIO::ImageInput::open(path);
+  if (!file) {
+    OIIO::geterror();  // whoever reads it will say so
+    return;
+  }
+  const std::vector<std::string>& known = file->spec().channelnames;
+  if (channel.find(separator) == std::string::npos && !find_channels(file->spec(), channel).empty()) return;
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  throw Error("'" + path + "' has no channel '" + channel + "'" + suggestion(channel, known) + "; it has " + list);
+}
+
 OIIO::ImageInput* make_linear_input() { return new LinearInput; }
 
-std::string linear_image_key(const std::string& path, const std::string& transfer) {
+std::string linear_image_key(const std::string& path, const std::string& transfer, const std::string& channel) {
   std::error_code ignored;
   const auto changed = std::filesystem::last_write_time(path, ignored).time_since_epoch().count();
-  return std::string("etendue") + separator + transfer + separator + std::to_string(changed) + separator + path;
+  return std::string("etendue") + separator + transfer + separator + channel + separator + std::to_string(changed) + separator +
+         path;
 }
 
 LinearImage read_linear_image(const std::string& path, const std::string& transfer) {

@@ -13,6 +13,10 @@ inline constexpr const char* automatic_transfer = "auto";
 /// Throws Error with a suggestion for an unknown name.
 void check_transfer(const std::string& transfer);
 
+/// Throws Error for a file that has no such channel, saying which it has. "": all; else the name of a channel ("A", "depth.Z")
+/// or of a layer ("diffuse" for diffuse.R, diffuse.G and diffuse.B). A file that cannot be read at all passes.
+void check_channel(const std::string& path, const std::string& channel);
+
 /// Pixels from top to bottom, three channels interleaved; a grey image has three equal ones, and alpha is left out.
 struct LinearImage {
   int width = 0, height = 0;
@@ -22,8 +26,8 @@ struct LinearImage {
 LinearImage read_linear_image(const std::string& path, const std::string& transfer);
 
 /// An image reader for OpenImageIO's caches, which gives a file's numbers decoded. It opens files by a key that tells the
-/// path, the transfer function and when the file was last changed.
+/// path, the transfer function, the channel and when the file was last changed.
 OIIO::ImageInput* make_linear_input();
-std::string linear_image_key(const std::string& path, const std::string& transfer);
+std::string linear_image_key(const std::string& path, const std::string& transfer, const std::string& channel = {});
 
 }  // namespace etendue

@@ -11,12 +11,20 @@
 
 namespace etendue {
 
+/// Numbers by vertex, `width` for each.
+struct VertexAttribute {
+  std::string name;
+  int width = 1;
+  std::vector<float> values;
+};
+
 /// Triangles with shared vertices. Normals and uvs are by vertex, or absent.
 struct MeshData {
   std::vector<Point3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Normal3> normals;  ///< a zero normal: the vertex has none
   std::vector<Point2> uvs;
+  std::vector<VertexAttribute> attributes;  ///< "color" (linear sRGB) and whatever else a file tells of its vertices
 };
 
 /// A whole file in memory without copying. Throws Error with the system's reason.

@@ -5,7 +5,7 @@
 
 #include "etendue/error.h"
 #include "mesh_data.h"
-#include "ply_header.h"
+#include "ply_attributes.h"
 
 namespace etendue {
 namespace {
@@ -114,61 +114,54 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
   mesh.positions.resize(count);
   if (normals) mesh.normals.resize(count);
   if (uvs) mesh.uvs.resize(count);
+  const auto at = [](void* array, size_t component) { return static_cast<char*>(array) + 4 * component; };
+  void *const p = mesh.positions.data(), *const n = mesh.normals.data(), *const uv = mesh.uvs.data();
+  std::vector<Column> columns{{x, at(p, 0), 12}, {y, at(p, 1), 12}, {z, at(p, 2), 12}};
+  if (normals) columns.insert(columns.end(), {{nx, at(n, 0), 12}, {ny, at(n, 1), 12}, {nz, at(n, 2), 12}});
+  if (uvs) columns.insert(columns.end(), {{u, at(uv, 0), 8}, {v, at(uv, 1), 8}});
+  add_attributes(e, columns, mesh);
 
   if (!body.text() && e.fixed_size()) {
     std::vector<size_t> offsets;
     size_t stride = 0;
-    for (const Property& p : e.properties) {
+    for (const Property& property : e.properties) {
       offsets.push_back(stride);
-      stride += size_of(p.type);
+      stride += size_of(property.type);
     }
     if (body.left() / stride < count) body.truncated();
+    const auto plain = [&](int i) { return !body.swap() && e.properties[size_t(i)].type == Type::float32; };
+    if (y == x + 1 && z == x + 2 && stride == 12 && plain(x) && plain(y) && plain(z)) {
+      std::memcpy(p, body.at(), 12 * count);
+      columns.clear();
+    }
     // One column after another, its type found once.
-    const auto column = [&](int property, char* to, size_t step) {
-      const char* from = body.at() + offsets[size_t(property)];
-      const Type type = e.properties[size_t(property)].type;
-      if (type == Type::float32 && !body.swap()) {
-        for (size_t i = 0; i < count; ++i, from += stride, to += step) std::memcpy(to, from, 4);
+    for (const Column& c : columns) {
+      const char* from = body.at() + offsets[size_t(c.property)];
+      const Type type = e.properties[size_t(c.property)].type;
+      char* to = c.to;
+      if (plain(c.property)) {
+        for (size_t i = 0; i < count; ++i, from += stride, to += c.step) std::memcpy(to, from, 4);
       } else {
-        for (size_t i = 0; i < count; ++i, from += stride, to += step) {
+        for (size_t i = 0; i < count; ++i, from += stride, to += c.step) {
           const float value = float(load_number(from, type, body.swap()));
           std::memcpy(to, &value, 4);
         }
       }
-    };
-    const auto at = [](void* array, size_t component) { return static_cast<char*>(array) + 4 * component; };
-    if (y == x + 1 && z == x + 2 && stride == 12 && !body.swap() && e.properties[size_t(x)].type == Type::float32 &&
-        e.properties[size_t(y)].type == Type::float32 && e.properties[size_t(z)].type == Type::float32) {
-      std::memcpy(static_cast<void*>(mesh.positions.data()), body.at(), 12 * count);
-    } else {
-      column(x, at(mesh.positions.data(), 0), 12);
-      column(y, at(mesh.positions.data(), 1), 12);
-      column(z, at(mesh.positions.data(), 2), 12);
-    }
-    if (normals) {
-      column(nx, at(mesh.normals.data(), 0), 12);
-      column(ny, at(mesh.normals.data(), 1), 12);
-      column(nz, at(mesh.normals.data(), 2), 12);
-    }
-    if (uvs) {
-      column(u, at(mesh.uvs.data(), 0), 8);
-      column(v, at(mesh.uvs.data(), 1), 8);
     }
     body.advance(stride * count);
-    return;
-  }
-  std::vector<float> row(e.properties.size());
-  for (size_t i = 0; i < count; ++i) {
-    for (size_t k = 0; k < row.size(); ++k) {
-      if (e.properties[k].list)
-        body.skip(e.properties[k]);
-      else
-        row[k] = float(body.number(e.properties[k].type));
+  } else {
+    std::vector<float> row(e.properties.size());
+    for (size_t i = 0; i < count; ++i) {
+      for (size_t k = 0; k < row.size(); ++k) {
+        if (e.properties[k].list)
+          body.skip(e.properties[k]);
+        else
+          row[k] = float(body.number(e.properties[k].type));
+      }
+      for (const Column& c : columns) std::memcpy(c.to + i * c.step, &row[size_t(c.property)], 4);
     }
-    mesh.positions[i] = {row[size_t(x)], row[size_t(y)], row[size_t(z)]};
-    if (normals) mesh.normals[i] = {row[size_t(nx)], row[size_t(ny)], row[size_t(nz)]};
-    if (uvs) mesh.uvs[i] = {row[size_t(u)], row[size_t(v)]};
   }
+  decode_fractions(e, columns);
 }
 
 void read_faces(const Element& e, Body& body, MeshData& mesh) {

@@ -56,6 +56,7 @@ class BidirectionalPathTracer final : public Renderer {
     if (!delta.empty() && !traits.specular.empty())
       advice.push_back({"mirror images of caustics of " + some_of(delta) + " by " + some_of(traits.specular),
                         "(give the luminaire a small area)"});
+    miss_subsurface(traits, advice);
     return advice;
   }
 

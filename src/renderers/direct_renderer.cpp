@@ -64,6 +64,7 @@ class DirectRenderer final : public Renderer {
     if (strategy == Strategy::shader && traits.delta_luminaires())
       list.push_back({"light of " + some_of(delta_names(traits)) + ", which no ray meets", "strategy: both finds it"});
     miss_media(traits, list);
+    miss_subsurface(traits, list);
     return list;
   }
 
@@ -163,7 +164,7 @@ class DirectRenderer final : public Renderer {
     for (int i = 0; i < shader_samples; ++i) {
       const float choice = std::min((float(i) + sample.random.next()) / n, one_minus_epsilon);
       const auto next = scatter.sample(out, choice, sample.random.next_pair(), Transport::radiance, bent_lobes);
-      if (!next) continue;
+      if (!next || enters_body(point, *next)) continue;
       Wavelengths wavelengths = sample.wavelengths;
       Spectrum throughput = next->weight / n;
       if (next->dispersive) throughput *= wavelengths.drop_secondary();

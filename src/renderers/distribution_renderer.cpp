@@ -73,6 +73,7 @@ class DistributionRenderer final : public Renderer {
       list.push_back({"light that " + some_of(traits.glossy) + " reflect", "glossy_samples: 1 or more finds it"});
     miss_caustics(traits, list);
     miss_media(traits, list);
+    miss_subsurface(traits, list);
     return list;
   }
 
@@ -161,7 +162,7 @@ class DistributionRenderer final : public Renderer {
       }
       const float choice = sample.random.next();
       const auto next = scatter->sample(out, choice, sample.random.next_pair(), Transport::radiance, lobes);
-      if (!next) return;
+      if (!next || enters_body(place.point, *next)) return;
       branch.throughput *= next->weight;
       step(sample, branch, place, *next, next->density, 1);
       // Radiance that refraction changed comes back when the path leaves the medium: that decides as little as splitting.
@@ -194,7 +195,7 @@ class DistributionRenderer final : public Renderer {
         const float choice = (float(i) + sample.random.next()) / float(kind.count);
         const auto next = place.scatter.sample(place.out, std::min(choice, one_minus_epsilon), sample.random.next_pair(),
                                                Transport::radiance, kind.lobes);
-        if (!next) continue;
+        if (!next || enters_body(place.point, *next)) continue;
         Branch child = branch;
         float density = float(kind.count) * next->density;  // N of a smooth lobe
         if (rivals == 0) {

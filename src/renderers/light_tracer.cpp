@@ -6,6 +6,7 @@
 // estimate beta f |cos| V W_e / p_l falls on the film where the camera images that direction.
 
 #include "transport/media.h"
+#include "transport/ray_steps.h"
 #include "transport/record_walk.h"
 #include "transport/seeded_bug.h"
 #include "transport/subpaths.h"
@@ -43,6 +44,7 @@ class LightTracer final : public Renderer {
           {"light of " + some_of(traits.nested_luminaires) + " in nested scenes", "PathTracer, BidirectionalPathTracer"});
     if (!traits.emissive_media.empty())
       advice.push_back({"light of the media in " + some_of(traits.emissive_media), "PathTracer, BidirectionalPathTracer"});
+    miss_subsurface(traits, advice);
     return advice;
   }
 

@@ -199,7 +199,7 @@ class PathTracer final : public Renderer {
 
         const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : Transport::radiance;
         next = scatter->sample(out, lobe_choice, scatter_direction, transport);
-        if (!next || !next->transmitted() || moved || last || !point.object->shader->moves_exit()) break;
+        if (!next || moved || last || !enters_body(point, *next)) break;
 
         // Light that enters a body which scatters it leaves elsewhere: the path goes on from there. The way inside counts as
         // one segment.

@@ -46,6 +46,7 @@ class WhittedRenderer final : public Renderer {
     }
     miss_caustics(traits, list);
     miss_media(traits, list);
+    miss_subsurface(traits, list);
     return list;
   }
 
@@ -98,7 +99,7 @@ class WhittedRenderer final : public Renderer {
       if (!scatter->has(lobe) || (last && lobe != pass_through)) continue;
       const float choice = sample.random.next();  // a surface may have several mirrors
       const auto next = scatter->sample(out, choice, sample.random.next_pair(), Transport::radiance, lobe);
-      if (!next) continue;
+      if (!next || enters_body(point, *next)) continue;
       RayBranch child = branch;
       child.throughput *= next->weight;
       if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();

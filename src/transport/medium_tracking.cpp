@@ -59,6 +59,7 @@ void settle_coincident(const Scene& scene, const Ray& ray, Hit& hit, SurfacePoin
     point = other;
     point.footprint = footprint;
     point.footprint_cosine = std::abs(dot(point.normal, ray.direction));
+    point.ray_direction = ray.direction;
   }
   point.error = std::max(point.error, error);
   if (!lets_in(*first)) media.forget_others();

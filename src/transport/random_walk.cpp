@@ -67,6 +67,7 @@ class Walk {
         const float choice = scatter->has_choice() ? random_.next() : (random_.skip(), 0.0f);
         const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : start_.transport;
         next = scatter->sample(out, choice, random_.next_pair(), transport, vertex_lobes);
+        if (next && enters_body(point, *next)) next.reset();
       }
       Vertex& v = add(Vertex::Kind::surface, edge.average(), &point);
       v.scatter = scatter;
@@ -134,7 +135,8 @@ class Walk {
     ray_.origin = v.point.exit(next.direction);
     ray_.direction = next.direction;
     ray_.width = v.point.footprint;
-    if (!v.specular) ray_.spread = std::max(ray_.spread, diffuse_spread);
+    // A walk from a luminaire ends where the camera looks from near: maps are not filtered for it.
+    if (!v.specular && start_.transport == Transport::radiance) ray_.spread = std::max(ray_.spread, diffuse_spread);
     return true;
   }
 

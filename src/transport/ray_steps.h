@@ -37,6 +37,11 @@ inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& ou
   return object.shader->bind(point, wavelengths, arena);
 }
 
+/// Whether a sampled direction leads into a body that light leaves elsewhere: who does not ask where loses the path.
+inline bool enters_body(const SurfacePoint& point, const ScatterSample& next) {
+  return next.transmitted() && point.object->shader->moves_exit();
+}
+
 /// Growth of the footprint after a rough reflection [per distance]: maps seen indirectly are filtered coarsely.
 inline constexpr float diffuse_spread = 0.1f;
 
@@ -110,6 +115,11 @@ inline void miss_media(const SceneTraits& traits, std::vector<Advice>& list) {
     list.push_back({"absorption and scattering in " + some_of(traits.media), "PathTracer, BidirectionalPathTracer"});
   if (!traits.emissive_media.empty())
     list.push_back({"light that " + some_of(traits.emissive_media) + " send out from within", "PathTracer"});
+}
+
+/// What a renderer that does not ask where light leaves a body misses.
+inline void miss_subsurface(const SceneTraits& traits, std::vector<Advice>& list) {
+  if (!traits.moved_exits.empty()) list.push_back({"light scattered inside " + some_of(traits.moved_exits), "PathTracer"});
 }
 
 /// The names of all luminaires without extent.

@@ -26,6 +26,7 @@ void look(const Scene& scene, bool nested, SceneTraits& traits) {
       if (lobes & smooth_lobes) note(traits.smooth);
       if (lobes & glossy_lobes) note(traits.glossy);
       if (lobes & pass_through) note(traits.pass_through);
+      if (object->shader->moves_exit()) note(traits.moved_exits);
     }
     if (object->interior) {
       note(traits.media);

@@ -1,0 +1,53 @@
+#pragma once
+// Shaders that tilt the shading normal and leave the rest to another shader.
+
+#include "etendue/shader.h"
+
+namespace etendue {
+
+/// The shader below is bound at the same point with another shading normal. Nothing else is to be done: the corrections for
+/// shading normals that are not the surface's, for radiance and importance, are made by Scatter's public calls, and a Scatter
+/// knows its own normal.
+class PerturbedNormalShader : public Shader {
+ public:
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    return shader->bind(perturbed(p), w, arena);
+  }
+  Lobes possible_lobes() const override { return shader->possible_lobes(); }
+  Spectrum interior_index(const Wavelengths& w) const override { return shader->interior_index(w); }
+  bool transmits() const override { return shader->transmits(); }
+  // What a tilted normal would send through the surface is lost, whatever the shader below.
+  bool lossless() const override { return false; }
+  bool reciprocal() const override { return shader->reciprocal(); }
+  bool stochastic() const override { return shader->stochastic(); }
+  bool moves_exit() const override { return shader->moves_exit(); }
+  std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
+                                            SampleStream& random, Arena& arena) const override {
+    return shader->sample_exit(perturbed(p), scene, w, random, arena);
+  }
+
+  Ref<Shader> shader;
+
+ protected:
+  /// A vector along the new normal, of any length; `p` has its tangents. What is no direction leaves the normal as it is.
+  virtual Vector3 tilted(const SurfacePoint& p) const = 0;
+
+ private:
+  SurfacePoint perturbed(const SurfacePoint& point) const {
+    SurfacePoint p = point;
+    if (p.dpdu == Vector3{} && p.dpdv == Vector3{} && p.object) p.object->tangents(p);
+    const Vector3 n = tilted(p);
+    const float n2 = length_squared(n);
+    if (!(n2 > 0 && n2 < infinity)) return p;
+    // A shading normal is on the front of the surface: beyond, it is turned back to just above it.
+    constexpr float least = 0.02f;
+    Vector3 unit = n / std::sqrt(n2);
+    const float cosine = dot(unit, p.normal);
+    if (cosine < least) unit += (least - cosine) * Vector3(p.normal);
+    const float l2 = length_squared(unit);
+    if (l2 > 1e-6f) p.shading_normal = Normal3(unit / std::sqrt(l2));
+    return p;
+  }
+};
+
+}  // namespace etendue

@@ -1,0 +1,210 @@
+// Emission, objects, maps, filters and media that are wrong in one way each: what `etendue conform` must find.
+
+#include "etendue/filter.h"
+#include "etendue/object_map.h"
+#include "etendue/scene_object.h"
+#include "etendue/shader.h"
+#include "etendue/volume_shader.h"
+#include "etendue/warp.h"
+
+namespace etendue {
+namespace {
+
+// ---- emission ----------------------------------------------------------------------------------------------------------
+
+/// A right one but for what parts override: radiance 1 in all directions of a surface.
+class Glow : public EmissionShader {
+ public:
+  Spectrum radiance(const SurfacePoint& p, const Vector3& direction, const Wavelengths&) const override {
+    return emits(p, direction) ? Spectrum(1.0f) : Spectrum();
+  }
+  DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
+    if (p.normal == Normal3{}) return {warp::sphere(u), warp::sphere_density};
+    bool behind = sides == Sides::back;
+    if (sides == Sides::both) {
+      behind = u.x >= 0.5f;
+      u.x = std::min(2 * u.x - (behind ? 1 : 0), one_minus_epsilon);
+    }
+    Vector3 d = drawn(u);
+    if (behind) d.z = -d.z;
+    const Vector3 direction = Frame(p.normal).to_world(d);
+    return {direction, density(p, direction)};
+  }
+  float density(const SurfacePoint& p, const Vector3& direction) const override {
+    if (p.normal == Normal3{}) return warp::sphere_density;
+    if (!emits(p, direction)) return 0;
+    return std::abs(dot(p.normal, direction)) * inverse_pi * (sides == Sides::both ? 0.5f : 1.0f);
+  }
+  Spectrum power(const SceneObject& object, const Wavelengths&) const override {
+    if (object.delta()) return 4 * pi;
+    return pi * object.area() * (sides == Sides::both ? 2.0f : 1.0f);
+  }
+
+ protected:
+  virtual Vector3 drawn(Point2 u) const { return warp::cosine_hemisphere(u); }
+};
+
+class WrongPowerEmission final : public Glow {
+ public:
+  static void describe(Description<WrongPowerEmission>& d) { d.summary("Radiance 1; forgets pi in its power."); }
+  Spectrum power(const SceneObject& object, const Wavelengths& w) const override { return Glow::power(object, w) / pi; }
+};
+const Register<WrongPowerEmission> power;
+
+class WrongDirectionsEmission final : public Glow {
+ public:
+  static void describe(Description<WrongDirectionsEmission>& d) {
+    d.summary("Radiance 1; directions uniform, densities by cosine.");
+  }
+
+ protected:
+  Vector3 drawn(Point2 u) const override { return warp::hemisphere(u); }
+};
+const Register<WrongDirectionsEmission> directions;
+
+// ---- objects -----------------------------------------------------------------------------------------------------------
+
+/// A right one but for what parts override: the unit square of the xy plane, moved by its transform.
+class Square : public SceneObject {
+ public:
+  Bounds3 bounds() const override {
+    Bounds3 b;
+    for (const float x : {0.0f, 1.0f})
+      for (const float y : {0.0f, 1.0f}) b.add(transform.still()(Point3{x, y, 0}));
+    const Vector3 margin{1e-4f, 1e-4f, 1e-4f};
+    b.low = b.low - margin;
+    b.high = b.high + margin;
+    return b;
+  }
+  bool intersect(const Ray& ray, Hit& hit) const override {
+    const Point3 o = transform.still().back(ray.origin);
+    const Vector3 d = transform.still().back(ray.direction);
+    const float t = -o.z / d.z;
+    if (!(t > 0 && t < ray.maximum)) return false;
+    const float x = o.x + t * d.x, y = o.y + t * d.y;
+    if (!(x >= 0 && x <= 1 && y >= 0 && y <= 1)) return false;
+    hit.distance = t;
+    hit.object = this;
+    hit.primitive = 0;
+    hit.u = x;
+    hit.v = y;
+    hit.depth = 0;
+    return true;
+  }
+  void surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const override { place({hit.u, hit.v}, ray.time, p); }
+  void tangents(SurfacePoint& p) const override {
+    p.dpdu = transform.still()(Vector3{1, 0, 0});
+    p.dpdv = transform.still()(Vector3{0, 1, 0});
+  }
+  float area(float) const override {
+    return length(cross(transform.still()(Vector3{1, 0, 0}), transform.still()(Vector3{0, 1, 0})));
+  }
+  float area_density(const SurfacePoint&) const override { return 1 / Square::area(0); }
+  SurfaceSample sample_area(Point2 u, float time) const override {
+    SurfaceSample s;
+    place(u, time, s.point);
+    s.density = 1 / Square::area(0);
+    return s;
+  }
+
+ private:
+  void place(Point2 at, float time, SurfacePoint& p) const {
+    p.object_position = {at.x, at.y, 0};
+    p.object_normal = {0, 0, 1};
+    p.position = transform.still()(p.object_position);
+    p.error = 1e-6f * (1 + length(p.position - Point3{}));
+    p.normal = p.shading_normal = normalize(transform.still()(p.object_normal));
+    p.uv = at;
+    p.dpdu = p.dpdv = {};
+    p.time = time;
+    p.object = this;
+    p.primitive = 0;
+    p.u = at.x;
+    p.v = at.y;
+  }
+};
+
+class WrongAreaSquare final : public Square {
+ public:
+  static void describe(Description<WrongAreaSquare>& d) { d.summary("A unit square that says it is twice as large."); }
+  float area(float time) const override { return 2 * Square::area(time); }
+};
+const Register<WrongAreaSquare> area;
+
+class WrongVisibleSquare final : public Square {
+ public:
+  static void describe(Description<WrongVisibleSquare>& d) {
+    d.summary("A unit square whose solid-angle densities lack the cosine.");
+  }
+  SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
+    SurfaceSample s = SceneObject::sample_visible(from, u, time);
+    s.density *= std::abs(dot(s.point.normal, s.direction));
+    return s;
+  }
+};
+const Register<WrongVisibleSquare> visible;
+
+// ---- maps --------------------------------------------------------------------------------------------------------------
+
+class UnboundedMap final : public ObjectMap {
+ public:
+  static void describe(Description<UnboundedMap>& d) {
+    d.summary("Stripes whose reflectance leaves [0, 1], and is not a number along a line.")
+        .member<&UnboundedMap::scale>("scale", "1", "how strong", range(1, 10));
+  }
+  Spectrum color(const SurfacePoint& p, const Wavelengths&, ColorUse) const override { return scalar(p); }
+  float scalar(const SurfacePoint& p) const override { return scale * std::sqrt(p.uv.x - 0.05f); }
+
+  float scale = 4;
+};
+const Register<UnboundedMap> map;
+
+// ---- filters -----------------------------------------------------------------------------------------------------------
+
+class EndlessFilter final : public Filter {
+ public:
+  static void describe(Description<EndlessFilter>& d) { d.summary("A normal distribution that does not end at its radius."); }
+  float weight(float x, float y) const override { return std::exp(-2 * (x * x + y * y)); }
+  float radius() const override { return 1; }
+};
+const Register<EndlessFilter> filter;
+
+// ---- media -------------------------------------------------------------------------------------------------------------
+
+class WrongPhaseVolume final : public VolumeShader {
+ public:
+  static void describe(Description<WrongPhaseVolume>& d) {
+    d.summary("Scatters alike in all directions, with a phase function that integrates to 1/2.")
+        .member<&WrongPhaseVolume::scattering>("scattering", "1/m", "scattering coefficient", range(0.1, 10));
+  }
+  VolumeCoefficients coefficients(const Point3&, float, const Wavelengths&) const override { return {0, scattering, 0}; }
+  bool homogeneous() const override { return true; }
+  Spectrum majorant(const Wavelengths&) const override { return scattering; }
+  float phase(const Point3&, const Vector3&, const Vector3&) const override { return warp::hemisphere_density / 4; }
+  Vector3 sample_phase(const Point3&, const Vector3&, Point2 u, float& density) const override {
+    density = warp::hemisphere_density / 4;
+    return warp::sphere(u);
+  }
+
+  float scattering = 1;
+};
+const Register<WrongPhaseVolume> phase;
+
+// ---- any component -----------------------------------------------------------------------------------------------------
+
+class ForgetfulFilter final : public Filter {
+ public:
+  static void describe(Description<ForgetfulFilter>& d) {
+    d.summary("A box whose radius is saved as a diameter: prepare() changes what was written.")
+        .member<&ForgetfulFilter::half>("width", "1", "half the width [pixels]", range(0.5, 1e6));
+  }
+  void prepare() override { half *= 2; }
+  float weight(float x, float y) const override { return std::abs(x) <= half && std::abs(y) <= half ? 1.0f : 0.0f; }
+  float radius() const override { return half; }
+
+  float half = 1;
+};
+const Register<ForgetfulFilter> forgetful;
+
+}  // namespace
+}  // namespace etendue

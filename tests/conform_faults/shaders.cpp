@@ -1,0 +1,177 @@
+// Shaders that are wrong in one way each: what `etendue conform` must find.
+
+#include "etendue/object_map.h"
+#include "etendue/shader.h"
+#include "etendue/warp.h"
+
+namespace etendue {
+namespace {
+
+/// A right one: matt, on both sides.
+class Matt : public Scatter {
+ public:
+  Matt(const SurfacePoint& p, float reflectance, Lobes lobes = diffuse_reflection)
+      : Scatter(p, lobes), reflectance_(reflectance) {}
+
+ protected:
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? Spectrum(reflectance_ * inverse_pi) : Spectrum();
+  }
+  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
+  }
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
+    s.in = warp::cosine_hemisphere(u);
+    if (out.z < 0) s.in.z = -s.in.z;
+    s.lobe = diffuse_reflection;
+    s.density = local_density(out, s.in, which);
+    s.value = local_evaluate(out, s.in, which) * std::abs(s.in.z);
+    return s.density > 0;
+  }
+  Spectrum local_albedo(const Vector3&, Lobes which) const override {
+    return (which & lobes_) ? Spectrum(reflectance_) : Spectrum();
+  }
+
+  float reflectance_;
+};
+
+/// The members and lobes all of them have.
+template <class S>
+class MattShader : public Shader {
+ public:
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths&, Arena& arena) const override {
+    return arena.make<S>(p, reflectance);
+  }
+  Lobes possible_lobes() const override { return diffuse_reflection; }
+
+  float reflectance = 0.7f;
+
+ protected:
+  template <class T>
+  static void describe_as(Description<T>& d, const char* fault) {
+    d.summary(fault).template member<&T::reflectance>("reflectance", "1", "fraction of light reflected", range(0.2, 1));
+  }
+};
+
+// ---- a density that forgets the cosine --------------------------------------------------------------------------------
+class DensityScatter final : public Matt {
+ public:
+  using Matt::Matt;
+
+ protected:
+  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? warp::hemisphere_density : 0;
+  }
+};
+class WrongDensityShader final : public MattShader<DensityScatter> {
+ public:
+  static void describe(Description<WrongDensityShader>& d) { describe_as(d, "Directions by cosine, densities without it."); }
+};
+const Register<WrongDensityShader> density;
+
+// ---- more light than arrives -------------------------------------------------------------------------------------------
+class EnergyScatter final : public Matt {
+ public:
+  EnergyScatter(const SurfacePoint& p, float reflectance) : Matt(p, 1 + 0.1f * reflectance) {}
+
+ protected:
+  Spectrum local_albedo(const Vector3&, Lobes which) const override { return (which & diffuse_reflection) ? 1.0f : 0.0f; }
+};
+class GainingShader final : public MattShader<EnergyScatter> {
+ public:
+  static void describe(Description<GainingShader>& d) { describe_as(d, "Reflects up to 110 % of what arrives."); }
+};
+const Register<GainingShader> gaining;
+
+// ---- not reciprocal ----------------------------------------------------------------------------------------------------
+class OneWayScatter final : public Matt {
+ public:
+  using Matt::Matt;
+
+ protected:
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
+    return Matt::local_evaluate(out, in, which) * (0.5f + 0.5f * std::abs(out.z));
+  }
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    return Matt::local_albedo(out, which) * (0.5f + 0.5f * std::abs(out.z));
+  }
+};
+class OneWayShader final : public MattShader<OneWayScatter> {
+ public:
+  static void describe(Description<OneWayShader>& d) {
+    describe_as(d, "Darker towards grazing viewers, not from grazing lamps.");
+  }
+};
+const Register<OneWayShader> one_way;
+
+// ---- a weight that is not value times cosine over density --------------------------------------------------------------
+class WeightScatter final : public Matt {
+ public:
+  using Matt::Matt;
+
+ protected:
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    const bool sampled = Matt::local_sample(out, choice, u, which, s);
+    s.value *= 1.03f;
+    return sampled;
+  }
+};
+class WrongWeightShader final : public MattShader<WeightScatter> {
+ public:
+  static void describe(Description<WrongWeightShader>& d) { describe_as(d, "Samples weigh 3 % too much."); }
+};
+const Register<WrongWeightShader> weight;
+
+// ---- two lobes, one of which does not look at the mask -----------------------------------------------------------------
+class MaskScatter final : public Matt {
+ public:
+  MaskScatter(const SurfacePoint& p, float reflectance) : Matt(p, reflectance, diffuse_reflection | diffuse_transmission) {}
+
+ protected:
+  // Half of the light each way; but the reflecting half is sampled whether it was asked for or not.
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return reflectance_ / 2 * inverse_pi; }
+  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+    if (which == diffuse_reflection) return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
+    return std::abs(in.z) * inverse_pi / 2;
+  }
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    s.in = warp::cosine_hemisphere(u);
+    const bool through = (which & diffuse_transmission) != 0 && choice < 0.5f;
+    if ((out.z < 0) != through) s.in.z = -s.in.z;
+    s.lobe = through ? diffuse_transmission : diffuse_reflection;
+    s.density = local_density(out, s.in, which);
+    s.value = local_evaluate(out, s.in, which) * std::abs(s.in.z);
+    return s.density > 0;
+  }
+  Spectrum local_albedo(const Vector3&, Lobes which) const override {
+    return reflectance_ * ((which & diffuse_reflection ? 0.5f : 0) + (which & diffuse_transmission ? 0.5f : 0));
+  }
+};
+class MaskIgnoringShader final : public MattShader<MaskScatter> {
+ public:
+  static void describe(Description<MaskIgnoringShader>& d) {
+    describe_as(d, "Reflects although only transmission was asked for.");
+  }
+  Lobes possible_lobes() const override { return diffuse_reflection | diffuse_transmission; }
+};
+const Register<MaskIgnoringShader> mask;
+
+// ---- not a number where the cosine vanishes ----------------------------------------------------------------------------
+class GrazingScatter final : public Matt {
+ public:
+  using Matt::Matt;
+
+ protected:
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
+    // sqrt of what is negative just above the horizon.
+    return Matt::local_evaluate(out, in, which) * std::sqrt(std::abs(in.z) - 0.001f) / std::sqrt(std::abs(in.z) - 0.001f);
+  }
+};
+class GrazingShader final : public MattShader<GrazingScatter> {
+ public:
+  static void describe(Description<GrazingShader>& d) { describe_as(d, "Not a number at grazing angles."); }
+};
+const Register<GrazingShader> grazing;
+
+}  // namespace
+}  // namespace etendue
