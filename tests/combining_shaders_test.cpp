@@ -49,7 +49,8 @@ SurfacePoint on_square(float u = 0.4f, float v = 0.6f) {
 /// A Lambertian surface with a slope of 0.5 along u.
 Ref<Shader> bumped(const Ref<Shader>& below) {
   const auto ramp = create<ObjectMap>(
-      "ImageMap", {{"file", image_file("ramp.ppm", 256, 1, 1, [](int x, int, int) { return x / 255.0; })}, {"transfer", "linear"}});
+      "ImageMap",
+      {{"file", image_file("ramp.ppm", 256, 1, 1, [](int x, int, int) { return x / 255.0; })}, {"transfer", "linear"}});
   return create<Shader>("BumpShader", {{"shader", below}, {"height", ramp}, {"scale", 0.5 * 255 / 256}});
 }
 
@@ -142,8 +143,9 @@ TEST(BumpShader, TiltsByTheSlope) {
     EXPECT_LT(length(Vector3(shader->bind(p, test::wavelengths(), arena)->frame().n) - Vector3(expected)), 2e-3f);
     // The other way round, along a u that runs backwards and is stretched: the same hill.
     p.dpdu = {-2, 0, 0};
-    EXPECT_LT(length(Vector3(shader->bind(p, test::wavelengths(), arena)->frame().n) -
-                     Vector3(normalize(Normal3(0.25f, 0, 1)))), 2e-3f);
+    EXPECT_LT(
+        length(Vector3(shader->bind(p, test::wavelengths(), arena)->frame().n) - Vector3(normalize(Normal3(0.25f, 0, 1)))),
+        2e-3f);
   }
   // Without surface coordinates there is nothing to go by.
   EXPECT_EQ(shader->bind(test::surface_point({0, 0, 1}), test::wavelengths(), arena)->frame().n, Normal3(0, 0, 1));
@@ -151,7 +153,9 @@ TEST(BumpShader, TiltsByTheSlope) {
 
 TEST(NormalMapShader, ReadsVectors) {
   // x = 0.5, y = 0.25, z = 1.
-  const std::string file = image_file("normal.ppm", 1, 1, 3, [](int, int, int c) { return c == 0 ? 0.75 : c == 1 ? 0.625 : 1; });
+  const std::string file = image_file("normal.ppm", 1, 1, 3, [](int, int, int c) {
+    return c == 0 ? 0.75 : c == 1 ? 0.625 : 1;
+  });
   const Ref<Shader> below = create<Shader>("Lambertian");
   const auto normal = [&](const SurfacePoint& p, double strength, const char* flip) {
     Arena arena;
@@ -180,7 +184,8 @@ float film_reflectance(const Shader& film, double angle, float hero = 500, Lobes
 
 TEST(ThinFilm, WithoutThicknessIsTheBareSurface) {
   const Ref<Shader> film = create<Shader>("ThinFilm", {{"thickness", 0.0}});
-  const Ref<Shader> metal = create<Shader>("ThinFilm", {{"thickness", 0.0}, {"base_ior", complex_index(flat_spectrum(0.8f), flat_spectrum(6))}});
+  const Ref<Shader> metal =
+      create<Shader>("ThinFilm", {{"thickness", 0.0}, {"base_ior", complex_index(flat_spectrum(0.8f), flat_spectrum(6))}});
   for (const double angle : {0.0, 30.0, 56.31, 80.0, 89.0, 91.0, 110.0, 150.0, 180.0}) {
     const float c = float(std::abs(std::cos(angle * M_PI / 180)));
     EXPECT_NEAR(film_reflectance(*film, angle), fresnel_dielectric(c, angle < 90 ? 1.5f : 1 / 1.5f), 3e-5f) << angle;
@@ -222,7 +227,8 @@ TEST(ThinFilm, LosesNothingAndIsReciprocal) {
 
 TEST(DiffractionGrating, OrdersFollowTheGratingEquation) {
   // 600 grooves a millimetre along x, 500 nm: lambda / d = 0.3.
-  const Ref<Shader> grating = create<Shader>("DiffractionGrating", {{"lines", 600.0}, {"efficiency", std::vector<double>{0.2, 0.3, 0.1}}});
+  const Ref<Shader> grating =
+      create<Shader>("DiffractionGrating", {{"lines", 600.0}, {"efficiency", std::vector<double>{0.2, 0.3, 0.1}}});
   Arena arena;
   const Scatter& s = *grating->bind(on_square(), test::wavelengths(500), arena);
   const Vector3 out{0, 0.5f, std::sqrt(0.75f)};
@@ -239,7 +245,8 @@ TEST(DiffractionGrating, OrdersFollowTheGratingEquation) {
     // Reciprocal: back along it, the same order leads to where light came from.
     bool found = false;
     for (int k = 0; k < 5; ++k)
-      if (const auto back = s.sample(sample->direction, 0.1f + 0.2f * float(k), {})) found |= length(back->direction - out) < 1e-5f;
+      if (const auto back = s.sample(sample->direction, 0.1f + 0.2f * float(k), {}))
+        found |= length(back->direction - out) < 1e-5f;
     EXPECT_TRUE(found);
   }
   // in.y = -0.5 - 0.6 does not exist: its tenth is lost.

@@ -223,12 +223,15 @@ TEST(LayeredShader, ImportanceIsTheAdjoint) {
       const Vector3 b = at_angle(frame, i < 2 ? 70 * double(directions()) : 180 - 60 * double(directions()), 2);
       Mean difference;
       double total = 0;
-      at_many_points(*c.shader, 2000, [&](const Scatter& s, test::Random&) {
-        const double light = double(s.evaluate(a, b, Transport::importance)[0] * s.cosine(b) / std::abs(b.z));
-        const double camera = double(s.evaluate(b, a)[0] * s.cosine(a) / std::abs(a.z));
-        difference.add(light - camera);
-        total += light + camera;
-      }, normal);
+      at_many_points(
+          *c.shader, 2000,
+          [&](const Scatter& s, test::Random&) {
+            const double light = double(s.evaluate(a, b, Transport::importance)[0] * s.cosine(b) / std::abs(b.z));
+            const double camera = double(s.evaluate(b, a)[0] * s.cosine(a) / std::abs(a.z));
+            difference.add(light - camera);
+            total += light + camera;
+          },
+          normal);
       EXPECT_MEAN(difference, 0) << c.name;
     }
 }

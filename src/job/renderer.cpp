@@ -104,7 +104,9 @@ Renderer::CameraSample Renderer::camera_sample(const RenderContext& context, int
   random.jump(path_dimension);
 
   SampleContext sample{s.wavelengths, random, arena, request.features, record, request.lengths, request.splats};
-  const Ray ray = camera.ray(s.film, lens, time);
+  Ray ray = camera.ray(s.film, lens, time);
+  ray.width *= filter_scale(key);
+  ray.spread *= filter_scale(key);
   if (record) {
     PathRecord::Vertex v;
     v.kind = "camera";

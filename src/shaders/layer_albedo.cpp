@@ -9,17 +9,13 @@ constexpr Lobes specular_out = specular_transmission | pass_through;
 
 }  // namespace
 
-/// What a face does with diffuse light between the layers, as fractions.
-struct LayerStack::Diffuse {
-  Spectrum back, leave;              ///< sent back, and let out
-  Spectrum back_clear, leave_clear;  ///< after the medium's absorption there and back, and there
-  Spectrum absorbed;                 ///< what the medium leaves of light that crosses it once
-};
-
 // Averages by the Gauss rule of four points for the weight c. The reflectance from inside has an edge where total
 // reflection begins, which four points miss. What is let out has none, seen from outside: by reciprocity its mean over
 // diffuse light inside is that outside over the squared index. The rest, less what the face absorbs, is sent back.
-LayerStack::Diffuse LayerStack::diffuse(int which) const {
+const LayerStack::Diffuse& LayerStack::diffuse(int which) const {
+  Diffuse& d = diffuse_[which];
+  if (d.known) return d;
+  d.known = true;
   constexpr float cosines[] = {0.13975986434f, 0.41640956763f, 0.72315698637f, 0.94289580388f};
   constexpr float weights[] = {0.06236194190f, 0.25969509522f, 0.40692913604f, 0.27101382684f};
   const Scatter& s = face(which);
@@ -27,7 +23,6 @@ LayerStack::Diffuse LayerStack::diffuse(int which) const {
   const float up = which == 0 ? 1 : -1;
   const auto through = s.sample(frame.to_world({0, 0, up}), 0.5f, {0.5f, 0.5f}, Transport::importance, transmission_lobes);
   const float denser = through ? square(through->eta) : 1;
-  Diffuse d;
   Spectrum lost, some, some_clear;
   for (int i = 0; i < 4; ++i) {
     const float sine = std::sqrt(1 - cosines[i] * cosines[i]);
@@ -61,7 +56,7 @@ LayerStack::Albedo LayerStack::albedo(const Vector3& out) const {
   const auto inside = entering.sample(out, 0.5f, {0.5f, 0.5f}, Transport::importance, transmission_lobes);
   if (!inside) return result;
   const Vector3 w = inside->direction;
-  const Diffuse e = diffuse(near), n = diffuse(1 - near);
+  const Diffuse &e = diffuse(near), &n = diffuse(1 - near);
   const Spectrum one(1.0f);
   const auto series = [&](const Spectrum& round) { return one / max(one - round, 1e-4f); };
   const Spectrum in = entering.albedo(out, transmission_lobes), in_diffuse = entering.albedo(out, diffuse_transmission);
@@ -84,7 +79,8 @@ LayerStack::Albedo LayerStack::albedo(const Vector3& out) const {
       // R = S / (K + S + b coth b), T = (b / sinh b) / (K + S + b coth b), b^2 = K (K + 2 S).
       const float K = absorbing[i], S = turning[i], b = std::sqrt(K * (K + 2 * S)), decay = std::exp(-2 * b);
       const bool some = b > 1e-3f;
-      const float b_coth = some ? b * (1 + decay) / (1 - decay) : 1, b_over_sinh = some ? 2 * b * std::exp(-b) / (1 - decay) : 1;
+      const float b_coth = some ? b * (1 + decay) / (1 - decay) : 1,
+                  b_over_sinh = some ? 2 * b * std::exp(-b) / (1 - decay) : 1;
       r_medium.set(i, S / (K + S + b_coth));
       t_medium.set(i, b_over_sinh / (K + S + b_coth));
     }

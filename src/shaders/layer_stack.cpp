@@ -14,8 +14,8 @@
 //
 // estimate() is for a given `in`. Paths are told apart by their last event that is not specular, number s of k + 1.
 //   s < k + 1: after it light goes to X by specular events alone, so `in` determines the way. It is traced back from `in`,
-//     out through X and on by specular reflections: a chain of edges. Each vertex of a walk from `out` is connected to all edges
-//     that end there (or cross its depth), by what it scatters into them.
+//     out through X and on by specular reflections: a chain of edges. Each vertex of a walk from `out` is connected to all
+//     edges that end there (or cross its depth), by what it scatters into them.
 //   s = k + 1, X itself, with an event k that is specular: the walk from `out` draws w_k, and X is evaluated.
 //   s = k + 1 with an event k that is not specular: both ways are possible, drawing w_k at event k with density p, or
 //     drawing the edge back from X with density q. They are weighted by the balance heuristic, p / (p + q) and q / (p + q). All
@@ -74,7 +74,8 @@ Spectrum LayerStack::transmittance(const Vector3& direction, float depths) const
 
 float LayerStack::adjoint_factor(Transport transport, const Vector3& a, const Vector3& b) const {
   if (transport == Transport::radiance || normal_ == shading_normal_) return 1;
-  const float up = std::abs(dot(shading_normal_, a) * dot(normal_, b)), down = std::abs(dot(normal_, a) * dot(shading_normal_, b));
+  const float up = std::abs(dot(shading_normal_, a) * dot(normal_, b)),
+              down = std::abs(dot(normal_, a) * dot(shading_normal_, b));
   return down > 0 ? up / down : 0;
 }
 
@@ -260,7 +261,8 @@ float LayerStack::density(const Vector3& out, const Vector3& in, Transport trans
   } else {
     choice = random.next();
     if (const auto to = leaving.sample(in, choice, random.next_pair(), adjoint(transport), transmission_lobes)) {
-      const float spread = std::abs(dot(normal_, in)) / (square(to->eta) * std::max(std::abs(dot(normal_, to->direction)), 1e-4f));
+      const float spread =
+          std::abs(dot(normal_, in)) / (square(to->eta) * std::max(std::abs(dot(normal_, to->direction)), 1e-4f));
       direct = through ? share * entering.density(out, -to->direction, transport, transmission_lobes)
                        : behind.density(-from->direction, -to->direction, transport);
       direct *= spread;

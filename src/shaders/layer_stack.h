@@ -13,7 +13,8 @@ class HashedRandom {
   explicit HashedRandom(std::uint64_t seed = 0) : state_(seed) {}
 
   void add(float a, float b) {
-    state_ = mix_bits((state_ + step) ^ (std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 | std::bit_cast<std::uint32_t>(b)));
+    state_ =
+        mix_bits((state_ + step) ^ (std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 | std::bit_cast<std::uint32_t>(b)));
   }
   void add(const Vector3& v, float last) {
     add(v.x, v.y);
@@ -93,19 +94,26 @@ class LayerStack {
  private:
   struct Edge;
   struct Edges;
-  struct Diffuse;
+  /// What a face does with diffuse light between the layers, as fractions.
+  struct Diffuse {
+    Spectrum back, leave;              ///< sent back, and let out
+    Spectrum back_clear, leave_clear;  ///< after the medium's absorption there and back, and there
+    Spectrum absorbed;                 ///< what the medium leaves of light that crosses it once
+    bool known = false;
+  };
 
   Spectrum transmittance(const Vector3& direction, float depths) const;
   float slant(const Vector3& v) const { return 1 / std::max(std::abs(dot(shading_normal_, v)), 1e-6f); }
   float adjoint_factor(Transport, const Vector3& a, const Vector3& b) const;
   Lobes reversible(int side) const;
-  Diffuse diffuse(int side) const;
+  const Diffuse& diffuse(int side) const;
   void trace_back(const Vector3& in, Transport, HashedRandom&, Edges&) const;
   bool fly(const Vector3& w, float& z, Spectrum& carried, HashedRandom&) const;
 
   Face faces_[2];
   Normal3 normal_, shading_normal_;
   Medium medium_;
+  mutable Diffuse diffuse_[2];  ///< found when first asked for: a stack belongs to one sample, and so to one thread
 };
 
 }  // namespace etendue

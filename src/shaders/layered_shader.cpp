@@ -66,8 +66,8 @@ class LayeredScatter final : public ScatterCombination {
  public:
   /// `front`, and `back` where the surface is seen from behind: stacks of the path's wavelengths and, when there is more than
   /// one, of each but the hero alone. A layer that disperses light sends each wavelength another way.
-  LayeredScatter(const SurfacePoint& p, const LayerStack* const* front, const LayerStack* const* back, int stacks,
-                 int walks, std::uint64_t seed, Lobes lobes)
+  LayeredScatter(const SurfacePoint& p, const LayerStack* const* front, const LayerStack* const* back, int stacks, int walks,
+                 std::uint64_t seed, Lobes lobes)
       : ScatterCombination(p, lobes), stacks_(stacks), walks_(walks), seed_(seed) {
     for (int i = 0; i < stacks; ++i) {
       sides_[0][i] = front[i];
@@ -114,8 +114,9 @@ class LayeredScatter final : public ScatterCombination {
     const Scatter& face = stack.face(side);
     if (which == pass_through) {  // nothing to choose, as shadow rays rely on
       const Spectrum depth = stack.medium().extinction() * (-1 / std::max(cosine(out), 1e-6f));
-      return straight_on(out, straight_fraction(&face, out, transport) * exp(depth) *
-                                  straight_fraction(&stack.face(1 - side), out, transport), 1);
+      return straight_on(
+          out, straight_fraction(&face, out, transport) * exp(depth) * straight_fraction(&stack.face(1 - side), out, transport),
+          1);
     }
     const Question q(stack, out, which);
     std::optional<ScatterSample> s = face.sample(out, choice, u, transport, q.face);

@@ -29,7 +29,8 @@ class MaskScatter final : public ScatterCombination {
   std::optional<ScatterSample> combined_sample(const Vector3& out, float choice, Point2 u, Transport transport,
                                                Lobes which) const override {
     const float open = 1 - opacity_;
-    if (which == pass_through) return straight_on(out, Spectrum(open) + opacity_ * straight_fraction(below_, out, transport), 1);
+    if (which == pass_through)
+      return straight_on(out, Spectrum(open) + opacity_ * straight_fraction(below_, out, transport), 1);
     const float straight = straight_probability(out, which);
     if (choice < straight) return straight_on(out, Spectrum(open / straight), straight);
     if (!below_) return std::nullopt;

@@ -228,6 +228,15 @@ PrincipledScatter::Facets PrincipledScatter::mean_facets(const Vector3& out) con
   return sum;
 }
 
+/// What MultipleRefraction tells, of the alpha along `out` where there are two.
+float PrincipledScatter::lost_by_clear_facets(const Vector3& out) const {
+  const MicrofacetDistribution& d = layers_.facets;
+  const float sine2 = 1 - out.z * out.z;
+  if (d.isotropic() || !(sine2 > 0)) return clear_multiple_->missing(out);
+  const float along = std::sqrt((square(d.alpha_x * out.x) + square(d.alpha_y * out.y)) / sine2);
+  return MultipleRefraction(MicrofacetDistribution(d.kind, along), layers_.eta[0]).missing(out);
+}
+
 Spectrum PrincipledScatter::local_albedo(const Vector3& out, Lobes which) const {
   const PrincipledLayers& l = layers_;
   const float front = fronting(out), upper = upper_passed(out);
@@ -242,7 +251,7 @@ Spectrum PrincipledScatter::local_albedo(const Vector3& out, Lobes which) const 
     const Facets f = mean_facets(out);
     const Spectrum above = coat * upper;
     const float missing = multiple_ ? multiple_->missing(out) : 0, sheet = l.thin_walled ? missing : 0;
-    const float lost = clear_multiple_ ? clear_multiple_->missing(out) : 0;
+    const float lost = clear_multiple_ ? lost_by_clear_facets(out) : 0;
     const float kept = 1 - lost, more = l.clear * clear_more_ * lost;
     const float share = clear_multiple_ ? clear_multiple_->transmitted_share(out) : 0;
     if (which & base_reflection()) {

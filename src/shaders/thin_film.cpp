@@ -73,11 +73,13 @@ class ThinFilmScatter final : public Scatter {
     const float cosine = std::abs(out.z);
     Spectrum r;
     for (int i = 0; i < spectrum_size; ++i) {
-      const float before = inside ? layers_.base[i] : layers_.outside[i], behind = inside ? layers_.outside[i] : layers_.base[i];
+      const float before = inside ? layers_.base[i] : layers_.outside[i],
+                  behind = inside ? layers_.outside[i] : layers_.base[i];
       // Beyond the critical angle of the base all is reflected, exactly.
       const bool total = layers_.absorbing[i] == 0 && square(before) * (1 - cosine * cosine) >= square(behind);
-      r.set(i, total ? 1 : film_fractions(cosine, before, layers_.film[i], {behind, layers_.absorbing[i]}, layers_.thickness[i])
-                               .reflected);
+      r.set(i, total ? 1
+                     : film_fractions(cosine, before, layers_.film[i], {behind, layers_.absorbing[i]}, layers_.thickness[i])
+                           .reflected);
       if (layers_.single) return Spectrum(r[0]);
     }
     return r;
@@ -98,14 +100,16 @@ class ThinFilm final : public Shader {
         .member<&ThinFilm::film_ior>("film_ior", "1", "index of refraction of the film")
         .member<&ThinFilm::base_ior>("base_ior", "1",
                                      "index of refraction of what the film lies on; complex for a metal: metal(\"Al\")")
-        .member<&ThinFilm::opaque>("opaque", "", "whether light that gets into the base is absorbed there, as by a metal it is");
+        .member<&ThinFilm::opaque>("opaque", "",
+                                   "whether light that gets into the base is absorbed there, as by a metal it is");
   }
 
   void prepare() override {
     require_scalar(*this, "thickness", thickness, 0, thickest);
     check_index("film_ior", film_ior);
     check_index("base_ior", base_ior);
-    if (film_ior->imaginary()) fail("film_ior", "the film is a dielectric: its index is real, and this one is complex (a metal's)");
+    if (film_ior->imaginary())
+      fail("film_ior", "the film is a dielectric: its index is real, and this one is complex (a metal's)");
     const Color k = base_ior->imaginary();
     for (float lambda = wavelength_low; k && lambda <= wavelength_high; lambda += 5)
       if (!(k->at(lambda, ColorUse::coefficient) >= 0 && k->at(lambda, ColorUse::coefficient) < 100))

@@ -1,0 +1,143 @@
+// What shaders cost, at their defaults: nanoseconds to bind one to a point, and to evaluate, sample and ask the density of what
+// that gives. Those that need a file get a made-up one, those that need another shader a Lambertian. At the end a table of the
+// shortest times of all repetitions, and of how many times those of Lambertian that is:
+//     etendue_benchmarks --benchmark_filter=shader/ --benchmark_repetitions=10 --benchmark_min_time=0.01
+
+#include <benchmark/benchmark.h>
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <array>
+#include <map>
+
+#include "../src/conform/fixtures.h"
+#include "etendue/arena.h"
+#include "etendue/language.h"
+#include "etendue/sampler.h"
+#include "etendue/scene_object.h"
+#include "etendue/shader.h"
+#include "etendue/warp.h"
+#include "etendue/wavelength_sampler.h"
+
+namespace {
+
+using namespace etendue;
+
+template <class T>
+Ref<T> make(const char* name) {
+  return ref_cast<T>(Registry::instance().create(name));
+}
+
+/// With all that it must have. A layer on top of others must let light through.
+Ref<Shader> with_needs(const ClassInfo& info, const conform::Fixtures& files) {
+  const Ref<Component> made = info.create();
+  for (const Member& m : info.members)
+    if (m.kind == Kind::file) {
+      set(*made, m.name, Value(FilePath{files.file_for(info, m), ""}));
+    } else if (m.required && m.component_class == "Shader") {
+      set(*made, m.name, Value(Registry::instance().create(m.name == "top" ? "Dielectric" : "Lambertian")));
+    }
+  prepare_tree(*made);
+  return ref_cast<Shader>(made);
+}
+
+/// A shader, a point on a sphere that has it, and random directions: seen from outside, lit from wherever the shader can be.
+struct Bench {
+  static constexpr size_t count = 1024;
+  struct Query {
+    Vector3 out, in;
+    float choice = 0;
+    Point2 u;
+  };
+
+  explicit Bench(const ClassInfo& info) : shader(with_needs(info, files)), sphere(make<SceneObject>("Sphere")) {
+    prepare_tree(*sphere);
+    sphere->shader = shader;
+    point = sphere->sample_area({0.3f, 0.6f}, 0).point;
+    sphere->tangents(point);
+    w = make<WavelengthSampler>("HeroWavelengths")->sample(SampleKey(1, 2, 3, 4), 0.3f);
+    const bool through = (shader->possible_lobes() & transmission_lobes) != 0;
+    const Ref<Sampler> random = make<Sampler>("IndependentSampler");
+    const Frame frame(point.normal);
+    for (size_t i = 0; i < count; ++i) {
+      SampleStream s(*random, SampleKey(1, int(i), 0, 0));
+      Query& q = queries[i];
+      q.out = frame.to_world(warp::cosine_hemisphere(s.next_pair()));
+      q.in = through ? warp::sphere(s.next_pair()) : frame.to_world(warp::cosine_hemisphere(s.next_pair()));
+      q.choice = s.next();
+      q.u = s.next_pair();
+    }
+  }
+
+  conform::Fixtures files;
+  Ref<Shader> shader;
+  Ref<SceneObject> sphere;
+  SurfacePoint point;
+  Wavelengths w;
+  std::array<Query, count> queries;
+};
+
+constexpr const char* operations[] = {"bind", "evaluate", "sample", "density"};
+
+/// The shortest times [ns] by class; printed when the program ends.
+struct Table {
+  std::map<std::string, std::array<double, 4>> times;
+
+  ~Table() {
+    const auto unit = times.find("Lambertian");
+    if (unit == times.end()) return;
+    fmt::print("\n| shader | bind | evaluate | sample | density |\n|---|---|---|---|---|\n");
+    for (const auto& [name, of] : times) {
+      fmt::print("| `{}`", name);
+      for (size_t i = 0; i < 4; ++i) fmt::print(" | {:.0f} ({:.1f})", of[i], of[i] / unit->second[i]);
+      fmt::print(" |\n");
+    }
+  }
+};
+Table table;
+
+/// Time this thread has computed [ns], which does not count what others take of the machine.
+double thread_time() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) * 1e9 + double(t.tv_nsec);
+}
+
+template <class F>
+void repeat(benchmark::State& state, const ClassInfo& info, size_t operation, F&& f) {
+  size_t i = 0;
+  const double begin = thread_time();
+  for (auto _ : state) f(i++ % Bench::count);
+  if (state.iterations() < 1000) return;  // too short to tell
+  auto& shortest = table.times.try_emplace(info.name, std::array{1e30, 1e30, 1e30, 1e30}).first->second[operation];
+  shortest = std::min(shortest, (thread_time() - begin) / double(state.iterations()));
+}
+
+void shader(benchmark::State& state, const ClassInfo& info, size_t operation) {
+  const Bench bench(info);
+  Arena arena;
+  if (operation == 0)
+    return repeat(state, info, operation, [&](size_t) {
+      arena.reset();
+      benchmark::DoNotOptimize(bench.shader->bind(bench.point, bench.w, arena));
+    });
+  const Scatter* scatter = bench.shader->bind(bench.point, bench.w, arena);
+  if (!scatter) return state.SkipWithError("scatters nothing");
+  repeat(state, info, operation, [&](size_t i) {
+    const Bench::Query& q = bench.queries[i];
+    if (operation == 1) benchmark::DoNotOptimize(scatter->evaluate(q.out, q.in));
+    if (operation == 2) benchmark::DoNotOptimize(scatter->sample(q.out, q.choice, q.u));
+    if (operation == 3) benchmark::DoNotOptimize(scatter->density(q.out, q.in));
+  });
+}
+
+const bool registered = [] {
+  const Registry& registry = Registry::instance();
+  for (const ClassInfo* info : registry.subclasses(*registry.find("Shader")))
+    for (size_t i = 0; i < 4; ++i)
+      benchmark::RegisterBenchmark(fmt::format("shader/{}/{}", info->name, operations[i]).c_str(), shader, *info, i);
+  return true;
+}();
+
+}  // namespace
