@@ -74,6 +74,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"GrazingShader", "values and densities are finite and not negative, at grazing angles too"},
                       Fault{"EndlessFilter", "weights are zero beyond the radius"},
                       Fault{"WrongPhaseVolume", "the phase function integrates to 1"},
+                      Fault{"WrongPowerEmission", "power is the integral of radiance, on a Rectangle"},
+                      Fault{"WrongDirectionsEmission", "sampled directions follow the density"},
+                      Fault{"WrongAreaSquare", "the area is that which lines find"},
+                      Fault{"WrongVisibleSquare", "points sampled to be seen have densities of the solid angle seen"},
+                      Fault{"UnboundedMap", "reflectances are in [0, 1]"},
                       Fault{"ForgetfulFilter", "preparing leaves the members as they were written"}),
     [](const auto& each) { return std::string(each.param.class_name); });
 

@@ -217,6 +217,9 @@ Drawn finished(F&& make) {
     drawn.refused = error.what();
   } catch (const Errors& errors) {
     drawn.refused = errors.what();
+  } catch (const std::exception& other) {  // a part may throw anything
+    drawn.refused = other.what();
+    drawn.part = {};
   }
   return drawn;
 }

@@ -136,6 +136,13 @@ class IesEmission final : public ShapedEmission {
       case Photometry::a: f.s = a, f.t = cross(a, s), f.n = Normal3(s); break;  // pole up
       case Photometry::b: f.s = a, f.t = s, f.n = Normal3(cross(a, s)); break;  // pole to the right
     }
+    // Of a mirrored object all is mirrored: what was found by a cross product points the other way.
+    if (dot(turned(p, cross(axis, across)), cross(a, s)) < 0) {
+      if (ies_.type == Photometry::b)
+        f.n = -f.n;
+      else
+        f.t = -f.t;
+    }
     return f;
   }
 

@@ -143,8 +143,10 @@ class ProjectorEmission final : public ShapedEmission {
   /// Right and up in the image as seen from behind, and the axis, in the scene.
   static Frame frame(const SurfacePoint& p) {
     const Vector3 a = turned(p, {0, 0, 1});
-    const Vector3 r = normalize(cross(a, turned(p, {0, 1, 0})));
-    return {r, cross(r, a), Normal3(a)};
+    Vector3 r = normalize(cross(a, turned(p, {0, 1, 0})));
+    const Vector3 up = cross(r, a);
+    if (dot(r, turned(p, {-1, 0, 0})) < 0) r = -r;  // a mirrored object's image is mirrored
+    return {r, up, Normal3(a)};
   }
 
   /// Where in the image, from its upper left corner, a direction goes; false: beside it.

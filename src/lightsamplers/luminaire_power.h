@@ -32,7 +32,8 @@ inline std::vector<double> luminaire_powers(std::span<const SceneObject* const> 
   return powers;
 }
 
-/// Luminaires in proportion to their powers.
+/// Luminaires in proportion to their powers. Random numbers have 24 bits: shares are whole multiples of 2^-24, at least one for
+/// each luminaire, so that what is said of probabilities is so.
 class PowerTable {
  public:
   void build(std::span<const SceneObject* const> luminaires, std::span<const double> powers) {
@@ -41,10 +42,15 @@ class PowerTable {
     for (const double p : powers) total += p;
     cumulative_.clear();
     probabilities_.clear();
-    for (const double p : powers) {
-      sum += p;
-      probabilities_.push_back(float(p / total));
-      cumulative_.push_back(float(sum / total));
+    constexpr double steps = 1 << 24;
+    const double n = double(powers.size()), spare = std::max(steps - n, 0.0);
+    double before = 0;
+    for (size_t i = 0; i < powers.size(); ++i) {
+      sum += powers[i];
+      const double edge = i + 1 == powers.size() ? 1 : std::min((double(i + 1) + std::floor(spare * sum / total)) / steps, 1.0);
+      probabilities_.push_back(float(edge - before));
+      cumulative_.push_back(float(edge));
+      before = edge;
     }
   }
   std::span<const SceneObject* const> luminaires() const { return luminaires_; }

@@ -67,8 +67,8 @@ class TreeLightSampler final : public LightSampler {
     const std::uint64_t bits = (std::uint64_t(std::bit_cast<std::uint32_t>(point.x)) << 32) ^
                                std::bit_cast<std::uint32_t>(point.y) ^
                                (std::uint64_t(std::bit_cast<std::uint32_t>(number)) << 16);
-    double u = (double(number) - double(outside_)) / (1 - double(outside_));
-    u = std::min(u + double(mix_bits(bits) >> 11) * 0x1p-77, 1 - 0x1p-53);
+    const double fine = double(number) + double(mix_bits(bits) >> 11) * 0x1p-77;
+    double u = std::min((fine - double(outside_)) / (1 - double(outside_)), 1 - 0x1p-53);
     const LightTree::Choice choice = tree_.sample(point, normal, u);
     if (!(choice.probability > 0)) return {};
     return {luminaires_[choice.emitter], (1 - outside_) * choice.probability};

@@ -1,6 +1,7 @@
 // UniformLightSampler: all luminaires alike.
 
 #include "etendue/light_sampler.h"
+#include "lightsamplers/luminaire_power.h"
 
 namespace etendue {
 namespace {
@@ -9,7 +10,10 @@ class UniformLightSampler final : public LightSampler {
  public:
   static void describe(Description<UniformLightSampler>& d) { d.summary("Chooses every luminaire with the same probability."); }
 
-  void build(const Scene& scene) override { luminaires_.assign(scene.luminaires().begin(), scene.luminaires().end()); }
+  void build(const Scene& scene) override {
+    luminaires_.assign(scene.luminaires().begin(), scene.luminaires().end());
+    for (const SceneObject* luminaire : luminaires_) luminaire_power(*luminaire);  // refuses what is no power
+  }
 
   LightChoice choose(const Point3&, const Normal3&, float u) const override { return choose(u); }
   float probability(const Point3&, const Normal3&, const SceneObject& luminaire) const override {

@@ -24,6 +24,7 @@ void add_attributes(const Element& e, std::vector<Column>& columns, MeshData& me
     }
   }
   for (size_t p = 0; p < e.properties.size(); ++p) {
+    if (mesh.attributes.size() >= 256) break;  // more than anyone has; names are compared with one another
     const std::string& name = e.properties[p].name;
     const auto same = [&](const VertexAttribute& a) { return a.name == name; };
     if (!free(int(p)) || std::any_of(mesh.attributes.begin(), mesh.attributes.end(), same)) continue;

@@ -161,6 +161,7 @@ class PathTracer final : public Renderer {
           crossed += hit.distance;
           cross_boundary(media, *point.object, point.normal, ray.direction);
           ray.origin = point.exit(ray.direction);
+          ray.width = point.footprint;
           --depth;
           continue;
         }
@@ -214,10 +215,12 @@ class PathTracer final : public Renderer {
             point.object->shader->sample_exit(point, scene, sample.wavelengths, random, sample.arena);
         if (!exit || !exit->scatter || ++depth >= max_depth) break;
         throughput *= exit->weight;
+        // It leaves on the side it came in on.
+        const bool front = dot(point.normal, out) > 0;
         point = exit->point;
         if (track_media) point.media = &media;
         scatter = exit->scatter;
-        out = Vector3(point.normal);
+        out = Vector3(front ? point.normal : -point.normal);
         record_surface(sample.record, point, throughput);
       }
       goes_on = false;
@@ -229,6 +232,7 @@ class PathTracer final : public Renderer {
         crossed += hit.distance;
         if (track_media) cross_boundary(media, *point.object, point.normal, next->direction);
         ray.origin = point.exit(ray.direction);
+        ray.width = point.footprint;
         if (awaits_light) {
           arrive(depth + 1, direct.light);
           record_direct(sample.record, direct.light, depth + 1, direct.weight);

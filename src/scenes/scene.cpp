@@ -48,10 +48,11 @@ void Scene::prepare() {
   bounds_ = {};
   has_interiors_ = has_null_surfaces_ = false;
   const auto note_interior = [&](const SceneObject& object) {
-    if (!object.shader || !object.shader->transmits()) return;
+    if (!object.shader) return;
+    if (object.shader->possible_lobes() & pass_through) has_null_surfaces_ = true;
+    if (!object.shader->transmits()) return;
     has_interiors_ = true;
     interiors_.push_back(object.bounds());
-    if (object.shader->possible_lobes() & pass_through) has_null_surfaces_ = true;
   };
 
   std::unordered_set<const SceneObject*> seen;
@@ -78,9 +79,10 @@ void Scene::prepare() {
     object.luminaire_index = -1;
   });
   for (const Ref<SceneObject>& object : objects)
-    if (const Scene* inner = as_scene(object.get()); inner && inner->has_interiors_) {
-      has_interiors_ = true;
+    if (const Scene* inner = as_scene(object.get())) {
       has_null_surfaces_ |= inner->has_null_surfaces_;
+      if (!inner->has_interiors_) continue;
+      has_interiors_ = true;
       interiors_.push_back(inner->bounds());
     }
 

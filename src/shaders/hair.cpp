@@ -2,6 +2,7 @@
 
 #include "shaders/hair.h"
 
+#include "etendue/medium_stack.h"
 #include "etendue/shader.h"
 #include "shaders/reflectance.h"
 #include "shaders/scalar_map.h"
@@ -147,7 +148,10 @@ class HairShader final : public Shader {
   }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
-    const HairFibre fibre(scalar_at(*longitudinal_roughness, p), scalar_at(*azimuthal_roughness, p), radians(tilt), ior);
+    float eta = ior;
+    if (const SceneObject* around = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
+      eta /= MediumStack::index(around, w)[0];
+    const HairFibre fibre(scalar_at(*longitudinal_roughness, p), scalar_at(*azimuthal_roughness, p), radians(tilt), eta);
     const float h = std::isfinite(p.uv.y) ? clamp(-1 + 2 * p.uv.y, -1, 1) : 0;
     return arena.make<HairScatter>(p, tangent_frame(p), fibre, h, absorption_at(p, w, fibre));
   }

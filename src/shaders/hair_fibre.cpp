@@ -45,7 +45,8 @@ HairFibre::HairFibre(float along, float around, float tilt, float eta) : around_
 // whose sum is F + (1 - F)^2 T / (1 - F T), 1 for T = 1.
 HairFibre::Section HairFibre::section(float sine, float cosine, float h, Spectrum absorption) const {
   Section s;
-  const float inside = std::sqrt(eta_ * eta_ - sine * sine);  // eta cos(theta')
+  // eta cos(theta'); in a denser medium grazing rays would not enter, for which this bound stands.
+  const float inside = std::sqrt(std::max(eta_ * eta_ - sine * sine, 1e-6f));
   const float sine_offset = clamp(h * cosine / inside, -1, 1), cosine_offset = safe_sqrt(1 - sine_offset * sine_offset);
   s.offset_angle = safe_asin(h);
   s.offset_angle_inside = std::asin(sine_offset);

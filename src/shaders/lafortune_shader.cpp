@@ -45,7 +45,9 @@ struct CosineLobe {
     for (int i = 0; i <= 256; ++i)
       for (int k = 0; k <= 16; ++k) {
         const float z = float(i) / 256, s = safe_sqrt(1 - z * z), phi = float(k) / 16 * (pi / 2);
-        greatest = std::max(greatest, albedo({s * std::cos(phi), s * std::sin(phi), z}));
+        const float a = albedo({s * std::cos(phi), s * std::sin(phi), z});
+        greatest = a < 1e30f ? std::max(greatest, a) : infinity;  // neither infinite nor not-a-number may be lost
+        if (greatest == infinity) return;
       }
   }
 

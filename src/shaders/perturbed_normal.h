@@ -18,7 +18,8 @@ class PerturbedNormalShader : public Shader {
   bool transmits() const override { return shader->transmits(); }
   // What a tilted normal would send through the surface is lost, whatever the shader below.
   bool lossless() const override { return false; }
-  bool reciprocal() const override { return shader->reciprocal(); }
+  // Light that leaves elsewhere leaves by the normal of the surface there.
+  bool reciprocal() const override { return shader->reciprocal() && !shader->moves_exit(); }
   bool stochastic() const override { return shader->stochastic(); }
   bool moves_exit() const override { return shader->moves_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,

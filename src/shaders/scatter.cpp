@@ -90,17 +90,21 @@ std::optional<ScatterSample> Scatter::sample(const Vector3& out, float choice, P
   Pair pair;
   pair.out = frame_.to_local(out);
   pair.out_geometric = dot(normal_, out);
-  if (which == no_lobes || !(pair.out_geometric * pair.out.z > 0)) return std::nullopt;
+  // What passes straight on knows no normals.
+  if (!(pair.out_geometric * pair.out.z > 0)) which &= pass_through;
+  if (which == no_lobes) return std::nullopt;
 
   LocalSample local;
   if (!local_sample(pair.out, choice, u, which, local) || !(local.density > 0)) return std::nullopt;
   pair.in = local.in;
   const Vector3 direction = frame_.to_world(local.in);
   pair.in_geometric = dot(normal_, direction);
-  if (!pair.sides_agree()) return std::nullopt;
+  if (!pair.sides_agree() && local.lobe != pass_through) return std::nullopt;
 
   float factor = 1 / local.density;
-  if (transport == Transport::importance)
+  if (local.lobe == pass_through)
+    factor *= 1;
+  else if (transport == Transport::importance)
     factor *= pair.importance_factor();
   else if (!pair.reflection())
     factor /= square(local.eta);

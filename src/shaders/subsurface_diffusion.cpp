@@ -40,6 +40,13 @@ struct Profiles {
     while (k > 0 && !(share[k] > 0)) --k;  // by rounding, behind the last that counts
     return k;
   }
+  /// Beyond this radius none of those that are chosen reaches.
+  float end() const {
+    float furthest = 0;
+    for (int i = 0; i < spectrum_size; ++i)
+      if (share[i] > 0) furthest = std::max(furthest, profile[i].end());
+    return furthest;
+  }
   float density(float r) const {
     float sum = 0;
     for (int i = 0; i < spectrum_size; ++i)
@@ -78,7 +85,7 @@ bool exit_by_diffusion(const SubsurfaceBody& body, const SurfacePoint& entry, co
     const Vector3 &axis = axes[k], &x = axes[(k + 1) % 3], &y = axes[(k + 2) % 3];
     const DiffusionProfile& profile = profiles.profile[profiles.choose(random.next())];
     const Point2 u = random.next_pair();
-    const float r = profile.sample(u.x), half = safe_sqrt(square(profile.end()) - r * r);
+    const float r = profile.sample(u.x), half = safe_sqrt(square(profiles.end()) - r * r);
     float sine = 0, cosine = 0;
     sin_cos_turn(u.y, sine, cosine);
     Ray ray;

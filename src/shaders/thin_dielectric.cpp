@@ -114,7 +114,8 @@ class ThinDielectric final : public Shader {
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     Spectrum eta = ior->evaluate(w, ColorUse::coefficient);
-    if (const SceneObject* around = p.media ? p.media->current() : nullptr) eta = eta / MediumStack::index(around, w);
+    if (const SceneObject* around = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
+      eta = eta / MediumStack::index(around, w);
     return arena.make<ThinDielectricScatter>(p, eta, reflectance_at(*color, p, w));
   }
   Lobes possible_lobes() const override { return specular_reflection | pass_through; }

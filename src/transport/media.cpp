@@ -80,7 +80,7 @@ void media_at_slowly(const Scene& scene, const Point3& p, float time, MediumStac
     crossings.push_back({point.object, point.normal});
     HitList others;
     Ray probe;
-    coincident_hits(scene, ray, point, probe, others);
+    coincident_hits(scene, ray, hit, point, probe, others);
     for (int i = 0; i < others.size; ++i) {
       scene.locate(probe, others.hits[i], point);
       crossings.push_back({point.object, point.normal});

@@ -8,6 +8,7 @@ bool lets_in(const SceneObject& object) { return object.shader && object.shader-
 /// Whether the first counts where the boundaries of both lie in one place.
 bool before(const SceneObject& a, const SceneObject& b) {
   if (lets_in(a) != lets_in(b)) return !lets_in(a);
+  if (!lets_in(a)) return false;
   if (a.priority != b.priority) return a.priority > b.priority;
   // What only bounds a medium gives way to what refracts.
   return a.shader->possible_lobes() != pass_through && b.shader->possible_lobes() == pass_through;
@@ -15,10 +16,23 @@ bool before(const SceneObject& a, const SceneObject& b) {
 
 }  // namespace
 
-void coincident_hits(const Scene& scene, const Ray& ray, const SurfacePoint& point, Ray& probe, HitList& list) {
-  // Each of two surfaces in one place is found within its error, which may be nothing: in a plane z = 0, say.
+namespace {
+
+/// Whether two hits are on the same object in the same place: one object may stand in several scenes.
+bool same_thing(const Hit& a, const Hit& b) {
+  if (a.object != b.object || a.depth != b.depth) return false;
+  for (int i = 0; i < a.depth; ++i)
+    if (a.scenes[i] != b.scenes[i]) return false;
+  return true;
+}
+
+}  // namespace
+
+void coincident_hits(const Scene& scene, const Ray& ray, const Hit& hit, const SurfacePoint& point, Ray& probe, HitList& list) {
+  // Each of two surfaces in one place is found within its error, which may be nothing (in a plane z = 0, say): then within a
+  // few roundings of the position.
   const float largest = std::max({std::abs(point.position.x), std::abs(point.position.y), std::abs(point.position.z)});
-  const float reach = 4 * point.error + 1e-7f * (largest + scene.radius());
+  const float reach = 4 * point.error + 2.5e-7f * largest + 1e-9f * scene.radius();
   probe = ray;
   probe.direction = std::copysign(1.0f, dot(point.normal, ray.direction)) * Vector3(point.normal);
   probe.origin = point.position - reach * probe.direction;
@@ -26,8 +40,8 @@ void coincident_hits(const Scene& scene, const Ray& ray, const SurfacePoint& poi
   HitList all;
   scene.all(probe, all);
   for (int i = 0; i < all.size; ++i) {
-    bool known = all.hits[i].object == point.object;
-    for (int k = 0; k < list.size; ++k) known |= list.hits[k].object == all.hits[i].object;
+    bool known = same_thing(all.hits[i], hit);
+    for (int k = 0; k < list.size; ++k) known |= same_thing(all.hits[i], list.hits[k]);
     if (!known) list.add(all.hits[i]);
   }
 }
@@ -37,32 +51,38 @@ void settle_coincident(const Scene& scene, const Ray& ray, Hit& hit, SurfacePoin
   if (!lets_in(*hit.object)) return;
   HitList others;
   Ray probe;
-  coincident_hits(scene, ray, point, probe, others);
+  coincident_hits(scene, ray, hit, point, probe, others);
   if (others.size == 0) return;
   const float error = length(probe.origin - point.position);  // the next ray must start beyond all of them
 
-  const SceneObject* first = hit.object;
+  int first = -1;  // the hit itself
   for (int i = 0; i < others.size; ++i)
-    if (before(*others.hits[i].object, *first)) first = others.hits[i].object;
+    if (before(*others.hits[i].object, first < 0 ? *hit.object : *others.hits[first].object)) first = i;
   const auto note = [&](const SceneObject& object, const Normal3& normal) {
-    if (&object != first && lets_in(object) && object.closed()) media.note_other(object, dot(normal, ray.direction) < 0);
+    if (lets_in(object) && object.closed()) media.note_other(object, dot(normal, ray.direction) < 0);
   };
-  note(*point.object, point.normal);
-  const float distance = hit.distance, footprint = point.footprint;
+  if (first >= 0) note(*point.object, point.normal);
+  const float footprint = point.footprint;
+  SurfacePoint chosen = point;
   for (int i = 0; i < others.size; ++i) {
     SurfacePoint other;
     scene.locate(probe, others.hits[i], other);
-    note(*other.object, other.normal);
-    if (other.object != first) continue;
-    hit = others.hits[i];
+    if (i == first)
+      chosen = other;
+    else
+      note(*other.object, other.normal);
+  }
+  if (first >= 0) {
+    const float distance = hit.distance;
+    hit = others.hits[first];
     hit.distance = distance;
-    point = other;
+    point = chosen;
     point.footprint = footprint;
     point.footprint_cosine = std::abs(dot(point.normal, ray.direction));
     point.ray_direction = ray.direction;
   }
   point.error = std::max(point.error, error);
-  if (!lets_in(*first)) media.forget_others();
+  if (!lets_in(*point.object)) media.forget_others();
 }
 
 }  // namespace etendue

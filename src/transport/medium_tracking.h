@@ -7,9 +7,9 @@
 namespace etendue {
 
 /// The path goes through the surface of an object in a direction. One that is not closed has no inside: a sheet of it
-/// bounds nothing.
+/// bounds nothing; nor has one whose shader stands for a sheet.
 inline void cross_boundary(MediumStack& media, const SceneObject& object, const Normal3& normal, const Vector3& direction) {
-  if (object.closed()) {
+  if (object.shader && object.shader->transmits() && object.closed()) {
     if (dot(normal, direction) < 0)
       media.enter(object);
     else
@@ -23,9 +23,9 @@ inline bool hidden_by_priority(const MediumStack& media, const SceneObject& obje
   return object.shader && object.shader->transmits() && !media.visible(object);
 }
 
-/// Surfaces of other objects in the same place as a hit, within the error of its position: each object once. `probe` is the
-/// ray, across the surface, that found them.
-void coincident_hits(const Scene&, const Ray&, const SurfacePoint&, Ray& probe, HitList&);
+/// Other surfaces in the same place as a hit, within the error of its position, each once. `probe` is the ray, across the
+/// surface, that found them.
+void coincident_hits(const Scene&, const Ray&, const Hit&, const SurfacePoint&, Ray& probe, HitList&);
 
 /// After a path has come to a surface, decides which one it has come to where several lie in the same place, and lets `media`
 /// know of the others. One that lets nothing through comes first (a glass stands on the table, with no air between), then

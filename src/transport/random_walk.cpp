@@ -101,6 +101,7 @@ class Walk {
   void cross(const SurfacePoint& point) {
     if (track_) cross_boundary(media_, *point.object, point.normal, ray_.direction);
     ray_.origin = point.exit(ray_.direction);
+    ray_.width = point.footprint;
   }
 
   Vertex& add(Vertex::Kind kind, float chance, const SurfacePoint* point = nullptr, float extinction = 0) {

@@ -24,6 +24,7 @@ inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& 
     if (!media || !hidden_by_priority(*media, *point.object)) return true;
     cross_boundary(*media, *point.object, point.normal, ray.direction);
     ray.origin = point.exit(ray.direction);
+    ray.width = point.footprint;
   }
   return false;
 }
@@ -39,7 +40,7 @@ inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& ou
 
 /// Whether a sampled direction leads into a body that light leaves elsewhere: who does not ask where loses the path.
 inline bool enters_body(const SurfacePoint& point, const ScatterSample& next) {
-  return next.transmitted() && point.object->shader->moves_exit();
+  return next.transmitted() && next.lobe != pass_through && point.object->shader->moves_exit();
 }
 
 /// Growth of the footprint after a rough reflection [per distance]: maps seen indirectly are filtered coarsely.
