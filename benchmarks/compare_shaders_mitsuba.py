@@ -13,8 +13,7 @@ Mitsuba takes masking and shadowing for independent, G = G1(out) G1(in); here th
 with G1 of its own. What then is the same model by definition must agree within 1 % in every tile.
 
 Mitsuba's hair takes the offset h across the fibre from the direction, for round curves; here it comes from the coordinate v.
-Its directions are turned around the fibre until they give our h, which changes nothing else in the model. Directions are
-drawn uniformly from the sphere: that needs no density of its own.
+Its directions are turned around the fibre until they give our h, which changes nothing else in the model.
 """
 import argparse
 import json
@@ -162,27 +161,29 @@ def theirs_pictures(requests, samples):
             return self.inner.pdf(context, si, wo, active)
 
     class Fibre(Wrapper):
+        # Ours: along x = dpdu, azimuth from y to z, v from the pole at -z. Theirs: along y, azimuth from x to z, v from +z.
+        def turned(self, si):
+            h = 1 - 2 * si.uv.y
+            s, c = dr.sincos(dr.pi / 2 + dr.asin(dr.clip(h, -1, 1)) - dr.atan2(si.wi.z, si.wi.y))
+            there = lambda v: mi.Vector3f(c * v.y - s * v.z, v.x, s * v.y + c * v.z)
+            back = lambda v: mi.Vector3f(v.y, c * v.x + s * v.z, c * v.z - s * v.x)
+            inside = mi.SurfaceInteraction3f(si)
+            inside.wi = there(si.wi)
+            return inside, there, back
+
         def sample(self, context, si, sample1, sample2, active):
-            bs = dr.zeros(mi.BSDFSample3f)
-            bs.wo = mi.warp.square_to_uniform_sphere(sample2)
-            bs.pdf = mi.Float(dr.inv_four_pi)
-            bs.eta = 1
-            bs.sampled_type = mi.UInt32(+mi.BSDFFlags.Glossy)
-            bs.sampled_component = mi.UInt32(0)
-            return bs, self.eval(context, si, bs.wo, active) / bs.pdf
+            inside, there, back = self.turned(si)
+            bs, weight = self.inner.sample(context, inside, sample1, sample2, active)
+            bs.wo = back(bs.wo)
+            return bs, weight
 
         def eval(self, context, si, wo, active):
-            # Ours: along x = dpdu, azimuth from y to z, v from the pole at -z. Theirs: along y, azimuth from x to z, v from +z.
-            h = 1 - 2 * si.uv.y
-            turn = dr.pi / 2 + dr.asin(dr.clip(h, -1, 1)) - dr.atan2(si.wi.z, si.wi.y)
-            s, c = dr.sincos(turn)
-            turned = lambda v: mi.Vector3f(c * v.y - s * v.z, v.x, s * v.y + c * v.z)
-            inside = mi.SurfaceInteraction3f(si)
-            inside.wi = turned(si.wi)
-            return self.inner.eval(context, inside, turned(wo), active)
+            inside, there, back = self.turned(si)
+            return self.inner.eval(context, inside, there(wo), active)
 
         def pdf(self, context, si, wo, active):
-            return dr.select(active, mi.Float(dr.inv_four_pi), 0)
+            inside, there, back = self.turned(si)
+            return self.inner.pdf(context, inside, there(wo), active)
 
     mi.register_bsdf("correlated", lambda props: Correlated(props))
     mi.register_bsdf("fibre", lambda props: Fibre(props))

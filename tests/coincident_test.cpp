@@ -95,6 +95,36 @@ TEST(Coincident, GlassOnTheFloor) {
   EXPECT_LT(on.error, 2e-3);
 }
 
+// The same brick twice, in scenes of their own, face to face: as one of double height.
+TEST(Coincident, OneBrickInTwoPlaces) {
+  const std::string brick = box(-0.5, 0, "shader: Dielectric { ior: 1.5 }, interior: HomogeneousVolume { absorption: 1 }");
+  const std::string twice = "brick = " + brick + "\n" +
+                            job_text("PathTracer { max_depth: 12, samples: 1024 }", from_above, 8,
+                                     std::string("EmbreeScene { objects: [brick] }\nEmbreeScene { objects: [brick], transform: "
+                                                 "translate([0, 0, -0.5]) }\n") +
+                                         plate,
+                                     "EmbreeScene");
+  const double r = 0.04, t = std::exp(-1.0);  // with all reflections between the faces
+  EXPECT_NEAR(measure(twice).mean.y, (1 - r) * (1 - r) * t / (1 - r * r * t * t), 0.003);
+}
+
+// A pane is no body, and lets shadow rays through: of a slab of index 1.5 and R = 0.0459 at this angle, 1 - 2 R / (1 + R).
+TEST(NullSurfaces, APaneBeforeALamp) {
+  const auto render = [&](const std::string& pane) {
+    return measure(
+               job_text("PathTracer { max_depth: 3, samples: 16 }", from_above, 4,
+                        "Rectangle { corner: [-1,-1,0], edge_u: [2,0,0], edge_v: [0,2,0], shader: Lambertian { color: 0.5 } }\n"
+                        "Point { position: [2, 0.2, 1.5], emission: DiffuseEmission { radiance: 1 } }\n" +
+                            pane,
+                        "EmbreeScene"))
+        .mean.y;
+  };
+  const double bare = render(""), behind = render(
+                                      "Rectangle { corner: [0.5,-1,0], edge_u: [0,2,0], edge_v: [0,0,2], shader: "
+                                      "ThinDielectric { ior: 1.5 } }\n");
+  EXPECT_NEAR(behind / bare, 0.912, 0.01);
+}
+
 // Glass of which the back absorbs reflects, and lets nothing in: 4 % at normal incidence.
 TEST(OneSided, GlassLetsNothingThrough) {
   for (const char* renderer :

@@ -25,6 +25,9 @@ class MediumStack {
   /// The medium on the other side of the object's boundary: what would be current without it. Where the path is about to
   /// leave the object, what it enters or leaves in the same place counts as well.
   const SceneObject* outside_of(const SceneObject& object) const {
+    // Between two bricks of one kind (one object in two scenes) there is no boundary.
+    for (int i = 0; i < others_; ++i)
+      if (other_[i].object == &object) return &object;
     if (others_ == 0 || !inside(object)) return top_excluding(&object);
     MediumStack beyond = *this;
     beyond.cross_others();

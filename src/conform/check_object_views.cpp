@@ -104,7 +104,8 @@ void check_moved(const ObjectTrial& o) {
     SurfacePoint b;
     moved->surface_point(other, far, b);
     wrong += distance(by(a.position), b.position) > 10 * o.slack(b.position) ||
-             dot(normalize(by(a.normal)), Vector3(b.normal)) < 0.999f || distance(a.object_position, b.object_position) > 10 * o.slack(a.object_position) + 1e-3f * o.radius;
+             dot(normalize(by(a.normal)), Vector3(b.normal)) < 0.999f ||
+             distance(a.object_position, b.object_position) > 10 * o.slack(a.object_position) + 1e-3f * o.radius;
   }
   o.trial.expect(ObjectTrial::few(wrong, n, 5e-3), "a moved copy is the same elsewhere",
                  [&] { return fmt::format("{} of {} rays differ", wrong, n); });

@@ -207,14 +207,15 @@ Spectrum PrincipledScatter::coat_absorption(float inverse_cosines) const {
   return Spectrum(1 - layers_.coat) + exp(layers_.coat_log_color * (0.5f * inverse_cosines)) * layers_.coat;
 }
 
-// Where facets are rough, four of those seen from `out` stand for all. What gets through them also gets past coat and fuzz.
+// Where facets are rough, some of those seen from `out` stand for all: more of them inside, where reflection is total for some
+// and not for others. What gets through them also gets past coat and fuzz.
 PrincipledScatter::Facets PrincipledScatter::mean_facets(const Vector3& out) const {
-  constexpr Point2 places[] = {{0.25f, 0.25f}, {0.75f, 0.25f}, {0.25f, 0.75f}, {0.75f, 0.75f}};
-  const int count = smooth_ ? 1 : 4;
+  const int rows = smooth_ ? 1 : inside(out) ? 4 : 2, count = rows * rows;
   const float share = 1 / float(count), eta = towards(out, layers_.eta[0]);
+  const auto place = [rows](int i) { return (float(i) + 0.5f) / float(rows); };
   Facets sum;
   for (int i = 0; i < count; ++i) {
-    const Vector3 m = smooth_ ? Vector3{0, 0, 1} : layers_.facets.sample_visible(out, places[i]);
+    const Vector3 m = smooth_ ? Vector3{0, 0, 1} : layers_.facets.sample_visible(out, {place(i % rows), place(i / rows)});
     const float cosine = std::abs(dot(out, m));
     const Facets f = facets_at(cosine, inside(out));
     float passed = upper_passed(out), behind = 0;
