@@ -223,7 +223,7 @@ def tiles(pictures):
 
 
 def compare(ours, theirs):
-    """Ratio of the whole picture, ratios of the tiles, and the greatest standard error of a tile's ratio."""
+    """Ratio of the whole picture, ratios of the tiles, and the root mean square of their standard errors."""
     a, b = tiles(ours), tiles(theirs)
     ratio = a.mean(axis=0) / b.mean(axis=0)
     relative = lambda t: t.std(axis=0, ddof=1) / t.mean(axis=0) / len(t)**0.5
@@ -269,9 +269,11 @@ def main():
             as_it_is = "" if "fibre" in how else shown(compare(ours, theirs[0])[1])
             whole, ratio, error = compare(ours, theirs[-1])
             if how.get("same", True):
-                good = abs(ratio - 1).max() < 0.01
-                all_good &= bool(good)
-                same, verdict = shown(ratio), "within 1 %" if good else "NOT within 1 %"
+                # With sixteen tiles the greatest of their errors is about twice a typical one, and more where they are unequal.
+                beyond = abs(ratio - 1).max() - 0.01
+                all_good &= bool(beyond < 0)
+                same = shown(ratio)
+                verdict = "within 1 %" if beyond < 0 else "undecided: noise" if beyond < 3 * error else "NOT within 1 %"
             else:
                 same, verdict = shown(ratio) if "correlated" in how else "", "differs by definition"
             lines.append(f"| {name} | {setting} | {whole:.4f} | {as_it_is} | {same} | {100 * error:.2f} % | {verdict} |")

@@ -12,7 +12,7 @@
 #include <map>
 #include <memory>
 
-#include "../src/conform/fixtures.h"
+#include "conform/fixtures.h"
 #include "etendue/arena.h"
 #include "etendue/language.h"
 #include "etendue/sampler.h"

@@ -151,6 +151,35 @@ TEST(LayeredShader, AbsorbsOnTheWay) {
   }
 }
 
+TEST(LayeredShader, SlabsOfFog) {
+  // Scattering alike in all directions, between boundaries that do nothing, light along the normal: the fluxes and radiances
+  // of the slab of thickness 1, and of a half space (Chandrasekhar 1950, Radiative transfer; his H function for the latter).
+  const Ref<Shader> none = create<Shader>("PassThrough");
+  struct Slab {
+    double absorption, scattering, reflected, transmitted, back, on;
+  };
+  const Vector3 up{0, 0, 1};
+  for (const Slab& slab : {Slab{0, 1, 0.34133, 0.65867, 0.085749, 0.078473}, Slab{0.1, 0.9, 0.26741, 0.59163, -1, -1},
+                           Slab{4, 36, 0.414948, 0, 0.122572, 0}}) {
+    const Ref<Shader> shader = layered(none, none, {{"medium", fog(slab.absorption, slab.scattering, 0)}, {"thickness", 1.0}});
+    Mean reflected, transmitted, back, on;
+    at_many_points(*shader, 20000, [&](const Scatter& s, test::Random& random) {
+      const float choice = random();
+      const auto sample = s.sample(up, choice, random.pair());
+      const double weight = sample ? double(sample->weight[0]) : 0;
+      reflected.add(sample && !sample->transmitted() ? weight : 0);
+      transmitted.add(sample && sample->transmitted() ? weight : 0);
+      back.add(double(s.evaluate(up, up)[0]));
+      on.add(double(s.evaluate(up, -up)[0]));
+    });
+    EXPECT_MEAN(reflected, slab.reflected);
+    EXPECT_MEAN(transmitted, slab.transmitted);
+    if (slab.back < 0) continue;
+    EXPECT_MEAN(back, slab.back);
+    EXPECT_MEAN(on, slab.on);
+  }
+}
+
 struct Case {
   std::string name;
   Ref<Shader> shader;

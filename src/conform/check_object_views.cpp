@@ -47,7 +47,7 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
       const float again = o.object.visible_density(from, s.direction, p);
       disagree += !(std::abs(again - s.density) < 1e-2f * s.density) && std::abs(dot(p.normal, s.direction)) > 1e-2f;
       Hit hit;
-      const float off = 1e-3f * s.distance + 4 * p.error;
+      const float off = 1e-4f * s.distance + 4 * p.error;
       if (o.object.intersect(o.ray(from, s.direction), hit) && hit.distance < s.distance + off) {
         if (hit.distance > s.distance - off) {
           seen = cell(s.direction);
@@ -66,7 +66,7 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
                  [&] { return fmt::format("{}: {} of {} differ", place, disagree, n); });
   for (size_t k = 0; k < cells; ++k) {
     const double margin = Trial::significant_errors * std::hypot(rays[k].error(), samples[k].error()) +
-                          10 * (rays[k].largest() + samples[k].largest()) / n + 3e-3 * rays[k].mean();
+                          10 * (2 * M_PI * double(height) + samples[k].largest()) / n + 3e-3 * rays[k].mean();
     o.trial.expect(std::abs(rays[k].mean() - samples[k].mean()) <= margin,
                    "points sampled to be seen have densities of the solid angle seen", [&] {
                      return fmt::format("{}, cell {}: {:.5g} ± {:.2g} sr by rays, {:.5g} ± {:.2g} sr by samples", place, k,

@@ -40,7 +40,7 @@ class SkyEmission final : public EmissionShader {
         .member<&SkyEmission::sun>("sun", "", "whether the sun's disc is there")
         .member<&SkyEmission::sun_diameter>("sun_diameter", "deg",
                                             "angle across the sun's disc; a larger one is as much darker as it is larger",
-                                            Range{0, 90, true})
+                                            Range{0, 20, true})
         .member<&SkyEmission::scale>("scale", "1", "multiplies the radiance", at_least(0))
         .member<&SkyEmission::lux>("illuminance", "lx", "on level ground, sun and sky together; 0: as the model says",
                                    at_least(0));

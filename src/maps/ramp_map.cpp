@@ -43,7 +43,7 @@ class RampMap final : public ObjectMap {
   Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse use) const override {
     Spectrum sum;
     weigh(p, [&](size_t i, float weight) { sum += weight * colors[i]->color(p, w, use); });
-    return sum;
+    return use == ColorUse::reflectance ? clamp(sum, 0, 1) : sum;  // weights add up to 1 but for rounding
   }
   float scalar(const SurfacePoint& p) const override {
     float sum = 0;
@@ -73,7 +73,10 @@ class RampMap final : public ObjectMap {
     }
     const size_t last = positions.size() - 1;
     const float range = positions[last] - positions[0];
-    if (!(width > 1e-5f * range) || !(width < infinity)) {
+    const float low = x - 0.5f * width, high = x + 0.5f * width;
+    const bool wide = width > 1e-5f * range && width < infinity;
+    width = high - low;  // as rounded
+    if (!wide || !(width > 0)) {
       if (!(x > positions[0])) return use(size_t(0), 1.0f);  // or not a number
       if (x >= positions[last]) return use(last, 1.0f);
       const size_t i = size_t(std::upper_bound(positions.begin(), positions.end(), x) - positions.begin()) - 1;
@@ -82,7 +85,6 @@ class RampMap final : public ObjectMap {
       if (second > 0) use(i + 1, second);
       return;
     }
-    const float low = x - 0.5f * width, high = x + 0.5f * width;
     float before = std::max(0.0f, std::min(high, positions[0]) - low) / width;  // of the colour at i, so far
     for (size_t i = 0; i < last; ++i) {
       const float length = positions[i + 1] - positions[i];

@@ -41,6 +41,7 @@ class EmbreeScene final : public Scene {
 
   // Hits are noted as Embree finds them, and denied, so that it goes on.
   void all(const Ray& ray, HitList& list) const override {
+    if (!has_interiors()) return Scene::all(ray, list);  // built without filters
     struct Collector : Context {
       const EmbreeScene* scene;
     } context{{{}, &ray, nullptr, &list}, this};
@@ -59,11 +60,6 @@ class EmbreeScene final : public Scene {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_.get(), &context.embree, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
-    // Without interiors the scene was built without filters: the nearest triangle.
-    Hit hit;
-    fill(hit, *geometries_[query.hit.geomID].object, query.ray.tfar, query.hit.primID, query.hit.u, query.hit.v);
-    list.add(hit);
   }
 
   bool any(const Ray& ray) const override {

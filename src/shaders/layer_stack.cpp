@@ -67,9 +67,9 @@ struct LayerStack::Edges {
   const Edge* end() const { return list + count; }
 };
 
-Spectrum LayerStack::transmittance(const Vector3& direction, float depths) const {
+Spectrum LayerStack::transmittance(const Vector3& direction, float part) const {
   if (!medium_.shader) return Spectrum(1.0f);
-  return exp(medium_.extinction() * (-depths * slant(direction)));
+  return exp(medium_.extinction() * (-part * slant(direction)));
 }
 
 float LayerStack::adjoint_factor(Transport transport, const Vector3& a, const Vector3& b) const {

@@ -72,6 +72,8 @@ class LayerStack {
   int side(const Vector3& v) const { return dot(normal_, v) > 0 ? 0 : 1; }
   const Scatter& face(int side) const { return *faces_[side].scatter; }
   const Medium& medium() const { return medium_; }
+  /// What is left of light that goes a part of the way from one layer to the other.
+  Spectrum transmittance(const Vector3& direction, float part) const;
 
   /// An unbiased estimate of f |cos| [1/sr] of the light that went in through the face on the side of `out`, was scattered at
   /// least once by something that is not specular, and came out in direction `in`.
@@ -102,7 +104,6 @@ class LayerStack {
     bool known = false;
   };
 
-  Spectrum transmittance(const Vector3& direction, float depths) const;
   float slant(const Vector3& v) const { return 1 / std::max(std::abs(dot(shading_normal_, v)), 1e-6f); }
   float adjoint_factor(Transport, const Vector3& a, const Vector3& b) const;
   Lobes reversible(int side) const;

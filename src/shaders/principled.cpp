@@ -252,7 +252,11 @@ void Principled::set_boundary(PrincipledLayers& l, const SurfacePoint& p, const 
   l.facets = facets_of(roughened(roughness, coat_rough, l.coat), scalar_at(*specular_roughness_anisotropy, p));
 
   const Spectrum plain = index_at(specular_ior, w), inside = index_at(inside_index_, w);
-  l.eta = inside / around;
+  // Rough facets must bend what they let through, however little, for it to have a density.
+  l.eta = map(inside / around, [&](float eta) {
+    constexpr float least = 2e-3f;
+    return l.facets.smooth() || thin_walled || std::abs(eta - 1) >= least ? eta : eta < 1 ? 1 - least : 1 + least;
+  });
   l.film = scalar_at(*thin_film_weight, p);
   const float nanometres = l.film > 0 ? scalar_at(*thin_film_thickness, p, 0, thickest_film) : 0;
   for (int i = 0; i < spectrum_size; ++i) {

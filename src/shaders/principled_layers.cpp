@@ -82,9 +82,9 @@ void PrincipledScatter::prepare_multiple() {
     const Spectrum more = multiple_->factor(back + through) / max(back + through, 1e-6f);
     sheet_back_ = more * back;
     sheet_through_ = more * through;
-  } else if (l.clear > 0) {
-    clear_multiple_.emplace(MicrofacetDistribution(l.facets.kind, std::sqrt(l.facets.alpha_x * l.facets.alpha_y)), l.eta[0]);
-    if (l.facets.isotropic()) clear_more_ = l.film > 0 || l.coat > 0 ? 0.75f : 1;
+  } else if (l.clear > 0 && l.facets.isotropic()) {
+    clear_multiple_.emplace(l.facets, l.eta[0]);
+    clear_more_ = l.film > 0 || l.coat > 0 ? 0.75f : 1;
   }
 }
 
@@ -207,35 +207,45 @@ Spectrum PrincipledScatter::coat_absorption(float inverse_cosines) const {
   return Spectrum(1 - layers_.coat) + exp(layers_.coat_log_color * (0.5f * inverse_cosines)) * layers_.coat;
 }
 
+namespace {
+
+/// Of `count` points spread evenly over the square: steps of the golden ratio.
+Point2 golden_point(int i, int count) {
+  const float y = 0.5f + 0.6180339887f * float(i);
+  return {(float(i) + 0.5f) / float(count), y - std::floor(y)};
+}
+
+}  // namespace
+
 // Where facets are rough, some of those seen from `out` stand for all: more of them inside, where reflection is total for some
-// and not for others. What gets through them also gets past coat and fuzz.
+// and not for others. What clear ones send on counts as far as no other facet is in its way; what gets through them also gets
+// past coat and fuzz.
 PrincipledScatter::Facets PrincipledScatter::mean_facets(const Vector3& out) const {
-  const int rows = smooth_ ? 1 : inside(out) ? 4 : 2, count = rows * rows;
+  const MicrofacetDistribution& d = layers_.facets;
+  const int count = smooth_ ? 1 : inside(out) ? 16 : 5;
   const float share = 1 / float(count), eta = towards(out, layers_.eta[0]);
-  const auto place = [rows](int i) { return (float(i) + 0.5f) / float(rows); };
   Facets sum;
   for (int i = 0; i < count; ++i) {
-    const Vector3 m = smooth_ ? Vector3{0, 0, 1} : layers_.facets.sample_visible(out, {place(i % rows), place(i / rows)});
+    const Vector3 m = smooth_ ? Vector3{0, 0, 1} : d.sample_visible(out, golden_point(i, count));
     const float cosine = std::abs(dot(out, m));
-    const Facets f = facets_at(cosine, inside(out));
-    float passed = upper_passed(out), behind = 0;
-    if (covered_ && inside(out) && fresnel_dielectric(cosine, eta, behind) < 1)
-      passed = std::min(upper_passed(refract(out, m, eta, behind)), upper_passed(behind));
+    Facets f = facets_at(cosine, inside(out));
+    float behind = 0, passed = upper_passed(out);
+    if (layers_.clear > 0 && !layers_.thin_walled) {
+      const bool total = fresnel_dielectric(cosine, eta, behind) >= 1;
+      const Vector3 back = reflect(out, m), through = total ? -out : refract(out, m, eta, behind);
+      if (covered_ && inside(out)) passed = std::min(upper_passed(through), upper_passed(behind));
+      if (!smooth_) {
+        const float seen = 1 + d.lambda(out);
+        f.clear *= back.z * out.z > 0 ? d.G2(out, back) * seen : 0;
+        f.through *= through.z * out.z < 0 ? d.G2_through(out, through) * seen : 0;
+      }
+    }
     sum.metal += f.metal * share;
     sum.opaque += f.opaque * share;
     sum.clear += f.clear * share;
     sum.through += f.through * (share * passed);
   }
   return sum;
-}
-
-/// What MultipleRefraction tells, of the alpha along `out` where there are two.
-float PrincipledScatter::lost_by_clear_facets(const Vector3& out) const {
-  const MicrofacetDistribution& d = layers_.facets;
-  const float sine2 = 1 - out.z * out.z;
-  if (d.isotropic() || !(sine2 > 0)) return clear_multiple_->missing(out);
-  const float along = std::sqrt((square(d.alpha_x * out.x) + square(d.alpha_y * out.y)) / sine2);
-  return MultipleRefraction(MicrofacetDistribution(d.kind, along), layers_.eta[0]).missing(out);
 }
 
 Spectrum PrincipledScatter::local_albedo(const Vector3& out, Lobes which) const {
@@ -252,19 +262,17 @@ Spectrum PrincipledScatter::local_albedo(const Vector3& out, Lobes which) const 
     const Facets f = mean_facets(out);
     const Spectrum above = coat * upper;
     const float missing = multiple_ ? multiple_->missing(out) : 0, sheet = l.thin_walled ? missing : 0;
-    const float lost = clear_multiple_ ? lost_by_clear_facets(out) : 0;
-    const float kept = 1 - lost, more = l.clear * clear_more_ * lost;
-    const float share = clear_multiple_ ? clear_multiple_->transmitted_share(out) : 0;
+    const float more = clear_more_ > 0 ? l.clear * clear_more_ * clear_multiple_->missing(out) : 0;
+    const float share = clear_more_ > 0 ? clear_multiple_->transmitted_share(out) : 0;
     if (which & base_reflection()) {
       const Spectrum gloss =
           smooth_ || colored_ ? f.opaque : l.specular_color * l.gloss_darkening * (l.opaque * (1 - gloss_.passed(out)));
       sum += (f.metal * (1 - missing) + metal_more_ * (l.metal * missing) + gloss) * above;
-      sum += (f.clear * ((1 - sheet) * kept) + sheet_back_ * (l.clear * sheet) + Spectrum(more * (1 - share))) *
+      sum += (f.clear * (1 - sheet) + sheet_back_ * (l.clear * sheet) + Spectrum(more * (1 - share))) *
              (inside(out) ? Spectrum(1.0f) : above);
     }
     if (which & base_transmission())
-      sum += (f.through * ((1 - sheet) * kept) +
-              (sheet_through_ * (l.clear * sheet) + l.transmission_color * (more * share)) * upper) *
+      sum += (f.through * (1 - sheet) + (sheet_through_ * (l.clear * sheet) + l.transmission_color * (more * share)) * upper) *
              coat_absorption(inverse_cosine_in_coat(out));
   }
   sum *= l.opacity;

@@ -112,7 +112,6 @@ class PrincipledScatter final : public Scatter {
   /// Fractions at facets; `clear` includes what a coat and fuzz throw back at light from inside.
   Facets facets_at(float cosine, bool from_inside) const;
   Facets mean_facets(const Vector3& out) const;
-  float lost_by_clear_facets(const Vector3& out) const;
   void clear_facets_at(float cosine, bool from_inside, Facets&) const;
   void thin_facets_at(float cosine, Facets&) const;
   /// At wavelength i; the cosine is that on the side of the lower index.
