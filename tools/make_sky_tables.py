@@ -75,10 +75,10 @@ def rows(array, per_line, digits):
 
 
 def write(path, parts):
-    text = ("// Made by tools/make_sky_tables.py; do not edit.\n"
+    text = ("// clang-format off\n// Made by tools/make_sky_tables.py; do not edit.\n"
             "// Data of the sky model of Hosek & Wilkie 2012 (An analytic model for full spectral sky-dome radiance) and 2013 (Adding\n"
             "// a solar-radiance function to the Hosek-Wilkie skylight model), as in the file sunsky_datasets.bin of Mitsuba 3.\n//\n" +
-            LICENCE + "// clang-format off\n\n"
+            LICENCE + "\n"
             '#include "emission/sky_tables.h"\n\nnamespace etendue::sky_tables {\n\n' + "\n".join(parts) +
             "\n}  // namespace etendue::sky_tables\n")
     path.write_text(text, encoding="utf-8")
