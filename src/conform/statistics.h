@@ -1,6 +1,7 @@
 #pragma once
 // Chi-square tests and quadrature over the sphere, for the conformance checks and the tests of single parts.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -39,8 +40,10 @@ inline double chi_square_tail(double value, double degrees) {
   return front * h;
 }
 
-/// Tests counts against expected numbers; cells that expect fewer than `least` are pooled. Returns the p-value.
-inline double chi_square(const std::vector<double>& counts, const std::vector<double>& expected, double least = 5) {
+/// Tests counts against expected numbers; cells that expect fewer than `least` are pooled. So many more than expected may be
+/// in the pool as quadrature may have `missed`: slivers. Returns the p-value.
+inline double chi_square(const std::vector<double>& counts, const std::vector<double>& expected, double least = 5,
+                         double missed = 0) {
   double statistic = 0, pooled_count = 0, pooled_expected = 0;
   int cells = 0;
   const auto add = [&](double count, double wanted) {
@@ -55,6 +58,7 @@ inline double chi_square(const std::vector<double>& counts, const std::vector<do
       pooled_expected += expected[i];
     }
   }
+  pooled_count -= std::clamp(pooled_count - pooled_expected, 0.0, missed);
   if (pooled_expected >= 1)
     add(pooled_count, pooled_expected);
   else if (pooled_count > 5 + 10 * pooled_expected)
