@@ -59,6 +59,7 @@ class Scene : public SceneObject {
   // As an object in another scene: transforms the ray and asks itself.
   void prepare() override;
   Bounds3 bounds() const override;
+  bool unbounded() const override { return unbounded_; }
   bool intersect(const Ray&, Hit&) const override;
   bool occludes(const Ray&) const override;
   void all_hits(const Ray&, HitList&) const override;
@@ -77,7 +78,7 @@ class Scene : public SceneObject {
   Bounds3 bounds_;  // of the objects, in the scene's own coordinates
   std::vector<const SceneObject*> luminaires_, infinite_;
   std::vector<Bounds3> interiors_;  // of the objects that paths can enter, and of scenes in which there are such
-  bool has_interiors_ = false, has_null_surfaces_ = false;
+  bool has_interiors_ = false, has_null_surfaces_ = false, unbounded_ = false;
 };
 
 }  // namespace etendue

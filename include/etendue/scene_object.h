@@ -91,6 +91,8 @@ class SceneObject : public Component {
 
   /// World area [m^2], at the given time.
   virtual float area(float time = 0) const = 0;
+  /// A bound of the area's relative error; 0: a formula gives it.
+  virtual float area_error(float /*time*/ = 0) const { return 0; }
   /// A point by area, with its density [1/m^2].
   virtual SurfaceSample sample_area(Point2 u, float time) const = 0;
   /// The density [1/m^2] with which sample_area gives a point.
@@ -110,6 +112,10 @@ class SceneObject : public Component {
   virtual bool closed() const { return false; }
   /// Lies at infinity: never intersected, seen by rays that leave the scene; has no bounds.
   virtual bool infinite() const { return false; }
+  /// Goes on for ever, as a plane does: rays meet it, but the size of the scene does not count it, and it cannot emit. Its
+  /// bounds are a box as large as `endless`.
+  virtual bool unbounded() const { return false; }
+  static constexpr float endless = 1e9f;  ///< [m]
   /// Has no extent, so no ray ever meets it. A point stands for a sphere with a cross section of 1 m^2, shrunk: what its
   /// emission calls radiance, times 1 m^2, is its intensity [W/sr]; densities by area are then 1 per m^2 of that cross
   /// section, and densities by solid angle follow by distance^2, so that radiance over density is irradiance as for

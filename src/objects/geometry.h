@@ -19,6 +19,14 @@ inline Bounds3 swept(const AnimatedTransform& transform, const Bounds3& box) {
   return transform.sweep(box, transform.keys().front().time, transform.keys().back().time);
 }
 
+/// The bounds of what has no end.
+inline Bounds3 endless_box() {
+  Bounds3 box;
+  box.add(Point3{-SceneObject::endless, -SceneObject::endless, -SceneObject::endless});
+  box.add(Point3{SceneObject::endless, SceneObject::endless, SceneObject::endless});
+  return box;
+}
+
 /// The ray in the object's coordinates. The direction is not normalised, so that t stays the same.
 inline Ray ray_into(const Transform& transform, const Ray& ray) {
   Ray local = ray;

@@ -46,7 +46,7 @@ void Scene::prepare() {
   infinite_.clear();
   interiors_.clear();
   bounds_ = {};
-  has_interiors_ = has_null_surfaces_ = false;
+  has_interiors_ = has_null_surfaces_ = unbounded_ = false;
   const auto note_interior = [&](const SceneObject& object) {
     if (!object.shader) return;
     if (object.shader->possible_lobes() & pass_through) has_null_surfaces_ = true;
@@ -106,7 +106,12 @@ void Scene::prepare() {
     if (box.empty()) continue;  // without extent: a point light, an empty scene
     if (!is_finite(box.low) || !is_finite(box.high) || !is_finite(box.diagonal()))
       object->fail("", "the object's bounds are not finite");
-    bounds_.add(box);
+    if (object->unbounded()) {
+      unbounded_ = true;
+      if (object->luminaire() && !inner) object->fail("emission", "an object without end would give off endless power");
+    } else {
+      bounds_.add(box);
+    }
     finite.push_back(object.get());
   }
   for (const Ref<SceneObject>& object : objects)
@@ -114,7 +119,10 @@ void Scene::prepare() {
   build(finite);
 }
 
-Bounds3 Scene::bounds() const { return bounds_.empty() ? bounds_ : swept(transform, bounds_); }
+Bounds3 Scene::bounds() const {
+  if (unbounded_) return endless_box();
+  return bounds_.empty() ? bounds_ : swept(transform, bounds_);
+}
 
 bool Scene::intersect(const Ray& ray, Hit& hit) const {
   Transform scratch;

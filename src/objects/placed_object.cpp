@@ -1,0 +1,109 @@
+#include "placed_object.h"
+
+namespace etendue {
+
+void PlacedObject::place() {
+  if (unbounded()) {
+    bounds_ = endless_box();
+    still_area_ = {infinity, 0};
+    return;
+  }
+  const Bounds3 own = own_bounds();
+  bounds_ = transform.animated() ? swept(transform, own) : transform.still()(own);
+  // What rounding may put outside.
+  const Vector3 margin = rounding_bound(8) * (bounds_.diagonal() + abs(bounds_.centre() - Point3{}));
+  bounds_.low = bounds_.low - margin;
+  bounds_.high = bounds_.high + margin;
+  still_area_ = area_of(transform.still());
+}
+
+bool PlacedObject::intersect(const Ray& ray, Hit& hit) const {
+  Transform scratch;
+  const Transform& t = placed(transform, ray.time, scratch);
+  if (!own_intersect(t.identity() ? ray : ray_into(t, ray), hit)) return false;
+  hit.object = this;
+  hit.depth = 0;
+  return true;
+}
+
+bool PlacedObject::occludes(const Ray& ray) const {
+  Transform scratch;
+  const Transform& t = placed(transform, ray.time, scratch);
+  return own_occludes(t.identity() ? ray : ray_into(t, ray));
+}
+
+void PlacedObject::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const {
+  Transform scratch;
+  const Transform& t = placed(transform, ray.time, scratch);
+  OwnPoint own;
+  own.primitive = hit.primitive;
+  own.u = hit.u;
+  own.v = hit.v;
+  own_point(t.identity() ? ray : ray_into(t, ray), hit, own);
+  carry(own, ray.time, p);
+}
+
+void PlacedObject::carry(const OwnPoint& own, float time, SurfacePoint& p) const {
+  p.position = p.object_position = own.position;
+  p.normal = p.object_normal = own.normal;
+  p.shading_normal = own.shading_normal == Normal3{} ? own.normal : own.shading_normal;
+  p.error = own.error;
+  p.uv = own.uv;
+  p.dpdu = own.dpdu;
+  p.dpdv = own.dpdv;
+  p.time = time;
+  p.object = this;
+  p.primitive = own.primitive;
+  p.u = own.u;
+  p.v = own.v;
+  Transform scratch;
+  const Transform& t = placed(transform, time, scratch);
+  if (!t.identity()) carry_out(t, p);
+}
+
+float PlacedObject::area(float time) const {
+  return transform.animated() && !unbounded() ? area_of(transform.at(time)).value : still_area_.value;
+}
+
+float PlacedObject::area_error(float time) const {
+  return transform.animated() && !unbounded() ? area_of(transform.at(time)).error : still_area_.error;
+}
+
+SurfaceSample PlacedObject::sample_area(Point2 u, float time) const {
+  SurfaceSample s;
+  OwnPoint own;
+  const float density = own_sample(u, own);
+  if (!(density > 0)) return s;
+  carry(own, time, s.point);
+  Transform scratch;
+  const Transform& t = placed(transform, time, scratch);
+  s.density = t.identity() ? density : density / area_stretch(t, own.normal);
+  return s;
+}
+
+float PlacedObject::area_density(const SurfacePoint& p) const {
+  Transform scratch;
+  const Transform& t = placed(transform, p.time, scratch);
+  const float density = own_density(p);
+  return t.identity() ? density : density / area_stretch(t, p.object_normal);
+}
+
+PlacedObject::Area PlacedObject::area_of(const Transform& t) const {
+  const double own = own_area();
+  if (const float s = similarity_scale(t); s > 0) return {float(own * double(s) * double(s)), own_area_error()};
+  // integral of stretch over the own area, by the midpoint rule in the coordinates of own_sample; half as many points tell
+  // how good it is.
+  const auto mean = [&](int steps) {
+    double sum = 0;
+    for (int i = 0; i < steps * steps; ++i) {
+      OwnPoint p;
+      const float density = own_sample({(float(i % steps) + 0.5f) / float(steps), (float(i / steps) + 0.5f) / float(steps)}, p);
+      if (density > 0) sum += double(area_stretch(t, p.normal)) / double(density);
+    }
+    return sum / (steps * steps);
+  };
+  const double coarse = mean(64), fine = mean(128);
+  return {float(fine), fine > 0 ? own_area_error() + float(std::abs(fine - coarse) / fine) : 0};
+}
+
+}  // namespace etendue
