@@ -3,6 +3,7 @@
 #include "component_test_support.h"
 #include "etendue/color.h"
 #include "etendue/object_map.h"
+#include "shaders/film_interference.h"
 #include "shaders/fresnel.h"
 
 namespace etendue {
@@ -288,6 +289,17 @@ TEST(SheenShader, BrightAtTheEdge) {
   EXPECT_LT(sharp.albedo(0), 0.02);
   EXPECT_GT(sharp.albedo(80), 0.25);
   EXPECT_GT(blunt.albedo(0), 4 * sharp.albedo(0));
+}
+
+// r01 = -r12 = 1 there: 0 / 0 for the whole film, and a limit beside it.
+TEST(FilmInterference, IsFiniteWhereLightCreepsAlongTheFilm) {
+  float cosine = std::sqrt(0.75f) - 40 * 0x1p-24f;
+  const float beside = film_fractions(cosine - 1e-3f, 1, 0.5f, 0.6f, 0.2f).reflected;
+  for (int i = 0; i < 80; ++i, cosine = std::nextafter(cosine, 1.0f)) {
+    const FilmFractions f = film_fractions(cosine, 1, 0.5f, 0.6f, 0.2f);
+    EXPECT_NEAR(f.reflected, beside, 0.02f) << cosine;
+    EXPECT_NEAR(f.reflected + f.transmitted, 1, 2e-3f) << cosine;
+  }
 }
 
 }  // namespace

@@ -174,10 +174,26 @@ void check_tangents(const ObjectTrial& o) {
                  [&] { return fmt::format("{} of {} steps lead elsewhere", wrong, tested); });
 }
 
+/// Whether some of the surface is very near, or all seen edge on.
+bool too_near(const ObjectTrial& o, const Point3& from) {
+  for (int i = 0; i < 1000; ++i)
+    if (o.object.occludes(o.ray(from, o.trial.direction(), 0.02f * o.radius))) return true;
+  float cosine = 0;
+  for (int i = 0; i < 100; ++i) {
+    const SurfacePoint p = o.sample_area().point;
+    cosine = std::max(cosine, std::abs(dot(p.normal, normalize(p.position - from))));
+  }
+  return cosine < 0.02f;
+}
+
 }  // namespace
 
 void check_scene_object(Trial& trial) {
   const SceneObject& object = trial.part<SceneObject>();
+  if (object.unbounded()) {  // it has no area, no size and no points to choose
+    trial.expect(!(object.sample_area(trial.pair(), 0).density > 0), "on what has no end no points are chosen");
+    return;
+  }
   if (object.infinite() || object.delta() || object.bounds().empty()) {
     trial.expect(object.bounds().empty(), "what has no extent or lies at infinity has no bounds");
     return;
@@ -189,7 +205,12 @@ void check_scene_object(Trial& trial) {
   if (dynamic_cast<const Scene*>(&object)) return;  // a scene is no luminaire: no points are chosen on it
   check_points(o);
   check_tangents(o);
-  for (const float away : {0.3f, 1.2f, 4.0f, 40.0f}) check_seen_from(o, o.centre + away * o.radius * trial.direction());
+  for (const float away : {0.3f, 1.2f, 4.0f, 40.0f}) {
+    // Neither right on the surface nor in a flat one's plane: what is seen there is sampled with almost any noise.
+    Point3 from = o.centre + away * o.radius * trial.direction();
+    for (int i = 0; i < 20 && too_near(o, from); ++i) from = o.centre + away * o.radius * trial.direction();
+    check_seen_from(o, from);
+  }
   check_moved(o);
 }
 

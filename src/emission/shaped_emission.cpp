@@ -12,7 +12,13 @@ constexpr int side = 32, count = side * side;
 
 bool along_axis(Quantity q) { return q == Quantity::intensity || q == Quantity::illuminance; }
 
-Point2 place(int i) { return {(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}; }
+Point2 midpoint(int i) { return {(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}; }
+
+/// A lattice by the golden ratio: even, and in step with no pattern of bricks or checks.
+Point2 place(int i) {
+  const double x = (i + 0.5) * 0.61803398874989485;
+  return {float(x - std::floor(x)), (float(i) + 0.5f) / count};
+}
 
 }  // namespace
 
@@ -156,9 +162,9 @@ void ShapedEmission::for_infinity(const SceneObject& object, Quantity quantity, 
     return;
   }
   for (int i = 0; i < count; ++i) {
-    const Vector3 v = warp::sphere(place(i));  // exact midpoints along its z, which becomes y
+    const Vector3 v = warp::sphere(midpoint(i));  // exact midpoints along its z, which becomes y
     const DirectionSample d =
-        knows_incident() ? sample_incident(place(i)) : DirectionSample{{v.y, v.z, v.x}, warp::sphere_density};
+        knows_incident() ? sample_incident(midpoint(i)) : DirectionSample{{v.y, v.z, v.x}, warp::sphere_density};
     if (!(d.density > 0)) continue;
     Ray ray;
     ray.direction = normalize(object.transform.still()(d.direction));

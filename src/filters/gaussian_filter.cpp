@@ -11,7 +11,8 @@ class GaussianFilter final : public Filter {
   //   w(x) = exp(-x^2 / (2 s^2)) - exp(-r^2 / (2 s^2)).
   float along(float x) const {
     const float k = -0.5f / square(deviation);
-    return std::max(0.0f, std::exp(k * square(x)) - std::exp(k * square(radius_pixels)));
+    const float here = k * square(x);  // so written nothing cancels where the curve is nearly flat
+    return std::max(0.0f, -std::exp(here) * std::expm1(k * square(radius_pixels) - here));
   }
 
  public:

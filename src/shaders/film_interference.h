@@ -50,7 +50,8 @@ inline FilmFractions film_fractions(float cosine, float n0, float n1, std::compl
   using namespace film;
   const float c0 = clamp(cosine, 1e-4f, 1), a2 = square(n0) * (1 - c0) * (1 + c0);  // (n0 sin0)^2
   // q = n cos, the part of the wave's number across the faces: q^2 = n^2 - (n0 sin0)^2.
-  const float q0 = n0 * c0, e1 = square(n1), e1_a2 = e1 - a2;
+  // Where light would just creep along the film, r01 = -r12 = 1 and all sums are 0 / 0: it is kept a little beside that.
+  const float q0 = n0 * c0, e1 = square(n1), e1_a2 = std::copysign(std::max(std::abs(e1 - a2), 1e-6f * e1), e1 - a2);
   const Complex q1 = e1_a2 >= 0 ? Complex(std::sqrt(e1_a2), 0) : Complex(0, std::sqrt(-e1_a2));
   const Complex e2 = times(n2, n2), q2 = root(e2 - a2);
   // e^(2 i beta); 1 for no film.

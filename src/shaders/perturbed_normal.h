@@ -19,7 +19,8 @@ class PerturbedNormalShader : public Shader {
   // What a tilted normal would send through the surface is lost, whatever the shader below.
   bool lossless() const override { return false; }
   // Light that leaves elsewhere leaves by the normal of the surface there.
-  bool reciprocal() const override { return shader->reciprocal() && !shader->moves_exit(); }
+  /// By its own, turned, cosines it is, not by those of what it is part of.
+  bool reciprocal() const override { return false; }
   bool stochastic() const override { return shader->stochastic(); }
   bool moves_exit() const override { return shader->moves_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
