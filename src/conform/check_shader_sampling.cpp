@@ -39,7 +39,7 @@ std::string where(const BoundShader& bound, const Vector3& out, Lobes which) {
 /// So many samples choose the cells, at any effort: cells that are too coarse are no test.
 constexpr int pilots = 6000;
 constexpr size_t cell_count = 96;
-constexpr double rough_albedo = 0.2;  // how far the estimate may be off: it only guides choices
+constexpr double rough_albedo = 0.25;  // how far the estimate may be off: it only guides choices
 
 /// What quadrature says of the density and of f cos, and what samples say.
 struct Measured {
@@ -204,7 +204,7 @@ void check_shader_estimates(Trial& trial, const BoundShader& bound) {
       trial.expect(drawn.all.mean() > 1 - slack, "a lossless shader absorbs nothing", [&] {
         return fmt::format("{}: {:.5f} ± {:.5f}", where(bound, out, which), drawn.all.mean(), drawn.all.error());
       });
-    if (angle < 85 || angle > 95)
+    if (transport == Transport::importance && (angle < 85 || angle > 95))
       trial.expect(std::abs(double(scatter.albedo(out)[0]) - drawn.all.mean()) < rough_albedo + slack,
                    "the albedo's estimate is near the albedo", [&] {
                      return fmt::format("{}: estimated {:.4f}, is {:.4f}", where(bound, out, which), scatter.albedo(out)[0],

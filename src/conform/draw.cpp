@@ -139,10 +139,10 @@ class Drawer {
       return complex_index(flat_spectrum(float(between(0.1, 4))), flat_spectrum(float(between(0, 8))));
     }
     const float middle = by_default ? by_default->at(550, ColorUse::coefficient) : 0;
-    if (middle > 1.05f && coin(0.8)) {
+    if (middle > 1.05f) {
       const std::vector<std::string> names = glass_names();
       if (coin(0.4)) return glass_index(names[index(names.size())]);
-      return flat_spectrum(float(between(1.05, 2.5)));
+      return flat_spectrum(float(coin(0.9) ? between(1.05, 2.5) : between(0.6, 1)));
     }
     const double kind = uniform();
     if (kind < 0.05) return flat_spectrum(coin(0.5) ? 0.0f : 1.0f);

@@ -188,7 +188,7 @@ void ShapedEmission::for_surface(const SceneObject& object, Quantity quantity, c
   double weights = 0, middle[3] = {}, normal[3] = {};
   Vector3 axis{};
   for (int i = 0; i < count; ++i) {
-    const SurfaceSample s = object.sample_area(place(i), 0);
+    const SurfaceSample s = object.sample_area(constant_ ? midpoint(i) : place(i), 0);
     if (!(s.density > 0)) continue;
     const double weight = double(1 / s.density);
     weights += weight;
@@ -210,7 +210,7 @@ void ShapedEmission::for_surface(const SceneObject& object, Quantity quantity, c
   Normal3 known;  // flat objects: K is found once
   double share = 0;
   for (int i = 0; i < count; ++i) {
-    const SurfaceSample s = object.sample_area(place(i), 0);
+    const SurfaceSample s = object.sample_area(constant_ ? midpoint(i) : place(i), 0);
     if (!(s.density > 0)) continue;
     const double part = 1 / (double(s.density) * weights);
     const SurfacePoint& p = s.point;
