@@ -79,6 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"WrongAreaSquare", "the area is that which lines find"},
                       Fault{"WrongVisibleSquare", "points sampled to be seen have densities of the solid angle seen"},
                       Fault{"UnboundedMap", "reflectances are in [0, 1]"},
+                      Fault{"DimRenderer", "the value of a furnace is the known one"},
                       Fault{"ForgetfulFilter", "preparing leaves the members as they were written"}),
     [](const auto& each) { return std::string(each.param.class_name); });
 

@@ -49,7 +49,8 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
       Hit hit;
       const float off = 1e-4f * s.distance + 4 * p.error;
       if (o.object.intersect(o.ray(from, s.direction), hit) && hit.distance < s.distance + off) {
-        if (hit.distance > s.distance - off) {
+        // Another part of the object may lie just before it.
+        if (hit.distance > s.distance - (hit.primitive == p.primitive ? off : 1e-6f * s.distance + p.error)) {
           seen = cell(s.direction);
           value = 1 / double(s.density);
         }

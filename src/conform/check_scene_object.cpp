@@ -141,7 +141,7 @@ void check_points(const ObjectTrial& o) {
 /// dpdu and dpdv span the surface, and tell where a point with slightly other coordinates lies.
 void check_tangents(const ObjectTrial& o) {
   int wrong = 0, tested = 0;
-  const float step = 4e-3f * o.radius;
+  const float step = 1e-3f * o.radius;  // short of what bends sharply
   for (int i = o.trial.samples(4000); i > 0; --i) {
     const SurfacePoint start = o.sample_area().point;
     const auto down = [&](const Point3& over, SurfacePoint& p) {

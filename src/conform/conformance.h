@@ -104,6 +104,7 @@ void check_emission(Trial&);
 void check_object_map(Trial&);
 void check_scene_object(Trial&);
 void check_light_sampler(Trial&);
+void check_renderer(Trial&);
 
 struct Options {
   std::vector<std::string> classes;  ///< names of classes or interfaces; empty: all
