@@ -34,6 +34,13 @@ class Camera : public Component {
   static void describe(Description<Camera>&);
 
   float shutter_open = 0, shutter_close = 0;  ///< [s]
+  /// How long the shutter takes to open all the way and to close [s]: its opening grows and shrinks linearly.
+  float shutter_opening = 0, shutter_closing = 0;
+
+  /// A time for a uniform number, as likely as the shutter is open.
+  float shutter_time(float u) const;
+  /// How far open the shutter is at a time, from 0 to 1.
+  float shutter_efficiency(float time) const;
 
   /// Told by the Job before rendering: the size of the whole picture in pixels.
   virtual void set_film(int width, int height) = 0;

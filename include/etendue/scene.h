@@ -52,9 +52,17 @@ class Scene : public SceneObject {
   /// Whether a point may lie inside an object that paths can enter: a quick test by bounds.
   bool maybe_inside(const Point3& p) const {
     for (const Bounds3& box : interiors_)
-      if (box.contains(p)) return true;
+      if (box.contains(p)) return interior_tree_.empty() || in_interior_tree(p);
     return false;
   }
+  /// How deep the scenes in it lie in one another; 0: it holds none.
+  int nesting() const { return nesting_; }
+  /// Another number each time a scene is prepared.
+  std::uint64_t version() const { return version_; }
+  /// Area [m^2] of the finite objects in it, in its own coordinates.
+  double own_area(float time) const;
+  /// The same for a scene that is an object under this transform: exact when that is a similarity.
+  float placed_area(const AnimatedTransform& placed, float time) const;
 
   // As an object in another scene: transforms the ray and asks itself.
   void prepare() override;
@@ -73,12 +81,57 @@ class Scene : public SceneObject {
   virtual void build(std::span<const SceneObject* const> finite) = 0;
 
  private:
+  friend class Instance;
   void locate_nested(const Ray&, const Hit&, SurfacePoint&) const;
+  Bounds3 placed_bounds(const AnimatedTransform& placed) const;
+  bool in_interior_tree(const Point3&) const;
+  void build_interior_tree(std::span<Bounds3>);
 
   Bounds3 bounds_;  // of the objects, in the scene's own coordinates
   std::vector<const SceneObject*> luminaires_, infinite_;
-  std::vector<Bounds3> interiors_;  // of the objects that paths can enter, and of scenes in which there are such
+  std::vector<Bounds3> interiors_;  // of the objects that paths can enter, and of scenes in which there are such; of many
+                                    // such only the union, and the tree
   bool has_interiors_ = false, has_null_surfaces_ = false, unbounded_ = false;
+  struct Node {
+    Bounds3 box;
+    std::uint32_t next = 0;  // after all below it; of a leaf 0
+  };
+  std::vector<Node> interior_tree_;  // depth first
+  int nesting_ = 0;
+  std::uint64_t version_ = 0;
 };
+
+class ShaderReplacement;
+
+/// A scene placed once more: any number of instances share what is in it and the structure over it.
+class Instance final : public SceneObject {
+ public:
+  static void describe(Description<Instance>&);
+
+  Ref<Scene> scene;
+
+  /// Completes a hit found in the scene, with a ray in its coordinates: notes the way out, and what stands for the object
+  /// when this instance has a shader of its own.
+  void note_way_out(Hit&) const;
+  /// What hits in this instance may name instead of the scene's own objects; null: those themselves.
+  const ShaderReplacement* replacement() const { return replacement_.get(); }
+
+  void prepare() override;
+  Bounds3 bounds() const override;
+  bool unbounded() const override;
+  bool intersect(const Ray&, Hit&) const override;
+  bool occludes(const Ray&) const override;
+  void all_hits(const Ray&, HitList&) const override;
+  void surface_point(const Ray&, const Hit&, SurfacePoint&) const override;
+  void tangents(SurfacePoint&) const override;
+  float area(float time) const override;
+  SurfaceSample sample_area(Point2 u, float time) const override;
+
+ private:
+  std::shared_ptr<const ShaderReplacement> replacement_;
+};
+
+/// The scene that an object is or places; null for all other objects.
+const Scene* scene_within(const SceneObject&);
 
 }  // namespace etendue

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <unordered_set>
+
 #include "app/advice.h"
 #include "app/scene_options.h"
 #include "app/text.h"
@@ -12,14 +14,15 @@ namespace {
 
 struct Contents {
   std::uint64_t objects = 0, triangles = 0, scenes = 0;
+  std::unordered_set<const Scene*> seen;  // one that stands in many places counts once
 };
 
 void count(const Scene& scene, Contents& contents) {
   ++contents.scenes;
   for (const Ref<SceneObject>& object : scene.objects) {
     if (!object) continue;
-    if (const auto* nested = dynamic_cast<const Scene*>(object.get())) {
-      count(*nested, contents);
+    if (const Scene* nested = scene_within(*object)) {
+      if (contents.seen.insert(nested).second) count(*nested, contents);
       continue;
     }
     ++contents.objects;

@@ -30,6 +30,10 @@ void check_shutter(const Camera& camera) {
   if (!std::isfinite(camera.shutter_open)) camera.fail("shutter_open", "must be a finite time");
   if (!std::isfinite(camera.shutter_close) || camera.shutter_close < camera.shutter_open)
     camera.fail("shutter_close", "the shutter must not close before it opens");
+  const double whole = double(camera.shutter_close) - double(camera.shutter_open);
+  if (double(camera.shutter_opening) + double(camera.shutter_closing) > whole * (1 + 1e-6))
+    camera.fail(camera.shutter_opening > whole ? "shutter_opening" : "shutter_closing",
+                "opening and closing must not take longer than the shutter is open");
 }
 
 }  // namespace etendue

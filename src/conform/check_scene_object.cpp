@@ -50,7 +50,7 @@ void check_hit(const ObjectTrial& o, const Ray& ray, const Hit& hit, const Surfa
                      dot(p.normal, Vector3(p.shading_normal)) >= 0 && p.error >= 0 && p.error < 0.01f * o.radius + off &&
                      std::isfinite(p.uv.x) && std::isfinite(p.uv.y),
                  "normals are unit vectors and errors small", where);
-  if (dynamic_cast<const Scene*>(&o.object)) return;
+  if (scene_within(o.object)) return;
   o.trial.expect(p.object == &o.object && distance(o.object.transform.at(o.time)(p.object_position), p.position) < off,
                  "object coordinates are those before the transform", where);
 }
@@ -85,7 +85,7 @@ void check_lines(const ObjectTrial& o) {
   o.trial.expect(
       std::abs(found - said) <
               scale * (Trial::significant_errors * crossings.error() + 10 / double(crossings.count())) + 1e-3 * said ||
-          (dynamic_cast<const Scene*>(&o.object) && !similar(o)),
+          (scene_within(o.object) && !similar(o)),
       "the area is that which lines find",
       [&] { return fmt::format("{} m^2, but {} ± {} by lines", said, found, scale * crossings.error()); });
 }
@@ -202,7 +202,7 @@ void check_scene_object(Trial& trial) {
   trial.expect(is_finite(o.bounds.low) && is_finite(o.bounds.high) && o.radius > 0, "bounds are finite",
                [&] { return text_of(o.bounds.low) + " .. " + text_of(o.bounds.high); });
   check_lines(o);
-  if (dynamic_cast<const Scene*>(&object)) return;  // a scene is no luminaire: no points are chosen on it
+  if (scene_within(object)) return;  // a scene is no luminaire: no points are chosen on it
   check_points(o);
   check_tangents(o);
   for (const float away : {0.3f, 1.2f, 4.0f, 40.0f}) {

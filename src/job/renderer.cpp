@@ -98,9 +98,7 @@ Renderer::CameraSample Renderer::camera_sample(const RenderContext& context, int
                  context.wavelengths.sample(key, sampler->number(key, wavelength_dimension))};
   const Point2 lens = sampler->pair(key, lens_dimension);
   const Camera& camera = context.camera;
-  const float time = camera.shutter_close > camera.shutter_open
-                         ? lerp(sampler->number(key, time_dimension), camera.shutter_open, camera.shutter_close)
-                         : camera.shutter_open;
+  const float time = camera.shutter_time(sampler->number(key, time_dimension));
   random.jump(path_dimension);
 
   SampleContext sample{s.wavelengths, random, arena, request.features, record, request.lengths, request.splats};

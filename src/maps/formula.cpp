@@ -38,9 +38,7 @@ void each(Spectrum* s) {
   for (int i = 0; i < spectrum_size; ++i) s[0].set(i, f(s[0][i], s[1][i], s[2][i]));
 }
 
-enum : std::uint8_t { push_number, push_value, add, subtract, multiply, divide, negate, first_function };
-
-// Those without a name are in the order above.
+// In the order of Formula::Code; those without a name come first.
 constexpr Operation operations[] = {
     {nullptr, 0, nullptr},
     {nullptr, 0, nullptr},
@@ -69,6 +67,7 @@ constexpr Operation operations[] = {
     {"smoothstep", 3, each<smooth_step>},
     {"mean", 1, [](Spectrum* s) { s[0] = s[0].average(); }},
 };
+static_assert(std::size(operations) == Formula::operation_count);
 
 }  // namespace
 
@@ -85,13 +84,13 @@ class FormulaCompiler {
       case NodeType::number:
         if (!(std::abs(node.number) <= double(std::numeric_limits<float>::max())))
           throw Error("the number is too large", node.at);
-        push({push_number, 0, float(node.number)}, node.at);
+        push({Formula::push_number, 0, float(node.number)}, node.at);
         return;
       case NodeType::name: name(node); return;
       case NodeType::call: call(node); return;
       case NodeType::negation:
         expression(node.children.at(0));
-        operation(negate);
+        operation(Formula::negate);
         return;
       case NodeType::sum:
       case NodeType::product:
@@ -99,7 +98,9 @@ class FormulaCompiler {
         for (size_t i = 1; i < node.children.size(); ++i) {
           expression(node.children[i]);
           const char symbol = node.labels.at(i - 1).text.at(0);
-          operation(symbol == '+' ? add : (symbol == '-' ? subtract : (symbol == '*' ? multiply : divide)));
+          operation(symbol == '+'
+                        ? Formula::add
+                        : (symbol == '-' ? Formula::subtract : (symbol == '*' ? Formula::multiply : Formula::divide)));
         }
         return;
       case NodeType::unit:
@@ -119,11 +120,11 @@ class FormulaCompiler {
   }
 
   void name(const language::Node& node) {
-    if (node.text == "pi") return push({push_number, 0, pi}, node.at);
+    if (node.text == "pi") return push({Formula::push_number, 0, pi}, node.at);
     for (size_t i = 0; i < names_.size(); ++i) {
       if (names_[i] != node.text) continue;
       formula_.used_[i] = true;
-      return push({push_value, std::uint16_t(i)}, node.at);
+      return push({Formula::push_value, std::uint16_t(i)}, node.at);
     }
     std::vector<std::string> known = names_;
     known.emplace_back("pi");
@@ -134,7 +135,7 @@ class FormulaCompiler {
   }
 
   void call(const language::Node& node) {
-    for (std::uint8_t i = first_function; i < std::size(operations); ++i) {
+    for (std::uint8_t i = Formula::first_function; i < std::size(operations); ++i) {
       if (node.text != operations[i].name) continue;
       const size_t wanted = size_t(operations[i].arguments);
       if (node.children.size() != wanted)
@@ -154,9 +155,11 @@ class FormulaCompiler {
 
 std::vector<std::string> Formula::function_names() {
   std::vector<std::string> names;
-  for (const Operation& o : std::span(operations).subspan(first_function)) names.emplace_back(o.name);
+  for (const Operation& o : std::span(operations).subspan(Formula::first_function)) names.emplace_back(o.name);
   return names;
 }
+
+int Formula::arguments(std::uint8_t operation) { return operations[operation].arguments; }
 
 Formula::Formula(const std::string& text, const std::vector<std::string>& names, const char* text_name, int first_column) {
   // A line's break counts as a blank: a formula is one line. Blanks before it put columns where they are in the file.
@@ -178,9 +181,9 @@ Spectrum Formula::run(const Spectrum* values) const {
   Spectrum stack[deepest + 1];
   Spectrum* top = stack;  // one behind the last value
   for (const Step& step : steps_) {
-    if (step.operation == push_number) {
+    if (step.operation == Formula::push_number) {
       *top++ = Spectrum(step.number);
-    } else if (step.operation == push_value) {
+    } else if (step.operation == Formula::push_value) {
       *top++ = finite_or_zero(values[step.place]);
     } else {
       const Operation& o = operations[step.operation];

@@ -27,11 +27,47 @@ class Formula {
   static std::vector<std::string> function_names();
   static constexpr int deepest = 32;  ///< values on the stack
 
+  /// What a step does: functions are in the order of function_names, from `first_function` on.
+  enum Code : std::uint8_t {
+    push_number,
+    push_value,
+    add,
+    subtract,
+    multiply,
+    divide,
+    negate,
+    first_function,
+    absolute = first_function,
+    square_root,
+    exponential,
+    logarithm,
+    sine,
+    cosine,
+    tangent,
+    arc_tangent_2,
+    round_down,
+    fraction,
+    remainder,
+    power,
+    minimum,
+    maximum,
+    threshold,
+    clamp,
+    mix,
+    smooth_step,
+    mean,
+    operation_count
+  };
+
   struct Step {
     std::uint8_t operation;
     std::uint16_t place = 0;  ///< of a name
     float number = 0;
   };
+  /// The program, for other machines than `run`: of intervals, say.
+  const std::vector<Step>& steps() const { return steps_; }
+  /// How many values an operation takes off the stack.
+  static int arguments(std::uint8_t operation);
 
  private:
   friend class FormulaCompiler;

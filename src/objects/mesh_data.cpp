@@ -101,6 +101,24 @@ void drop_unusable(MeshData& mesh, const std::string& whose) {
   if (without_area > 0) warn(whose + ": left out " + std::to_string(without_area) + " triangles without area");
 }
 
+namespace {
+
+/// The corner of a convex polygon from which a fan has no triangle without area, if there is one. Beside corners that others
+/// have on an edge in line there may be some, and without its triangle such a corner would be a gap in a closed surface.
+size_t fan_apex(const std::vector<Point3>& points, const Vector3& normal) {
+  const size_t count = points.size();
+  const float least = 1e-6f * dot(normal, normal);
+  for (size_t a = 0; a < count; ++a) {
+    bool all = true;
+    for (size_t i = 2; i < count && all; ++i)
+      all = dot(cross(points[(a + i - 1) % count] - points[a], points[(a + i) % count] - points[a]), normal) > least;
+    if (all) return a;
+  }
+  return 0;
+}
+
+}  // namespace
+
 void append_polygon(MeshData& mesh, const std::uint32_t* corners, size_t count) {
   if (count < 3) return;
   if (count == 3) {
@@ -121,7 +139,9 @@ void append_polygon(MeshData& mesh, const std::uint32_t* corners, size_t count) 
   }
   bool sound = is_finite(normal);
   if (convex || !sound || count > 4096) {  // cutting ears takes quadratic time: a hostile count must not stop the program
-    for (size_t i = 2; i < count; ++i) mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    const size_t a = convex && count <= 64 ? fan_apex(points, normal) : 0;
+    for (size_t i = 2; i < count; ++i)
+      mesh.triangles.push_back({corners[a], corners[(a + i - 1) % count], corners[(a + i) % count]});
     return;
   }
   cut.clear();

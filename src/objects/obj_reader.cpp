@@ -5,6 +5,7 @@
 
 #include "etendue/error.h"
 #include "mesh_data.h"
+#include "polygon_mesh.h"
 
 namespace etendue {
 namespace {
@@ -134,9 +135,19 @@ std::uint32_t read_index(Lines& lines, size_t so_far, size_t all, const char* wh
   return std::uint32_t(index);
 }
 
-}  // namespace
+/// Corners that are numbered by vertex get their position and their uv. One without uv gets the origin.
+void name_corners(const std::vector<Vertices::Corner>& list, PolygonMesh& mesh) {
+  if (!mesh.uvs.empty()) {
+    const auto origin = std::uint32_t(mesh.uvs.size());
+    mesh.uvs.push_back({});
+    mesh.uv_corners.reserve(mesh.corners.size());
+    for (const std::uint32_t c : mesh.corners) mesh.uv_corners.push_back(list[c].uv == Vertices::none ? origin : list[c].uv);
+  }
+  for (std::uint32_t& c : mesh.corners) c = list[c].position;
+}
 
-MeshData read_obj(std::string_view file) {
+/// With `polygons` given, faces go there as they are, and no triangles are made.
+MeshData parse(std::string_view file, PolygonMesh* polygons) {
   const Counts all = count(file);
   if (all.positions == 0) throw Error("it has no vertices");
   if (all.faces == 0) throw Error("it has no faces");
@@ -201,7 +212,10 @@ MeshData read_obj(std::string_view file) {
         corners.push_back(plain ? p : vertices.find(p, uv, n));
       }
       if (corners.size() < 3) lines.error("a face needs at least three vertices");
-      if (corners.size() == 3) {
+      if (polygons) {
+        polygons->face_sizes.push_back(std::uint32_t(corners.size()));
+        polygons->corners.insert(polygons->corners.end(), corners.begin(), corners.end());
+      } else if (corners.size() == 3) {
         mesh.triangles.push_back({corners[0], corners[1], corners[2]});
       } else if (!known) {
         late.push_back({corners, positions});
@@ -209,6 +223,12 @@ MeshData read_obj(std::string_view file) {
         cut({corners, positions});
       }
     }
+  }
+  if (polygons) {
+    polygons->positions = std::move(mesh.positions);
+    polygons->uvs = std::move(mesh.uvs);
+    if (!plain) name_corners(vertices.corners(), *polygons);
+    return mesh;
   }
   for (const Face& polygon : late) cut(polygon);
   if (plain) return mesh;
@@ -235,6 +255,16 @@ MeshData read_obj(std::string_view file) {
   }
   result.triangles = std::move(mesh.triangles);
   return result;
+}
+
+}  // namespace
+
+MeshData read_obj(std::string_view file) { return parse(file, nullptr); }
+
+PolygonMesh read_obj_polygons(std::string_view file) {
+  PolygonMesh polygons;
+  parse(file, &polygons);
+  return polygons;
 }
 
 }  // namespace etendue

@@ -6,6 +6,7 @@
 #include "etendue/error.h"
 #include "mesh_data.h"
 #include "ply_attributes.h"
+#include "polygon_mesh.h"
 
 namespace etendue {
 namespace {
@@ -164,11 +165,15 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
   decode_fractions(e, columns);
 }
 
-void read_faces(const Element& e, Body& body, MeshData& mesh) {
+/// With `polygons` given, faces go there as they are, and no triangles are made.
+void read_faces(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polygons) {
   const int indices = e.find({"vertex_indices", "vertex_index"});
   if (indices < 0 || !e.properties[size_t(indices)].list) throw Error("the faces have no list 'vertex_indices'");
   const std::uint64_t vertices = mesh.positions.size();
-  mesh.triangles.reserve(size_t(e.count));
+  if (polygons)
+    polygons->face_sizes.reserve(size_t(e.count));
+  else
+    mesh.triangles.reserve(size_t(e.count));
   const auto out_of_range = [&](std::uint64_t face, double index) {
     body.error("face " + std::to_string(face) + " refers to vertex " +
                std::to_string(std::int64_t(clamp(float(index), -9e18f, 9e18f))) + " of " + std::to_string(vertices) +
@@ -176,7 +181,7 @@ void read_faces(const Element& e, Body& body, MeshData& mesh) {
   };
   const Property& list = e.properties[size_t(indices)];
   std::uint64_t face = 0;
-  if (!body.text() && e.properties.size() == 1 && size_of(list.count_type) == 1 && size_of(list.type) == 4 &&
+  if (!polygons && !body.text() && e.properties.size() == 1 && size_of(list.count_type) == 1 && size_of(list.type) == 4 &&
       list.type != Type::float32) {
     // The common layout: a byte and that many 32-bit indices. Triangles are taken here, anything else below.
     const char* at = body.at();
@@ -206,13 +211,16 @@ void read_faces(const Element& e, Body& body, MeshData& mesh) {
         if (!(index >= 0 && index < double(vertices))) out_of_range(face, index);
         corners.push_back(std::uint32_t(index));
       }
-      append_polygon(mesh, corners.data(), corners.size());
+      if (!polygons) {
+        append_polygon(mesh, corners.data(), corners.size());
+      } else {
+        polygons->face_sizes.push_back(std::uint32_t(corners.size()));
+        polygons->corners.insert(polygons->corners.end(), corners.begin(), corners.end());
+      }
     }
 }
 
-}  // namespace
-
-MeshData read_ply(std::string_view file) {
+MeshData parse(std::string_view file, PolygonMesh* polygons) {
   const Header header = read_header(file);
   Body body(file, header.size, header.text, header.swap);
   MeshData mesh;
@@ -229,7 +237,7 @@ MeshData read_ply(std::string_view file) {
       vertices = true;
     } else if (e.name == "face") {
       if (!vertices) throw Error("faces come before the vertices they refer to");
-      read_faces(e, body, mesh);
+      read_faces(e, body, mesh, polygons);
       faces = true;
     } else {
       for (std::uint64_t i = 0; i < e.count; ++i)
@@ -238,8 +246,22 @@ MeshData read_ply(std::string_view file) {
     if (vertices && faces) break;
   }
   if (!vertices) throw Error("it has no vertices");
-  if (mesh.triangles.empty()) throw Error("it has no faces");
+  if (polygons ? polygons->face_sizes.empty() : mesh.triangles.empty()) throw Error("it has no faces");
   return mesh;
+}
+
+}  // namespace
+
+MeshData read_ply(std::string_view file) { return parse(file, nullptr); }
+
+PolygonMesh read_ply_polygons(std::string_view file) {
+  PolygonMesh polygons;
+  MeshData mesh = parse(file, &polygons);
+  polygons.positions = std::move(mesh.positions);
+  polygons.uvs = std::move(mesh.uvs);
+  if (!polygons.uvs.empty()) polygons.uv_corners = polygons.corners;
+  polygons.attributes = std::move(mesh.attributes);
+  return polygons;
 }
 
 }  // namespace etendue

@@ -235,26 +235,55 @@ Transform AnimatedTransform::at(float time) const {
   return Transform(m);
 }
 
+// Between keys of one rotation every point moves in a straight line: both ends are all. Else the points of a box's corners
+// are sampled so often that the rotation turns by at most a twentieth of a radian in a step: a point in between is no
+// farther from the nearer sample than half the arc, of which the chord, a fiftieth longer, is a bound.
 Bounds3 AnimatedTransform::sweep(const Bounds3& box, float begin, float end) const {
   if (!animated()) return still()(box);
-  Bounds3 swept;
-  if (box.empty()) return swept;
-  const int steps = 64 * int(keys_.size() - 1);
-  float largest_step = 0;
-  Point3 before[8];
-  for (int s = 0; s <= steps; ++s) {
-    const Transform t = at(lerp(float(s) / float(steps), begin, end));
-    for (int c = 0; c < 8; ++c) {
-      const Point3 p = t(box.corner(c));
-      if (s > 0) largest_step = std::max(largest_step, distance(p, before[c]));
-      before[c] = p;
-      swept.add(p);
+  Bounds3 all;
+  if (box.empty()) return all;
+  std::vector<float> times{begin};
+  for (const Key& key : keys_)
+    if (key.time > begin && key.time < end) times.push_back(key.time);
+  if (end > begin) times.push_back(end);
+
+  const auto rotation = [this](size_t segment, float time) {
+    const float a = keys_[segment].time, b = keys_[segment + 1].time;
+    return slerp(clamp((time - a) / (b - a), 0, 1), parts_[segment].rotation, parts_[segment + 1].rotation);
+  };
+  all.add(at(begin)(box));
+  size_t segment = 0;
+  for (size_t i = 1; i < times.size(); ++i) {
+    const float from = times[i - 1], to = times[i];
+    while (segment + 2 < keys_.size() && keys_[segment + 1].time <= from) ++segment;
+    int steps = 1;
+    if (parts_[segment].rotation != parts_[segment + 1].rotation) {
+      const std::array<double, 4> a = rotation(segment, from), b = rotation(segment, to);
+      const double cosine = std::min(1.0, std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]));
+      steps = std::clamp(int(std::ceil(2 * std::acos(cosine) / 0.05)), 2, 128);
     }
+    Point3 before[8];
+    for (int c = 0; c < 8; ++c) before[c] = at(from)(box.corner(c));
+    float largest = 0;
+    Bounds3 part;
+    for (int s = 1; s <= steps; ++s) {
+      const Transform t = at(s == steps ? to : lerp(float(s) / float(steps), from, to));
+      for (int c = 0; c < 8; ++c) {
+        const Point3 p = t(box.corner(c));
+        largest = std::max(largest, distance(p, before[c]));
+        before[c] = p;
+        part.add(p);
+      }
+    }
+    const float margin = steps > 1 ? 0.51f * largest : 0;
+    part.low = part.low - Vector3{margin, margin, margin};
+    part.high = part.high + Vector3{margin, margin, margin};
+    all.add(part);
   }
-  const Vector3 margin{largest_step, largest_step, largest_step};
-  swept.low = swept.low - margin;
-  swept.high = swept.high + margin;
-  return swept;
+  const Vector3 rounding = rounding_bound(8) * (abs(all.low - Point3{}) + abs(all.high - Point3{}));
+  all.low = all.low - rounding;
+  all.high = all.high + rounding;
+  return all;
 }
 
 }  // namespace etendue

@@ -1,8 +1,27 @@
-// TriangleMesh: triangles from a file or a list.
+// TriangleMesh: triangles from a file or a list, which may change their shape.
+
+#include <filesystem>
+#include <map>
 
 #include "triangle_object.h"
+#include "triangle_test.h"
 
 namespace etendue {
+namespace {
+
+/// Normals of corners from the triangles around them, by area; corners that stand apart keep their edges sharp.
+void append_normals(std::span<const Point3> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
+                    std::vector<Normal3>& to) {
+  std::vector<Vector3> sums(positions.size());
+  for (const auto& t : triangles)
+    for (const std::uint32_t c : t) sums[c] += area_vector(positions[t[0]], positions[t[1]], positions[t[2]]);
+  for (const Vector3& n : sums) {
+    const float l = length(n);
+    to.push_back(l > 0 && l < infinity ? Normal3(n / l) : Normal3{});
+  }
+}
+
+}  // namespace
 
 class TriangleMesh final : public TriangleObject {
   FilePath file;
@@ -12,10 +31,16 @@ class TriangleMesh final : public TriangleObject {
   std::vector<Point2> uvs;
   std::vector<Vector3> colors;
   bool flat = false;
+  std::vector<float> times;
+  std::vector<FilePath> motion_files;
+  std::vector<Point3> motion_positions;
+  std::vector<Normal3> motion_normals;
 
  public:
   static void describe(Description<TriangleMesh>& d) {
-    d.summary("Triangles, from a file or written out.")
+    d.summary(
+         "Triangles, from a file or written out. Meshes from one file share it. A mesh that changes its shape has several "
+         "keys: at each of `times` the vertices are where one of them says, and between two they move in straight lines.")
         .member<&TriangleMesh::file>("file", "", "a PLY file (text or binary) or an OBJ file; none: the lists below",
                                      Effect::rebuild)
         .member<&TriangleMesh::positions>("positions", "m", "the vertices, when there is no file", Effect::rebuild)
@@ -29,39 +54,47 @@ class TriangleMesh final : public TriangleObject {
                                        "red, green and blue (linear, of sRGB) for each vertex, or none; for "
                                        "AttributeMap, as are those of a PLY file",
                                        Effect::rebuild)
-        .member<&TriangleMesh::flat>("flat", "", "ignores normals of vertices: the surface is shaded as it is",
-                                     Effect::rebuild);
+        .member<&TriangleMesh::flat>("flat", "", "ignores normals of vertices: the surface is shaded as it is", Effect::rebuild)
+        .member<&TriangleMesh::times>("times", "s", "of the keys, increasing: the first is that of `file` or `positions`",
+                                      Effect::rebuild)
+        .member<&TriangleMesh::motion_files>(
+            "motion_files", "", "for each later key a file with the same vertices in other places", Effect::rebuild)
+        .member<&TriangleMesh::motion_positions>(
+            "motion_positions", "m", "without files: the vertices at the second key, then those at the third, and so on",
+            Effect::rebuild)
+        .member<&TriangleMesh::motion_normals>(
+            "motion_normals", "1", "likewise the normals; none: found from the triangles, if the first key has normals",
+            Effect::rebuild);
   }
 
   void prepare() override {
-    MeshData mesh;
+    std::shared_ptr<const MeshData> mesh;
     if (!file.empty()) {
       if (!positions.empty() || !triangles.empty() || !normals.empty() || !uvs.empty() || !colors.empty())
         fail("file", "a mesh comes from a file or from lists, not from both");
-      try {
-        mesh = read_mesh(file.resolved());
-        drop_unusable(mesh, "'" + file.resolved() + "'");
-      } catch (const Error& error) {
-        fail("file", error.what());
-      }
+      mesh = from_file("file", file);
     } else {
-      mesh = listed();
+      MeshData own = listed();
+      make_shareable(own);
+      mesh = std::make_shared<const MeshData>(std::move(own));
     }
-    if (flat) mesh.normals = {};
+    MeshMotion motion = keyed(*mesh);
+    if (flat && !mesh->normals.empty()) {
+      auto bare = std::make_shared<MeshData>(*mesh);
+      bare->normals = {};
+      mesh = std::move(bare);
+      motion.normals = {};
+    }
     attributes_.clear();
-    for (VertexAttribute& a : mesh.attributes) attributes_.push_back({attribute_number(a.name), a.width, std::move(a.values)});
-    mesh.attributes.clear();
-    own_corners_.clear();
-    if (!attributes_.empty() && transform.animated()) own_corners_ = mesh.triangles;
-    adopt(std::move(mesh));
-    const std::optional<TriangleView> view = TriangleObject::triangles();
-    corners_ = view ? view->triangles : own_corners_;
+    for (const VertexAttribute& a : mesh->attributes)
+      attributes_.push_back({attribute_number(a.name), a.width, a.values.data()});
+    adopt(std::move(mesh), std::move(motion));
   }
 
   int attribute(int number, const SurfacePoint& p, float* values) const override {
     for (const Attribute& a : attributes_) {
       if (a.number != number) continue;
-      const auto& t = corners_[p.primitive];
+      const auto& t = corner_indices(p.primitive);
       const size_t width = size_t(a.width);
       const float *v0 = &a.values[t[0] * width], *v1 = &a.values[t[1] * width], *v2 = &a.values[t[2] * width];
       for (size_t i = 0; i < width; ++i) values[i] = (1 - p.u - p.v) * v0[i] + p.u * v1[i] + p.v * v2[i];
@@ -74,8 +107,102 @@ class TriangleMesh final : public TriangleObject {
   struct Attribute {
     int number;  // see attribute_number
     int width;
-    std::vector<float> values;
+    const float* values;  // of the mesh that was adopted
   };
+
+  /// What a file holds; as long as some mesh uses it, and the file is the same, it is read once.
+  std::shared_ptr<const MeshData> from_file(const char* member, const FilePath& path) const {
+    struct Known {
+      std::filesystem::file_time_type written;
+      std::uintmax_t size = 0;
+      std::weak_ptr<const MeshData> mesh;
+    };
+    static std::mutex mutex;
+    static auto* all = new std::map<std::string, Known>;
+    const std::string name = path.resolved();
+    std::error_code none;  // what is wrong with the file, reading it tells
+    const auto written = std::filesystem::last_write_time(name, none);
+    const auto size = std::filesystem::file_size(name, none);
+    const std::lock_guard lock(mutex);
+    std::erase_if(*all, [](const auto& entry) { return entry.second.mesh.expired(); });
+    if (const auto known = all->find(name);
+        known != all->end() && known->second.written == written && known->second.size == size)
+      if (auto mesh = known->second.mesh.lock()) return mesh;
+    try {
+      MeshData mesh = read_mesh(name);
+      drop_unusable(mesh, "'" + name + "'");
+      make_shareable(mesh);
+      auto made = std::make_shared<const MeshData>(std::move(mesh));
+      (*all)[name] = {written, size, made};
+      return made;
+    } catch (const Error& error) {
+      fail(member, error.what());
+    }
+  }
+
+  /// The positions and normals at all keys, of which the mesh has the first.
+  MeshMotion keyed(const MeshData& mesh) const {
+    MeshMotion motion;
+    const bool from_lists = !motion_positions.empty();
+    if (!from_lists && motion_files.empty()) {
+      if (!times.empty()) fail("times", "there are no later keys: motion_files or motion_positions");
+      if (!motion_normals.empty()) fail("motion_normals", "there are no motion_positions they belong to");
+      return motion;
+    }
+    if (from_lists && !motion_files.empty()) fail("motion_files", "later keys come from files or from lists, not from both");
+    const size_t n = mesh.positions.size() - 1;
+    if (motion_positions.size() % n != 0)
+      fail("motion_positions", std::to_string(motion_positions.size()) + " positions are no multiple of the mesh's " +
+                                   std::to_string(n) + " vertices");
+    const size_t later = from_lists ? motion_positions.size() / n : motion_files.size();
+    if (times.size() != later + 1)
+      fail("times", std::to_string(times.size()) + " times for " + std::to_string(later + 1) + " keys (the first is the mesh)");
+    for (size_t i = 1; i < times.size(); ++i)
+      if (!(times[i - 1] < times[i])) fail("times", "the times of keys must increase");
+    if (!motion_normals.empty() && motion_normals.size() != motion_positions.size())
+      fail("motion_normals",
+           std::to_string(motion_normals.size()) + " normals for " + std::to_string(motion_positions.size()) + " positions");
+
+    motion.times = times;
+    motion.positions.reserve(n * times.size() + 1);
+    motion.positions.assign(mesh.positions.begin(), mesh.positions.end() - 1);
+    motion.normals = mesh.normals;
+    bool normals_known = from_lists ? !motion_normals.empty() : true;
+    if (from_lists) {
+      motion.positions.insert(motion.positions.end(), motion_positions.begin(), motion_positions.end());
+      for (const Normal3& normal : motion_normals) {
+        const float l = length(Vector3(normal));
+        motion.normals.push_back(l > 0 && l < infinity ? Normal3(Vector3(normal) / l) : Normal3{});
+      }
+    }
+    for (const FilePath& path : motion_files) {
+      const std::shared_ptr<const MeshData> key = from_file("motion_files", path);
+      if (key->positions.size() != n + 1)
+        fail("motion_files", "'" + path.resolved() + "' has " + std::to_string(key->positions.size() - 1) +
+                                 " vertices, the first key " + std::to_string(n));
+      motion.positions.insert(motion.positions.end(), key->positions.begin(), key->positions.end() - 1);
+      motion.normals.insert(motion.normals.end(), key->normals.begin(), key->normals.end());
+      normals_known = normals_known && !key->normals.empty();
+    }
+    constexpr float largest = 1e18f;  // as of all meshes
+    for (const auto& t : mesh.triangles)
+      for (const std::uint32_t c : t)
+        for (size_t k = n; k < motion.positions.size(); k += n) {
+          const Point3& p = motion.positions[k + c];
+          if (!(std::abs(p.x) < largest && std::abs(p.y) < largest && std::abs(p.z) < largest))
+            fail(from_lists ? "motion_positions" : "motion_files",
+                 "vertex " + std::to_string(c) + " of key " + std::to_string(k / n + 1) + " is not finite");
+        }
+    if (mesh.normals.empty()) {
+      motion.normals = {};
+    } else if (!normals_known) {
+      motion.normals = {};
+      for (size_t k = 0; k < motion.positions.size(); k += n)
+        append_normals({&motion.positions[k], n}, mesh.triangles, motion.normals);
+    }
+    motion.positions.push_back({});
+    return motion;
+  }
 
   MeshData listed() const {
     const size_t n = positions.size();
@@ -116,8 +243,6 @@ class TriangleMesh final : public TriangleObject {
   }
 
   std::vector<Attribute> attributes_;
-  std::span<const std::array<std::uint32_t, 3>> corners_;  // of each triangle; of the attributes nothing is asked without
-  std::vector<std::array<std::uint32_t, 3>> own_corners_;  // of a moving mesh
 };
 
 static const Register<TriangleMesh> registered;

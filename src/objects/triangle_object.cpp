@@ -21,6 +21,11 @@ Vector3 unit_normal(const Vector3& n, float& inverse_length) {
   return l * m;
 }
 
+Normal3 unit_or_zero(const Normal3& n) {
+  const float l = length(Vector3(n));
+  return l > 0 && l < infinity ? Normal3(Vector3(n) / l) : Normal3{};
+}
+
 /// Up to this many triangles have their planes remembered: 1 MB, and a tenth of a path's time.
 constexpr size_t remembered_planes = 1 << 16;
 
@@ -32,51 +37,112 @@ constexpr size_t few = 8;
 TriangleObject::TriangleObject() = default;
 TriangleObject::~TriangleObject() = default;
 
+void TriangleObject::make_shareable(MeshData& mesh) {
+  for (Normal3& n : mesh.normals) n = unit_or_zero(n);
+  mesh.positions.push_back({});
+}
+
 void TriangleObject::adopt(MeshData mesh) {
-  mesh_ = std::move(mesh);
+  make_shareable(mesh);
+  adopt(std::make_shared<const MeshData>(std::move(mesh)));
+}
+
+void TriangleObject::adopt(std::shared_ptr<const MeshData> mesh, MeshMotion motion) {
+  data_ = std::move(mesh);
+  motion_ = std::move(motion);
+  changed_ = {};
   lazy_ = std::make_unique<Lazy>();
-  vertices_ = mesh_.positions.size();
-  if (!transform.animated() && !transform.still().identity()) {
-    const Transform& t = transform.still();
-    for (Point3& p : mesh_.positions) p = t(p);
-    for (Normal3& n : mesh_.normals) n = t(n);
-    if (t.flips())  // so that edges still turn around the front
-      for (auto& corner : mesh_.triangles) std::swap(corner[1], corner[2]);
+  vertices_ = data_->positions.size() - 1;
+  mesh_ = {data_->positions, data_->triangles, data_->normals, data_->uvs};
+  if (motion_.moves()) {
+    mesh_.positions = motion_.positions;
+    mesh_.normals = motion_.normals;
   }
-  for (Normal3& n : mesh_.normals) {
-    const float l = length(Vector3(n));
-    n = l > 0 && l < infinity ? Normal3(Vector3(n) / l) : Normal3{};
-  }
+  if (!transform.animated() && !transform.still().identity()) bake(transform.still());
   area_ = 0;
   stored_bounds_ = {};
-  for (const auto& t : mesh_.triangles) {
-    const Point3 &a = mesh_.positions[t[0]], &b = mesh_.positions[t[1]], &c = mesh_.positions[t[2]];
-    area_ += 0.5 * double(length(area_vector(a, b, c)));
-    stored_bounds_.add(a);
-    stored_bounds_.add(b);
-    stored_bounds_.add(c);
+  for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+    area_ += double(stored_area(std::uint32_t(i)));
+    for (size_t key = 0; key < std::max<size_t>(motion_.times.size(), 1); ++key)
+      for (const std::uint32_t c : mesh_.triangles[i]) stored_bounds_.add(mesh_.positions[key * vertices_ + c]);
   }
   planes_.clear();
-  if (!mesh_.triangles.empty() && mesh_.triangles.size() <= remembered_planes) {
+  if (!motion_.moves() && !mesh_.triangles.empty() && mesh_.triangles.size() <= remembered_planes) {
     for (const auto& t : mesh_.triangles) {
       const Point3& p = mesh_.positions[t[0]];
       planes_.push_back(plane_of(p, mesh_.positions[t[1]] - p, mesh_.positions[t[2]] - p));
     }
   }
-  mesh_.positions.push_back({});
   bounds_ = transform.animated() ? swept(transform, stored_bounds_) : stored_bounds_;
   // What will surely be asked for is made now, the rest when it is.
   light_tree_ = {};
   if (emission) {
     cumulative_areas();
-    if (!transform.animated() && mesh_.triangles.size() > few) build_light_tree();
+    if (!moves() && mesh_.triangles.size() > few) build_light_tree();
   }
   if (transform.animated() && mesh_.triangles.size() > few) accelerator();
 }
 
-TriangleObject::Corners TriangleObject::corners(std::uint32_t primitive, float time) const {
+void TriangleObject::bake(const Transform& t) {
+  // What is shared stays as it is; of a motion this is the only user.
+  std::vector<Point3>& positions = motion_.moves() ? motion_.positions : changed_.positions;
+  std::vector<Normal3>& normals = motion_.moves() ? motion_.normals : changed_.normals;
+  if (!motion_.moves()) {
+    positions.assign(mesh_.positions.begin(), mesh_.positions.end());
+    normals.assign(mesh_.normals.begin(), mesh_.normals.end());
+  }
+  for (Point3& p : positions) p = t(p);
+  for (Normal3& n : normals) n = unit_or_zero(t(n));
+  mesh_.positions = positions;
+  mesh_.normals = normals;
+  if (!t.flips()) return;
+  // So that edges still turn around the front.
+  changed_.triangles.assign(mesh_.triangles.begin(), mesh_.triangles.end());
+  for (auto& corner : changed_.triangles) std::swap(corner[1], corner[2]);
+  mesh_.triangles = changed_.triangles;
+}
+
+TriangleObject::Moment TriangleObject::moment(float time) const {
+  if (!motion_.moves()) [[likely]]
+    return {};
+  const std::vector<float>& times = motion_.times;
+  const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, time);
+  const size_t k = size_t(next - times.begin());
+  const float part = clamp((time - times[k - 1]) / (times[k] - times[k - 1]), 0, 1);
+  return {(k - 1) * vertices_, k * vertices_, part};
+}
+
+TriangleObject::Corners TriangleObject::stored_corners(std::uint32_t primitive, const Moment& m) const {
   const auto& t = mesh_.triangles[primitive];
-  Corners c{{mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]}};
+  if (!motion_.moves()) [[likely]]
+    return {{mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]}};
+  Corners c;
+  for (size_t i = 0; i < 3; ++i) c.p[i] = lerp(m.part, mesh_.positions[m.first + t[i]], mesh_.positions[m.second + t[i]]);
+  return c;
+}
+
+Vector3 TriangleObject::stored_normal(std::uint32_t corner, const Moment& m) const {
+  const Vector3 n(mesh_.normals[m.first + corner]);
+  return motion_.moves() ? (1 - m.part) * n + m.part * Vector3(mesh_.normals[m.second + corner]) : n;
+}
+
+// Who finds a hit takes the time as a fraction of the whole motion, rounded by two units in the last place of 1: of one step
+// between keys that is more the shorter it is.
+float TriangleObject::motion_error(std::uint32_t primitive, const Moment& m, const Normal3& n) const {
+  const std::vector<float>& times = motion_.times;
+  const size_t k = m.second / vertices_;
+  const float steps = (times.back() - times.front()) / (times[k] - times[k - 1]);
+  float furthest = 0, size = 0;
+  for (const std::uint32_t c : mesh_.triangles[primitive]) {
+    const Vector3 a = mesh_.positions[m.first + c] - Point3{}, b = mesh_.positions[m.second + c] - Point3{};
+    furthest = std::max(furthest, along(n, abs(b - a)));
+    size = std::max(size, along(n, abs(a) + abs(b)));
+  }
+  return 4 * rounding_bound(1) * steps * furthest + rounding_bound(4) * size;  // and what interpolation rounds
+}
+
+TriangleObject::Corners TriangleObject::corners(std::uint32_t primitive, float time) const {
+  Corners c = stored_corners(primitive, moment(time));
   if (transform.animated()) {
     const Transform moved = transform.at(time);
     for (Point3& p : c.p) p = moved(p);
@@ -85,8 +151,13 @@ TriangleObject::Corners TriangleObject::corners(std::uint32_t primitive, float t
   return c;
 }
 
+MovingTriangleView TriangleObject::moving_view() const { return {mesh_.positions, vertices_, mesh_.triangles, motion_.times}; }
+
 const EmbreeTriangles& TriangleObject::accelerator() const {
-  std::call_once(lazy_->accelerator_made, [this] { lazy_->accelerator = std::make_unique<EmbreeTriangles>(view()); });
+  std::call_once(lazy_->accelerator_made, [this] {
+    lazy_->accelerator =
+        motion_.moves() ? std::make_unique<EmbreeTriangles>(moving_view()) : std::make_unique<EmbreeTriangles>(view());
+  });
   return *lazy_->accelerator;
 }
 
@@ -99,10 +170,11 @@ bool TriangleObject::intersect(const Ray& ray, Hit& hit) const {
     any = accelerator().nearest(local, found.t, primitive, found.u, found.v);
   } else {
     Ray shortened = local;
+    const Moment now = moment(ray.time);
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
-      const auto& t = mesh_.triangles[i];
-      const Point3& a = mesh_.positions[t[0]];
-      const Vector3 e1 = mesh_.positions[t[1]] - a, e2 = mesh_.positions[t[2]] - a;
+      const Corners c = stored_corners(std::uint32_t(i), now);
+      const Point3& a = c.p[0];
+      const Vector3 e1 = c.p[1] - a, e2 = c.p[2] - a;
       TriangleHit h;
       if (!intersect_triangle(shortened, a, e1, e2, cross(e1, e2), h)) continue;
       found = h;
@@ -147,19 +219,22 @@ TriangleObject::Plane TriangleObject::plane_of(const Point3& p0, const Vector3& 
 
 void TriangleObject::fill(std::uint32_t primitive, float u, float v, float time, SurfacePoint& p) const {
   const auto& t = mesh_.triangles[primitive];
-  const Point3& p0 = mesh_.positions[t[0]];
-  const Vector3 e1 = mesh_.positions[t[1]] - p0, e2 = mesh_.positions[t[2]] - p0;
+  const Moment now = moment(time);
+  const Corners corners = stored_corners(primitive, now);
+  const Point3& p0 = corners.p[0];
+  const Vector3 e1 = corners.p[1] - p0, e2 = corners.p[2] - p0;
   const Plane plane = planes_.empty() ? plane_of(p0, e1, e2) : planes_[primitive];
   p.normal = plane.normal;
   p.error = plane.error;
+  if (motion_.moves()) p.error += motion_error(primitive, now, p.normal);
   p.position = p0 + (u * e1 + v * e2);
 
   const float w = 1 - u - v;
   if (mesh_.normals.empty()) {
     p.shading_normal = p.normal;
   } else {
-    const Normal3 &n0 = mesh_.normals[t[0]], &n1 = mesh_.normals[t[1]], &n2 = mesh_.normals[t[2]];
-    const Vector3 s = w * Vector3(n0) + u * Vector3(n1) + v * Vector3(n2);
+    const Vector3 n0 = stored_normal(t[0], now), n1 = stored_normal(t[1], now), n2 = stored_normal(t[2], now);
+    const Vector3 s = w * n0 + u * n1 + v * n2;
     const float ss = dot(s, s);
     const bool known = ss > 1e-12f && dot(n0, n0) > 0 && dot(n1, n1) > 0 && dot(n2, n2) > 0;
     p.shading_normal = known ? Normal3((1 / std::sqrt(ss)) * s) : p.normal;
@@ -194,8 +269,8 @@ void TriangleObject::surface_point(const Ray& ray, const Hit& hit, SurfacePoint&
 void TriangleObject::tangents(SurfacePoint& p) const {
   if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
   const auto& t = mesh_.triangles[p.primitive];
-  const Point3& p0 = mesh_.positions[t[0]];
-  Vector3 e1 = mesh_.positions[t[1]] - p0, e2 = mesh_.positions[t[2]] - p0;
+  const Corners corners = stored_corners(p.primitive, moment(p.time));
+  Vector3 e1 = corners.p[1] - corners.p[0], e2 = corners.p[2] - corners.p[0];
   if (transform.animated()) {
     const Transform moved = transform.at(p.time);
     e1 = moved(e1);
@@ -223,10 +298,14 @@ bool TriangleObject::closed() const {
   // told by position, not index: seams of texture coordinates are no holes.
   std::call_once(lazy_->closed_known, [this] {
     const auto corner = [this](std::uint32_t i) {
-      const Point3& p = mesh_.positions[i];
-      std::uint64_t h = std::bit_cast<std::uint32_t>(p.x + 0.0f);
-      h = mix_bits((h << 32 | std::bit_cast<std::uint32_t>(p.y + 0.0f)) + 0x9e3779b97f4a7c15ull);
-      return mix_bits(h ^ std::bit_cast<std::uint32_t>(p.z + 0.0f));
+      std::uint64_t h = 0;
+      for (size_t k = i; k + 1 < mesh_.positions.size(); k += vertices_) {  // at all keys
+        const Point3& p = mesh_.positions[k];
+        h = mix_bits(h ^ std::bit_cast<std::uint32_t>(p.x + 0.0f));
+        h = mix_bits((h << 32 | std::bit_cast<std::uint32_t>(p.y + 0.0f)) + 0x9e3779b97f4a7c15ull);
+        h = mix_bits(h ^ std::bit_cast<std::uint32_t>(p.z + 0.0f));
+      }
+      return h;
     };
     std::uint64_t sum = 0;
     for (const auto& t : mesh_.triangles) {
@@ -242,8 +321,13 @@ bool TriangleObject::closed() const {
 }
 
 std::optional<TriangleView> TriangleObject::triangles() const {
-  if (transform.animated()) return std::nullopt;
+  if (moves()) return std::nullopt;
   return view();
+}
+
+std::optional<MovingTriangleView> TriangleObject::moving_triangles() const {
+  if (!motion_.moves() || transform.animated()) return std::nullopt;
+  return moving_view();
 }
 
 }  // namespace etendue

@@ -12,9 +12,20 @@
 namespace etendue {
 
 class EmbreeTriangles;
+struct MovingTriangleView;
+
+/// Where the corners of triangles are at several times. Between these they move in straight lines; before the first and
+/// after the last they rest.
+struct MeshMotion {
+  std::vector<float> times;       ///< [s], increasing; two at least, or none: nothing moves
+  std::vector<Point3> positions;  ///< of all corners at the first time, then at the second, and so on; then one more
+  std::vector<Normal3> normals;   ///< likewise (without the one more), unit or zero; or none
+  bool moves() const { return !times.empty(); }
+};
 
 /// A still object keeps its triangles in the coordinates of the containing scene, so that nothing is transformed while
-/// rendering; a moving one in its own. Barycentric coordinates u and v of a hit belong to a triangle's second and third
+/// rendering; one whose transform moves in its own. Triangles that change their shape are where they are at the time that
+/// is asked about. Barycentric coordinates u and v of a hit belong to a triangle's second and third
 /// corner.
 class TriangleObject : public SceneObject {
  public:
@@ -34,20 +45,43 @@ class TriangleObject : public SceneObject {
   NormalCone normals() const override;
   bool closed() const override;
   std::optional<TriangleView> triangles() const override;
+  /// The triangles when they change their shape and nothing else moves.
+  std::optional<MovingTriangleView> moving_triangles() const;
 
  protected:
   /// Takes triangles in the object's coordinates; to be called by prepare.
   void adopt(MeshData);
+  /// The same, shared with other objects: normals are unit vectors or zero, and the positions have one more at the end, which
+  /// Embree asks for. With a motion, positions and normals are those of the motion.
+  void adopt(std::shared_ptr<const MeshData>, MeshMotion = {});
+  static void make_shareable(MeshData&);
+  /// The corners of a triangle among those that were adopted, in the order in which u and v mean them.
+  const std::array<std::uint32_t, 3>& corner_indices(std::uint32_t primitive) const { return mesh_.triangles[primitive]; }
 
  private:
+  /// Replaces what was adopted by what a still transform makes of it.
+  void bake(const Transform&);
+
   struct Corners {
     Point3 p[3];
   };
+  /// Whether anything changes with time.
+  bool moves() const { return transform.animated() || motion_.moves(); }
+  /// Two keys and how far it is from one to the other.
+  struct Moment {
+    size_t first = 0, second = 0;  // of the corners of each, among all positions
+    float part = 0;
+  };
+  Moment moment(float time) const;
+  Corners stored_corners(std::uint32_t primitive, const Moment&) const;
+  Vector3 stored_normal(std::uint32_t corner, const Moment&) const;
+  float motion_error(std::uint32_t primitive, const Moment&, const Normal3&) const;
   /// A triangle's corners in the coordinates of the containing scene.
   Corners corners(std::uint32_t primitive, float time) const;
   void fill(std::uint32_t primitive, float u, float v, float time, SurfacePoint&) const;
   /// Chooses a triangle by its area in the stored coordinates; `x` becomes a fresh number in [0, 1).
   std::uint32_t choose(float& x, float other) const;
+  /// Of a motion the mean over its keys.
   float stored_area(std::uint32_t primitive) const;
   /// The same as seen from a point, by the tree when there is one.
   std::uint32_t choose_visible(const Point3& from, Point2& u, float& chance) const;
@@ -55,7 +89,8 @@ class TriangleObject : public SceneObject {
   void build_light_tree();
   const std::vector<double>& cumulative_areas() const;
   const EmbreeTriangles& accelerator() const;
-  TriangleView view() const { return {{mesh_.positions.data(), vertices_}, mesh_.triangles}; }
+  TriangleView view() const { return {mesh_.positions.first(vertices_), mesh_.triangles}; }
+  MovingTriangleView moving_view() const;
 
   struct Plane {
     Normal3 normal;
@@ -64,10 +99,18 @@ class TriangleObject : public SceneObject {
   static Plane plane_of(const Point3&, const Vector3& e1, const Vector3& e2);
 
   std::vector<Plane> planes_;  // in the stored coordinates; none for large meshes
-  MeshData mesh_;              // its positions have one more at the end: padding, which Embree asks for
+  struct {
+    std::span<const Point3> positions;  // one more at the end; of a motion those of all keys
+    std::span<const std::array<std::uint32_t, 3>> triangles;
+    std::span<const Normal3> normals;
+    std::span<const Point2> uvs;
+  } mesh_;
+  std::shared_ptr<const MeshData> data_;  // as they were adopted
+  MeshData changed_;                      // what a still transform made of them
+  MeshMotion motion_;
   size_t vertices_ = 0;
   LightTree light_tree_;  // of a still luminaire of many triangles
-  double area_ = 0;       // in the stored coordinates [m^2]
+  double area_ = 0;       // the sum of stored_area [m^2]
   Bounds3 bounds_, stored_bounds_;
 
   // Made when first asked for: few objects need them.

@@ -9,20 +9,28 @@
 namespace etendue {
 
 float TriangleObject::area(float time) const {
-  if (!transform.animated()) return float(area_);
+  if (!moves()) return float(area_);
   const Transform moved = transform.at(time);
-  if (const float s = similarity_scale(moved); s > 0) return float(area_) * s * s;
+  if (const float s = similarity_scale(moved); s > 0 && !motion_.moves()) return float(area_) * s * s;
+  const Moment now = moment(time);
   double sum = 0;
-  for (const auto& t : mesh_.triangles)
-    sum +=
-        0.5 *
-        double(length(area_vector(moved(mesh_.positions[t[0]]), moved(mesh_.positions[t[1]]), moved(mesh_.positions[t[2]]))));
+  for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+    const Corners c = stored_corners(std::uint32_t(i), now);
+    sum += 0.5 * double(transform.animated() ? length(area_vector(moved(c.p[0]), moved(c.p[1]), moved(c.p[2])))
+                                             : length(area_vector(c.p[0], c.p[1], c.p[2])));
+  }
   return float(sum);
 }
 
 float TriangleObject::stored_area(std::uint32_t primitive) const {
   const auto& t = mesh_.triangles[primitive];
-  return 0.5f * length(area_vector(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]));
+  if (!motion_.moves()) return 0.5f * length(area_vector(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]));
+  float sum = 0;
+  for (size_t key = 0; key < motion_.times.size(); ++key) {
+    const Point3* p = &mesh_.positions[key * vertices_];
+    sum += 0.5f * length(area_vector(p[t[0]], p[t[1]], p[t[2]]));
+  }
+  return sum / float(motion_.times.size());
 }
 
 const std::vector<double>& TriangleObject::cumulative_areas() const {
@@ -64,11 +72,12 @@ SurfaceSample TriangleObject::sample_area(Point2 u, float time) const {
   const Point2 b = warp::triangle(u);
   fill(primitive, b.x, b.y, time, s.point);
   s.density = area_density(s.point);
+  if (!(s.density < infinity)) s.density = 0;  // a triangle that has no area at this time
   return s;
 }
 
 float TriangleObject::area_density(const SurfacePoint& p) const {
-  if (!transform.animated()) return float(1 / area_);
+  if (!moves()) return float(1 / area_);
   const Corners c = corners(p.primitive, p.time);
   return float(stored_area(p.primitive) / area_) / (0.5f * length(area_vector(c.p[0], c.p[1], c.p[2])));
 }
@@ -85,7 +94,7 @@ bool near(const Point3& from, const Point3 (&p)[3], float area) {
 }  // namespace
 
 NormalCone TriangleObject::normals() const {
-  if (transform.animated()) return {};
+  if (moves()) return {};
   Vector3 sum{};
   const auto area_normal = [this](const auto& t) {
     return area_vector(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]);
@@ -162,7 +171,7 @@ SurfaceSample TriangleObject::sample_visible(const Point3& from, Point2 u, float
   }
   const Point2 b = warp::triangle(u);
   fill(primitive, b.x, b.y, time, s.point);
-  complete_by_area(s, from, chance / area);
+  complete_by_area(s, from, area > 0 ? chance / area : 0);
   return s;
 }
 

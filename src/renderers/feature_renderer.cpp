@@ -125,7 +125,7 @@ class FeatureRenderer final : public Renderer {
   void number(const Scene& scene) {
     for (const Ref<SceneObject>& object : scene.objects) {
       objects_.emplace_back(object.get(), objects_.size() + 1);
-      if (const auto* inner = dynamic_cast<const Scene*>(object.get())) number(*inner);
+      if (const auto* inner = scene_within(*object)) number(*inner);
     }
   }
 

@@ -47,9 +47,47 @@ unsigned attach_triangles(RTCScene scene, const TriangleView& view, RTCBuildQual
   return id;
 }
 
+// Embree's keys are evenly spaced in time. Where these are not, each step between two is a geometry of its own, which is
+// there in that time only.
+void attach_moving_triangles(RTCScene scene, const MovingTriangleView& view, RTCBuildQuality quality,
+                             const std::function<void(unsigned)>& attached) {
+  const size_t steps = view.times.size() - 1;
+  const EmbreeClock clock{view.times.front(), view.times.back()};
+  bool even = steps < RTC_MAX_TIME_STEP_COUNT;
+  for (size_t i = 1; i < steps; ++i)
+    even = even && std::abs(clock(view.times[i]) - float(i) / float(steps)) <= 2 * std::numeric_limits<float>::epsilon();
+  const size_t span = even ? steps : 1;  // steps of one geometry
+  for (size_t first = 0; first < steps; first += span) {
+    RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryBuildQuality(geometry, quality);
+    rtcSetGeometryTimeStepCount(geometry, unsigned(span + 1));
+    if (!even) rtcSetGeometryTimeRange(geometry, clock(view.times[first]), clock(view.times[first + 1]));
+    for (size_t k = 0; k <= span; ++k)
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, unsigned(k), RTC_FORMAT_FLOAT3,
+                                 view.positions.data() + (first + k) * view.vertices, 0, sizeof(Point3), view.vertices);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, view.triangles.data(), 0,
+                               3 * sizeof(std::uint32_t), view.triangles.size());
+    rtcCommitGeometry(geometry);
+    attached(rtcAttachGeometry(scene, geometry));
+    rtcReleaseGeometry(geometry);  // the scene holds it
+  }
+  check_embree("taking in moving triangles");
+}
+
 EmbreeTriangles::EmbreeTriangles(const TriangleView& view) : scene_(rtcNewScene(embree_device())) {
   check_embree("making a scene");
   attach_triangles(scene_.get(), view, RTC_BUILD_QUALITY_MEDIUM);
+  commit();
+}
+
+EmbreeTriangles::EmbreeTriangles(const MovingTriangleView& view)
+    : scene_(rtcNewScene(embree_device())), clock_{view.times.front(), view.times.back()} {
+  check_embree("making a scene");
+  attach_moving_triangles(scene_.get(), view, RTC_BUILD_QUALITY_MEDIUM, [](unsigned) {});
+  commit();
+}
+
+void EmbreeTriangles::commit() {
   // Isolated: a thread that waits here within a parallel loop must not take up another part of that loop.
   tbb::this_task_arena::isolate([this] { rtcCommitScene(scene_.get()); });
   check_embree("building over triangles");
@@ -59,7 +97,7 @@ bool EmbreeTriangles::nearest(const Ray& ray, float& t, std::uint32_t& triangle,
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query;
-  set_embree_ray(query.ray, ray);
+  set_embree_ray(query.ray, ray, clock_);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene_.get(), &context, &query);
@@ -75,7 +113,7 @@ bool EmbreeTriangles::any(const Ray& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay query;
-  set_embree_ray(query, ray);
+  set_embree_ray(query, ray, clock_);
   rtcOccluded1(scene_.get(), &context, &query);
   return query.tfar < 0;
 }

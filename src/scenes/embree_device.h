@@ -3,6 +3,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <functional>
 #include <utility>
 
 #include "etendue/scene_object.h"
@@ -37,7 +38,29 @@ class EmbreeSceneHandle {
 /// position, and sixteen are read at the last: what owns them keeps one more.
 unsigned attach_triangles(RTCScene, const TriangleView&, RTCBuildQuality);
 
-inline void set_embree_ray(RTCRay& to, const Ray& ray) {
+/// Triangles whose corners move in straight lines between the times of keys, and rest before the first and after the last.
+/// The positions of all corners at the first key come first, then those at the second; sixteen bytes are read at the last.
+struct MovingTriangleView {
+  std::span<const Point3> positions;
+  size_t vertices = 0;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+  std::span<const float> times;  ///< [s], increasing; two at least
+};
+
+/// Embree's time runs from 0 to 1: how it follows from the true one.
+struct EmbreeClock {
+  float begin = 0, end = 0;  ///< [s]; equal: nothing moves
+  float operator()(float time) const { return end > begin ? clamp((time - begin) / (end - begin), 0, 1) : 0; }
+  bool operator==(const EmbreeClock&) const = default;
+  bool runs() const { return end > begin; }
+};
+
+/// The same for moving ones, whose first and last keys are where the clock begins and ends: `attached` is told the numbers
+/// of all geometries that were made.
+void attach_moving_triangles(RTCScene, const MovingTriangleView&, RTCBuildQuality,
+                             const std::function<void(unsigned)>& attached);
+
+inline void set_embree_ray(RTCRay& to, const Ray& ray, const EmbreeClock& clock = {}) {
   to.org_x = ray.origin.x;
   to.org_y = ray.origin.y;
   to.org_z = ray.origin.z;
@@ -45,7 +68,7 @@ inline void set_embree_ray(RTCRay& to, const Ray& ray) {
   to.dir_x = ray.direction.x;
   to.dir_y = ray.direction.y;
   to.dir_z = ray.direction.z;
-  to.time = 0;
+  to.time = clock(ray.time);
   to.tfar = ray.maximum;
   to.mask = ~0u;
   to.id = 0;
@@ -56,11 +79,15 @@ inline void set_embree_ray(RTCRay& to, const Ray& ray) {
 class EmbreeTriangles {
  public:
   explicit EmbreeTriangles(const TriangleView&);
+  explicit EmbreeTriangles(const MovingTriangleView&);
   bool nearest(const Ray&, float& t, std::uint32_t& triangle, float& u, float& v) const;
   bool any(const Ray&) const;
 
  private:
+  void commit();
+
   EmbreeSceneHandle scene_;
+  EmbreeClock clock_;
 };
 
 }  // namespace etendue

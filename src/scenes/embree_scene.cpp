@@ -1,9 +1,13 @@
 // EmbreeScene: a bounding volume hierarchy by Embree (Wald et al. 2014, "Embree: a kernel framework for efficient CPU
-// ray tracing"). Triangles are Embree's own, everything else comes in as user geometry.
+// ray tracing"). Triangles are Embree's own, those of meshes that change their shape too, and so are nested scenes and
+// instances that stand still. Everything else comes in as user geometry: what moves as a whole as well, for Embree
+// interpolates transforms in single precision, between evenly spaced keys and by another decomposition than
+// AnimatedTransform, and rays would miss where points were found.
 
 #include "embree_device.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
+#include "objects/triangle_object.h"
 
 namespace etendue {
 
@@ -28,35 +32,31 @@ class EmbreeScene final : public Scene {
     Context context{{}, &ray, &hit, nullptr};
     rtcInitIntersectContext(&context.embree);
     RTCRayHit query;
-    set_embree_ray(query.ray, ray);
+    set_embree_ray(query.ray, ray, clock_);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_.get(), &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    const Geometry& geometry = geometries_[query.hit.geomID];
-    if (!geometry.triangles) return true;  // the object filled the hit
-    fill(hit, *geometry.object, query.ray.tfar, query.hit.primID, query.hit.u, query.hit.v);
+    complete(query.hit, query.ray.tfar, hit);
     return true;
   }
 
   // Hits are noted as Embree finds them, and denied, so that it goes on.
   void all(const Ray& ray, HitList& list) const override {
-    if (!has_interiors()) return Scene::all(ray, list);  // built without filters
     struct Collector : Context {
       const EmbreeScene* scene;
-    } context{{{}, &ray, nullptr, &list}, this};
+    } context{{{}, &ray, nullptr, &list, this}, this};
     rtcInitIntersectContext(&context.embree);
     context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
       const Collector& c = *reinterpret_cast<const Collector*>(arguments->context);
-      const RTCHit& found = *reinterpret_cast<const RTCHit*>(arguments->hit);
       Hit hit;
-      fill(hit, *c.scene->geometries_[found.geomID].object, reinterpret_cast<const RTCRay*>(arguments->ray)->tfar, found.primID,
-           found.u, found.v);
+      c.scene->complete(*reinterpret_cast<const RTCHit*>(arguments->hit), reinterpret_cast<const RTCRay*>(arguments->ray)->tfar,
+                        hit);
       c.list->add(hit);
       arguments->valid[0] = 0;
     };
     RTCRayHit query;
-    set_embree_ray(query.ray, ray);
+    set_embree_ray(query.ray, ray, clock_);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_.get(), &context.embree, &query);
@@ -66,7 +66,7 @@ class EmbreeScene final : public Scene {
     Context context{{}, &ray, nullptr, nullptr};
     rtcInitIntersectContext(&context.embree);
     RTCRay query;
-    set_embree_ray(query, ray);
+    set_embree_ray(query, ray, clock_);
     rtcOccluded1(scene_.get(), &context.embree, &query);
     return query.tfar < 0;
   }
@@ -82,23 +82,32 @@ class EmbreeScene final : public Scene {
     int flags = RTC_SCENE_FLAG_NONE;
     if (robust) flags |= RTC_SCENE_FLAG_ROBUST;
     if (compact) flags |= RTC_SCENE_FLAG_COMPACT;
-    if (has_interiors()) flags |= RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;  // for `all`, which only asks about interiors
+    flags |= RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;  // for `all`; costs nothing that could be measured
     rtcSetSceneFlags(scene_.get(), RTCSceneFlags(flags));
-    geometries_.assign(finite.size(), {});
+    geometries_.clear();
+    others_.clear();
+    levels_ = 0;
+    clock_ = {};
     for (const SceneObject* object : finite) {
-      const std::optional<TriangleView> view = object->triangles();
-      const unsigned id = view ? attach_triangles(scene_.get(), *view, effort) : attach_object(object);
-      if (id >= geometries_.size()) geometries_.resize(id + 1);
-      geometries_[id] = {object, view.has_value()};
+      if (const std::optional<TriangleView> view = object->triangles())
+        note(attach_triangles(scene_.get(), *view, effort), {object, nullptr});
+      else if (const std::optional<MovingTriangleView> moving = moving_triangles(*object))
+        attach_moving_triangles(scene_.get(), *moving, effort, [&](unsigned id) { note(id, {object, nullptr}); });
+      else if (const EmbreeScene* inner = instanced(*object))
+        note(attach_instance(*inner, object->transform.still()), {object, inner});
+      else
+        others_.push_back(object);
     }
+    if (!others_.empty()) note(attach_others(), {});
     rtcCommitScene(scene_.get());
     check_embree("building the scene");
   }
 
  private:
+  /// Triangles of an object, or another scene within an object; neither: all others.
   struct Geometry {
     const SceneObject* object = nullptr;
-    bool triangles = false;
+    const EmbreeScene* inner = nullptr;
   };
 
   /// What callbacks need: Embree hands its address back to them.
@@ -106,34 +115,113 @@ class EmbreeScene final : public Scene {
     RTCIntersectContext embree;
     const Ray* ray;
     Hit* hit;
-    HitList* list;  ///< where to note all hits instead
+    HitList* list;                       ///< where to note all hits instead
+    const EmbreeScene* outer = nullptr;  ///< needed for that
   };
 
-  static void fill(Hit& hit, const SceneObject& object, float distance, std::uint32_t primitive, float u, float v) {
-    hit.distance = distance;
-    hit.object = &object;
-    hit.primitive = primitive;
-    hit.u = u;
-    hit.v = v;
-    hit.depth = 0;
+  void note(unsigned id, const Geometry& geometry) {
+    if (id >= geometries_.size()) geometries_.resize(std::max<size_t>(id + 1, geometries_.size() * 3 / 2));
+    geometries_[id] = geometry;
   }
 
-  unsigned attach_object(const SceneObject* object) {
+  /// Fills a hit of triangles (those of user geometry were filled when they were found), and adds the way out.
+  void complete(const RTCHit& found, float distance, Hit& hit) const {
+    const unsigned instance = found.instID[0];
+    const EmbreeScene& owner = instance == RTC_INVALID_GEOMETRY_ID ? *this : *geometries_[instance].inner;
+    if (const SceneObject* object = owner.geometries_[found.geomID].object) {
+      hit.distance = distance;
+      hit.object = object;
+      hit.primitive = found.primID;
+      hit.u = found.u;
+      hit.v = found.v;
+      hit.depth = 0;
+    }
+    note_way_out(instance, hit);
+  }
+
+  void note_way_out(unsigned instance, Hit& hit) const {
+    if (instance == RTC_INVALID_GEOMETRY_ID) return;
+    const SceneObject* object = geometries_[instance].object;
+    // The object is the inner scene itself, or an instance of it.
+    if (object == geometries_[instance].inner)
+      hit.scenes[hit.depth++] = object;
+    else
+      static_cast<const Instance*>(object)->note_way_out(hit);
+  }
+
+  /// The triangles of a mesh that changes its shape by this scene's clock, which the first such mesh sets.
+  std::optional<MovingTriangleView> moving_triangles(const SceneObject& object) {
+    const auto* mesh = dynamic_cast<const TriangleObject*>(&object);
+    std::optional<MovingTriangleView> view = mesh ? mesh->moving_triangles() : std::nullopt;
+    if (view && !keeps_time({view->times.front(), view->times.back()})) return std::nullopt;
+    return view;
+  }
+
+  bool keeps_time(const EmbreeClock& clock) {
+    if (!clock_.runs()) clock_ = clock;
+    return !clock.runs() || clock == clock_;
+  }
+
+  /// The scene in an object if Embree can go into it on its own: it does so once, and only into what stands still.
+  const EmbreeScene* instanced(const SceneObject& object) {
+    const auto* inner = dynamic_cast<const EmbreeScene*>(scene_within(object));
+    if (!inner || inner->levels_ >= RTC_MAX_INSTANCE_LEVEL_COUNT || object.transform.animated()) return nullptr;
+    if (!inverted_well(object.transform.still(), object.bounds()) || !keeps_time(inner->clock_)) return nullptr;
+    levels_ = std::max(levels_, 1 + inner->levels_);
+    return inner;
+  }
+
+  /// Whether the inverse in single precision is as good as Scene::locate_nested trusts it to be: seen from outside, it
+  /// moves points of the box by no more than rounding their coordinates four times does.
+  static bool inverted_well(const Transform& placement, const Bounds3& box) {
+    // As Embree does: cofactors over the determinant, then the translation.
+    const auto& m = placement.matrix();
+    const Vector3 x{m[0], m[4], m[8]}, y{m[1], m[5], m[9]}, z{m[2], m[6], m[10]};
+    const float scale = 1 / dot(x, cross(y, z));
+    const Vector3 rows[3] = {scale * cross(y, z), scale * cross(z, x), scale * cross(x, y)};
+    const Vector3 translation{m[3], m[7], m[11]};
+    for (int corner = 0; corner < 8; ++corner) {
+      const Point3 p = box.corner(corner);
+      const Vector3 v = p - Point3{}, true_one = placement.back(p) - Point3{};
+      Vector3 off;
+      for (int k = 0; k < 3; ++k) off[k] = dot(rows[k], v) - dot(rows[k], translation) - true_one[k];
+      if (!(length(placement(off)) <= rounding_bound(4) * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z)))) return false;
+    }
+    return true;
+  }
+
+  unsigned attach_instance(const EmbreeScene& inner, const Transform& placement) {
+    RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, inner.scene_.get());
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, placement.matrix().data());
+    rtcCommitGeometry(geometry);
+    const unsigned id = rtcAttachGeometry(scene_.get(), geometry);
+    rtcReleaseGeometry(geometry);  // the scene holds it
+    check_embree("taking in a scene");
+    return id;
+  }
+
+  /// All objects that are not Embree's own, as the primitives of one geometry.
+  unsigned attach_others() {
     RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, 1);
-    rtcSetGeometryUserData(geometry, const_cast<SceneObject*>(object));
+    rtcSetGeometryUserPrimitiveCount(geometry, unsigned(others_.size()));
+    rtcSetGeometryUserData(geometry, this);
     rtcSetGeometryBoundsFunction(geometry, bounds_of, nullptr);
     rtcSetGeometryIntersectFunction(geometry, intersect_object);
     rtcSetGeometryOccludedFunction(geometry, occluded_by_object);
     rtcCommitGeometry(geometry);
     const unsigned id = rtcAttachGeometry(scene_.get(), geometry);
     rtcReleaseGeometry(geometry);  // the scene holds it
-    check_embree("taking in an object");
+    check_embree("taking in objects");
     return id;
   }
 
+  static const SceneObject& object_of(void* scene, unsigned primitive) {
+    return *static_cast<const EmbreeScene*>(scene)->others_[primitive];
+  }
+
   static void bounds_of(const RTCBoundsFunctionArguments* arguments) {
-    const Bounds3 box = static_cast<const SceneObject*>(arguments->geometryUserPtr)->bounds();
+    const Bounds3 box = object_of(arguments->geometryUserPtr, arguments->primID).bounds();
     // A little wider: Embree's test of a flat box must not miss what lies exactly in its plane.
     const auto margin = [](float low, float high) { return 1e-6f * std::max(std::abs(low), std::abs(high)) + 1e-30f; };
     const Vector3 m{margin(box.low.x, box.high.x), margin(box.low.y, box.high.y), margin(box.low.z, box.high.z)};
@@ -146,28 +234,49 @@ class EmbreeScene final : public Scene {
     b.upper_z = box.high.z + m.z;
   }
 
+  /// The ray a callback is asked about; within an instance Embree has taken it there.
+  static Ray ray_of(const Context& context, const RTCRay& query) {
+    Ray ray = *context.ray;
+    ray.maximum = query.tfar;
+    if (context.embree.instID[0] != RTC_INVALID_GEOMETRY_ID) {
+      ray.origin = {query.org_x, query.org_y, query.org_z};
+      ray.direction = {query.dir_x, query.dir_y, query.dir_z};
+    }
+    return ray;
+  }
+
   static void intersect_object(const RTCIntersectFunctionNArguments* arguments) {
     if (!arguments->valid[0]) return;
     RTCRayHit& query = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
     const Context& context = *reinterpret_cast<const Context*>(arguments->context);
-    Ray ray = *context.ray;
-    ray.maximum = query.ray.tfar;
-    if (context.list) return static_cast<const SceneObject*>(arguments->geometryUserPtr)->all_hits(ray, *context.list);
-    if (!static_cast<const SceneObject*>(arguments->geometryUserPtr)->intersect(ray, *context.hit)) return;
+    const SceneObject& object = object_of(arguments->geometryUserPtr, arguments->primID);
+    const Ray ray = ray_of(context, query.ray);
+    const unsigned instance = context.embree.instID[0];
+    if (context.list) {
+      const int before = context.list->size;
+      object.all_hits(ray, *context.list);
+      for (int i = before; i < context.list->size; ++i) context.outer->note_way_out(instance, context.list->hits[i]);
+      return;
+    }
+    if (!object.intersect(ray, *context.hit)) return;
     query.ray.tfar = context.hit->distance;
     query.hit.geomID = arguments->geomID;
-    query.hit.primID = 0;
+    query.hit.primID = arguments->primID;
+    query.hit.instID[0] = instance;
   }
 
   static void occluded_by_object(const RTCOccludedFunctionNArguments* arguments) {
     if (!arguments->valid[0]) return;
     RTCRay& query = *reinterpret_cast<RTCRay*>(arguments->ray);
     const Context& context = *reinterpret_cast<const Context*>(arguments->context);
-    if (static_cast<const SceneObject*>(arguments->geometryUserPtr)->occludes(*context.ray)) query.tfar = -infinity;
+    if (object_of(arguments->geometryUserPtr, arguments->primID).occludes(ray_of(context, query))) query.tfar = -infinity;
   }
 
   EmbreeSceneHandle scene_;
-  std::vector<Geometry> geometries_;  // by Embree's number
+  std::vector<Geometry> geometries_;        // by Embree's number
+  std::vector<const SceneObject*> others_;  // by Embree's number within the geometry that has no object
+  int levels_ = 0;                          // of instances, as Embree counts them
+  EmbreeClock clock_;
 };
 
 static const Register<EmbreeScene> registered;

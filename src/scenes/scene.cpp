@@ -2,6 +2,7 @@
 
 #include "etendue/scene.h"
 
+#include <atomic>
 #include <unordered_set>
 
 #include "etendue/shader.h"
@@ -10,28 +11,26 @@
 namespace etendue {
 namespace {
 
-const Scene* as_scene(const SceneObject* object) { return dynamic_cast<const Scene*>(object); }
-
-/// How many scenes lie in one another, this one not counted.
-int nesting(const Scene& scene) {
-  int deepest = 0;
-  for (const Ref<SceneObject>& object : scene.objects)
-    if (const Scene* inner = as_scene(object.get())) deepest = std::max(deepest, 1 + nesting(*inner));
-  return deepest;
-}
-
-/// Calls for every object in nested scenes, at any depth, but not for the scene's own.
+/// Calls for every object of the scenes within a scene, at any depth, once each.
 template <class F>
-void for_nested(const Scene& scene, bool own, const F& call) {
-  for (const Ref<SceneObject>& object : scene.objects) {
-    if (const Scene* inner = as_scene(object.get()))
-      for_nested(*inner, true, call);
-    else if (own)
-      call(*object);
-  }
+void for_nested(const Scene& scene, std::unordered_set<const Scene*>& seen, const F& call) {
+  for (const Ref<SceneObject>& object : scene.objects)
+    if (const Scene* inner = scene_within(*object); inner && seen.insert(inner).second) {
+      for (const Ref<SceneObject>& own : inner->objects)
+        if (!scene_within(*own)) call(*own);
+      for_nested(*inner, seen, call);
+    }
 }
+
+/// More boxes than this are searched by a tree.
+constexpr size_t few_interiors = 16;
 
 }  // namespace
+
+const Scene* scene_within(const SceneObject& object) {
+  if (const auto* instance = dynamic_cast<const Instance*>(&object)) return instance->scene.get();
+  return dynamic_cast<const Scene*>(&object);
+}
 
 void Scene::describe(Description<Scene>& d) {
   d.summary(
@@ -45,12 +44,20 @@ void Scene::prepare() {
   luminaires_.clear();
   infinite_.clear();
   interiors_.clear();
+  interior_tree_.clear();
   bounds_ = {};
+  nesting_ = 0;
+  static std::atomic<std::uint64_t> versions{0};
+  version_ = ++versions;
   has_interiors_ = has_null_surfaces_ = unbounded_ = false;
   const auto note_interior = [&](const SceneObject& object) {
-    if (!object.shader) return;
-    if (object.shader->possible_lobes() & pass_through) has_null_surfaces_ = true;
-    if (!object.shader->transmits()) return;
+    const bool null_surfaces = object.shader && object.shader->possible_lobes() & pass_through;
+    const bool enterable = object.shader && object.shader->transmits();
+    const Scene* inner = scene_within(object);
+    // An instance's shader replaces all those inside.
+    const bool asks_inside = inner && (inner == &object || !object.shader);
+    has_null_surfaces_ |= asks_inside ? inner->has_null_surfaces_ : null_surfaces;
+    if (!(asks_inside ? inner->has_interiors_ : enterable)) return;
     has_interiors_ = true;
     interiors_.push_back(object.bounds());
   };
@@ -61,16 +68,18 @@ void Scene::prepare() {
     if (!seen.insert(objects[i].get()).second) {
       const std::string name = objects[i]->origin ? objects[i]->origin->name : "";
       fail("objects", (name.empty() ? "object " + std::to_string(i + 1) : "'" + name + "'") +
-                          " stands twice in the same scene; put it into scenes of its own, with their own transforms");
+                          " stands twice in the same scene; put it into a scene, and that into an Instance for each place");
     }
     if (!objects[i]->transform.valid())
       objects[i]->fail("transform", "the transform is singular, or mirrors at some of its times only");
+    if (const Scene* inner = scene_within(*objects[i])) nesting_ = std::max(nesting_, 1 + inner->nesting_);
   }
-  if (nesting(*this) > Hit::deepest_nesting)
+  if (nesting_ > Hit::deepest_nesting)
     fail("objects", "scenes nest more than " + std::to_string(Hit::deepest_nesting) + " deep");
 
   // Luminaires of nested scenes are found by hits alone: those scenes gave them places in their own lists before.
-  for_nested(*this, false, [&](SceneObject& object) {
+  std::unordered_set<const Scene*> visited;
+  for_nested(*this, visited, [&](SceneObject& object) {
     if (object.luminaire() && seen.contains(&object))
       object.fail("", "a luminaire stands both in a scene and in one nested in it");
     if (object.infinite()) object.fail("", "an object at infinity cannot stand in a nested scene");
@@ -78,17 +87,10 @@ void Scene::prepare() {
       object.fail("", "a luminaire without extent in a nested scene would never be found: put it into the outermost one");
     object.luminaire_index = -1;
   });
-  for (const Ref<SceneObject>& object : objects)
-    if (const Scene* inner = as_scene(object.get())) {
-      has_null_surfaces_ |= inner->has_null_surfaces_;
-      if (!inner->has_interiors_) continue;
-      has_interiors_ = true;
-      interiors_.push_back(inner->bounds());
-    }
 
   std::vector<const SceneObject*> finite;
   for (const Ref<SceneObject>& object : objects) {
-    const Scene* inner = as_scene(object.get());
+    const Scene* inner = scene_within(*object);
     object->luminaire_index = -1;
     if (object->luminaire() && !object->infinite() && object->emission->only_at_infinity())
       object->fail("emission", "this emission is of light from infinity: it belongs on an Environment");
@@ -100,7 +102,7 @@ void Scene::prepare() {
       luminaires_.push_back(object.get());
       if (object->infinite() && !object->delta()) infinite_.push_back(object.get());
     }
-    if (!inner) note_interior(*object);
+    note_interior(*object);
     if (object->infinite()) continue;
     const Bounds3 box = object->bounds();
     if (box.empty()) continue;  // without extent: a point light, an empty scene
@@ -114,14 +116,48 @@ void Scene::prepare() {
     }
     finite.push_back(object.get());
   }
+  if (interiors_.size() > few_interiors) {
+    std::vector<Bounds3> boxes;
+    boxes.swap(interiors_);
+    build_interior_tree(boxes);
+    interiors_ = {interior_tree_.front().box};
+  }
   for (const Ref<SceneObject>& object : objects)
     if (object->infinite()) object->enclose(bounds_.empty() ? Point3{} : centre(), radius());
   build(finite);
 }
 
-Bounds3 Scene::bounds() const {
+void Scene::build_interior_tree(std::span<Bounds3> boxes) {
+  Bounds3 all;
+  for (const Bounds3& box : boxes) all.add(box);
+  const size_t place = interior_tree_.size();
+  interior_tree_.push_back({all, 0});
+  if (boxes.size() == 1) return;
+  const Vector3 d = all.diagonal();
+  const int axis = d.x > d.y ? (d.x > d.z ? 0 : 2) : (d.y > d.z ? 1 : 2);
+  const auto middle = boxes.begin() + std::ptrdiff_t(boxes.size() / 2);
+  std::nth_element(boxes.begin(), middle, boxes.end(),
+                   [axis](const Bounds3& a, const Bounds3& b) { return a.centre()[axis] < b.centre()[axis]; });
+  build_interior_tree({boxes.begin(), middle});
+  build_interior_tree({middle, boxes.end()});
+  interior_tree_[place].next = std::uint32_t(interior_tree_.size());
+}
+
+bool Scene::in_interior_tree(const Point3& p) const {
+  for (size_t i = 0; i < interior_tree_.size();) {
+    const Node& node = interior_tree_[i];
+    const bool inside = node.box.contains(p);
+    if (inside && node.next == 0) return true;
+    i = inside || node.next == 0 ? i + 1 : node.next;
+  }
+  return false;
+}
+
+Bounds3 Scene::bounds() const { return placed_bounds(transform); }
+
+Bounds3 Scene::placed_bounds(const AnimatedTransform& placed) const {
   if (unbounded_) return endless_box();
-  return bounds_.empty() ? bounds_ : swept(transform, bounds_);
+  return bounds_.empty() ? bounds_ : swept(placed, bounds_);
 }
 
 bool Scene::intersect(const Ray& ray, Hit& hit) const {
@@ -148,6 +184,8 @@ bool Scene::occludes(const Ray& ray) const {
 
 void Scene::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& point) const { locate_nested(ray, hit, point); }
 
+// A structure may take rays into a nested scene by an inverse of its own, in single precision: where this one rounds one
+// row by its own terms, that one may by the largest of all (see EmbreeScene, which checks it).
 void Scene::locate_nested(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
   Ray local = ray;
   for (int i = hit.depth; i-- > 0;) {
@@ -160,7 +198,10 @@ void Scene::locate_nested(const Ray& ray, const Hit& hit, SurfacePoint& point) c
   for (int i = 0; i < hit.depth; ++i) {
     Transform scratch;
     const Transform& t = placed(hit.scenes[i]->transform, ray.time, scratch);
-    if (!t.identity()) carry_out(t, point);
+    if (t.identity()) continue;
+    carry_out(t, point);
+    const Point3& p = point.position;
+    point.error += rounding_bound(8) * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
   }
 }
 
@@ -168,13 +209,18 @@ void Scene::tangents(SurfacePoint& point) const {
   if (point.object && point.object != this) point.object->tangents(point);
 }
 
-float Scene::area(float time) const {
-  // Exact when the scene's transform is a similarity.
+double Scene::own_area(float time) const {
   double sum = 0;
   for (const Ref<SceneObject>& object : objects)
-    if (!object->infinite()) sum += double(object->area(time));
-  return float(sum) * std::pow(std::abs(linear_determinant(transform.at(time))), 2.0f / 3);
+    if (!object->infinite() && !object->delta()) sum += double(object->area(time));
+  return sum;
 }
+
+float Scene::placed_area(const AnimatedTransform& placed, float time) const {
+  return float(own_area(time)) * std::pow(std::abs(linear_determinant(placed.at(time))), 2.0f / 3);
+}
+
+float Scene::area(float time) const { return placed_area(transform, time); }
 
 SurfaceSample Scene::sample_area(Point2, float) const {
   return {};  // a scene is no luminaire

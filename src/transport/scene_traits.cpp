@@ -13,7 +13,7 @@ std::string label(const SceneObject& object) {
 
 void look(const Scene& scene, bool nested, SceneTraits& traits) {
   for (const Ref<SceneObject>& object : scene.objects) {
-    if (const auto* inner = dynamic_cast<const Scene*>(object.get())) {
+    if (const auto* inner = scene_within(*object)) {
       look(*inner, true, traits);
       continue;
     }

@@ -1,0 +1,76 @@
+#include "csg_operand_shader.h"
+
+#include <algorithm>
+
+#include "csg.h"
+
+namespace etendue {
+namespace {
+
+/// The solid a point lies on, if it is one.
+const Csg* solid_at(const SurfacePoint& p) { return dynamic_cast<const Csg*>(p.object); }
+
+}  // namespace
+
+void OperandShader::describe(Description<OperandShader>& d) {
+  d.summary(
+      "The shader of a union, intersection or difference that lets every operand keep its own: a surface looks like that of "
+      "the operand it comes from, whose object coordinates maps are given. Black on any other object. A solid is one body, so "
+      "the index of what lies inside is that of the first operand which light enters.");
+}
+
+void OperandShader::stand_for(const Shader* shader) {
+  if (std::find(shaders_.begin(), shaders_.end(), shader) == shaders_.end()) shaders_.push_back(shader);
+}
+
+const Scatter* OperandShader::bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {
+  const Csg* const solid = solid_at(p);
+  if (!solid) return nullptr;
+  SurfacePoint* const there = arena.make<SurfacePoint>(p);  // a Scatter may look back at it
+  const Shader* const shader = solid->operand_at(p, *there).shader.get();
+  return shader ? shader->bind(*there, w, arena) : nullptr;
+}
+
+Lobes OperandShader::possible_lobes() const {
+  Lobes lobes = no_lobes;
+  for (const Shader* s : shaders_)
+    if (s) lobes |= s->possible_lobes();
+  return lobes;
+}
+
+Spectrum OperandShader::interior_index(const Wavelengths& w) const {
+  for (const Shader* s : shaders_)
+    if (s && s->transmits()) return s->interior_index(w);
+  return Spectrum(1.0f);
+}
+
+bool OperandShader::transmits() const {
+  return any([](const Shader& s) { return s.transmits(); });
+}
+bool OperandShader::lossless() const {
+  return !shaders_.empty() && std::all_of(shaders_.begin(), shaders_.end(), [](const Shader* s) { return s && s->lossless(); });
+}
+bool OperandShader::reciprocal() const {
+  return !any([](const Shader& s) { return !s.reciprocal(); });
+}
+bool OperandShader::stochastic() const {
+  return any([](const Shader& s) { return s.stochastic(); });
+}
+bool OperandShader::moves_exit() const {
+  return any([](const Shader& s) { return s.moves_exit(); });
+}
+
+std::optional<SubsurfaceExit> OperandShader::sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
+                                                         SampleStream& random, Arena& arena) const {
+  const Csg* const solid = solid_at(p);
+  if (!solid) return std::nullopt;
+  SurfacePoint there = p;
+  const Shader* const shader = solid->operand_at(p, there).shader.get();
+  return shader && shader->moves_exit() ? shader->sample_exit(p, scene, w, random, arena) : std::nullopt;
+}
+
+namespace {
+const Register<OperandShader> registered;
+}
+
+}  // namespace etendue

@@ -1,0 +1,43 @@
+#pragma once
+// Strands that are flat: chains of bilinear patches.
+
+#include "curve_tube.h"
+
+namespace etendue {
+
+// Between two vertices a ribbon is the bilinear patch of its four corners,
+//   p(u, v) = (1 - u) (p0 + (2 v - 1) r0 w0) + u (p1 + (2 v - 1) r1 w1)   with w the unit vectors across it.
+class RibbonPiece {
+ public:
+  RibbonPiece(const CurveVertex& from, const CurveVertex& to) : from_(from), to_(to) {
+    p_ = Double3(from.position);
+    axis_ = Double3(to.position) - p_;
+    side0_ = double(from.radius) * Double3(from.across);
+    side1_ = double(to.radius) * Double3(to.across);
+  }
+
+  /// The nearest intersection with a t that is positive as a float and below a maximum.
+  bool intersect(const DoubleRay&, float maximum, float& t, float& u, float& v) const;
+  void point(float u, float v, OwnPoint&) const;
+  Bounds3 bounds() const;
+
+  /// By Gauss's rule with so many points along and across: 2 or 3.
+  double area(int points) const;
+  /// u and v of a point, and the density [1/m^2] of a point at them: u in proportion to the width.
+  Point2 sample(Point2) const;
+  double density(float u, float v) const;
+
+ private:
+  Double3 along(double v) const { return axis_ + (2 * v - 1) * (side1_ - side0_); }
+  Double3 across(double u) const { return 2 * ((1 - u) * side0_ + u * side1_); }
+  double stretch(double u, double v) const { return length(cross(along(v), across(u))); }
+
+  const CurveVertex &from_, &to_;
+  Double3 p_, axis_, side0_, side1_;
+};
+
+/// Appends the vertices of a ribbon whose front faces as far along the points' normals as its course allows. Returns the
+/// place of a point whose normal runs along the strand, or points.size() when there is none.
+size_t append_ribbon(std::span<const StrandPoint>, std::vector<CurveVertex>& vertices);
+
+}  // namespace etendue

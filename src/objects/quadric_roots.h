@@ -1,0 +1,125 @@
+#pragma once
+// Where a ray crosses quadrics and slabs: as intervals of the ray, so that a solid is entered as often as it is left.
+
+#include "placed_object.h"
+
+namespace etendue {
+
+/// The part of a line on which a t^2 + 2 b t + c <= 0: from `low` to `high`, or, for `beyond`, what is not between them.
+/// An empty one has low > high.
+struct QuadricInside {
+  double low = 1, high = -1;
+  bool beyond = false;
+};
+
+/// q is the half of the root in which nothing cancels; the roots are q / a and c / q (Hearn & Baker 2004). An a of zero
+/// leaves one of them infinite, as it should be.
+inline QuadricInside quadric_inside(double a, double b, double c) {
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0) return a < 0 ? QuadricInside{-endless, endless} : QuadricInside{};
+  const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+  if (q == 0) {  // b = 0 and a c = 0
+    if (a == 0) return c <= 0 ? QuadricInside{-endless, endless} : QuadricInside{};
+    return a < 0 ? QuadricInside{-endless, endless} : QuadricInside{0, 0};
+  }
+  const double other = c / q;
+  if (a == 0) return q < 0 ? QuadricInside{-endless, other} : QuadricInside{other, endless};
+  const double one = q / a;
+  return {std::min(one, other), std::max(one, other), a < 0};
+}
+
+/// A ray whose parameter counts from the point nearest to a place on the z axis. Far from an object the coefficients of a
+/// quadric are differences of huge numbers, near it they are not.
+struct NearRay {
+  double x, y, z, dx, dy, dz;
+  double start;  ///< the ray's parameter there
+
+  NearRay(const Ray& ray, double height)
+      : dx(double(ray.direction.x)), dy(double(ray.direction.y)), dz(double(ray.direction.z)) {
+    const double ox = double(ray.origin.x), oy = double(ray.origin.y), oz = double(ray.origin.z);
+    start = -(ox * dx + oy * dy + (oz - height) * dz) / (dx * dx + dy * dy + dz * dz);
+    x = ox + start * dx;
+    y = oy + start * dy;
+    z = oz + start * dz;
+  }
+
+  /// Where x^2 + y^2 <= square z^2 + linear z + constant.
+  QuadricInside inside(double square, double linear, double constant) const {
+    const double axial = square * dz;
+    return quadric_inside(dx * dx + dy * dy - axial * dz, x * dx + y * dy - axial * z - 0.5 * linear * dz,
+                          x * x + y * y - ((square * z + linear) * z + constant));
+  }
+};
+
+/// The part of a ray between two planes across z: `enter` < `leave`, or nothing.
+struct SlabInside {
+  double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
+  bool upwards = true;  ///< enters through the low plane
+
+  SlabInside(const NearRay& ray, double low, double high) : upwards(ray.dz > 0) {
+    if (ray.dz == 0) {
+      if (ray.z < low || ray.z > high) leave = enter;
+      return;
+    }
+    enter = ((upwards ? low : high) - ray.z) / ray.dz;
+    leave = ((upwards ? high : low) - ray.z) / ray.dz;
+  }
+};
+
+/// A crossing in double. What a float lacks of it goes along in Hit::u, so that the point of the hit is as exact: rounding t
+/// alone would move points of a small object that is hit from far away, and lose what is known of the root there.
+inline bool take_hit(const Ray& ray, double t, std::uint32_t part, Hit& hit) {
+  const float rounded = float(t);
+  if (!(rounded > 0 && rounded < ray.maximum)) return false;
+  hit.distance = rounded;
+  hit.primitive = part;
+  hit.u = float(t - double(rounded));
+  hit.v = 0;
+  return true;
+}
+inline double exact_distance(const Hit& hit) { return double(hit.distance) + double(hit.u); }
+
+/// A point of a flat part across z, with Cartesian surface coordinates over the square around a disc of that radius, as of
+/// a Disc; u runs backwards on what faces down, to keep dpdu x dpdv in front.
+inline void flat_point(double x, double y, double z, double radius, bool up, double extent, OwnPoint& p) {
+  const float r = float(radius), side = up ? 1.0f : -1.0f;
+  p.position = {float(x), float(y), float(z)};
+  p.normal = {0, 0, side};
+  p.uv = {clamp(0.5f * (1 + side * p.position.x / r), 0, 1), clamp(0.5f * (1 + p.position.y / r), 0, 1)};
+  p.dpdu = {2 * side * r, 0, 0};
+  p.dpdv = {0, 2 * r, 0};
+  p.error = rounding_bound(3) * (std::abs(p.position.z) + float(extent));
+}
+
+/// Which part of a turn around z there is, from the x axis counter-clockwise.
+class Sector {
+ public:
+  explicit Sector(double angle = 2 * M_PI)
+      : angle_(angle), full_(angle > 2 * M_PI * (1 - 1e-7)), cosine_(std::cos(angle)), sine_(std::sin(angle)) {
+    if (full_) angle_ = 2 * M_PI;
+  }
+  double angle() const { return angle_; }  ///< [rad]
+  bool full() const { return full_; }
+  double share() const { return angle_ / (2 * M_PI); }
+
+  bool holds(double x, double y) const {
+    if (full_) return true;
+    const bool after_start = y >= 0, before_end = x * sine_ - y * cosine_ >= 0;
+    return angle_ <= M_PI ? after_start && before_end : after_start || before_end;
+  }
+  /// The azimuth over the angle, in [0, 1].
+  float part(double x, double y) const {
+    const float phi = positive_atan2(float(y), float(x));
+    if (full_) return std::min(phi / (2 * pi), 1.0f);
+    if (phi <= float(angle_)) return phi / float(angle_);
+    return phi < float(0.5 * angle_ + M_PI) ? 1.0f : 0.0f;  // just outside, by rounding
+  }
+
+ private:
+  double angle_;
+  bool full_;
+  double cosine_, sine_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,206 @@
+// Tube: a thick pipe, open at both ends.
+
+#include "quadric_roots.h"
+#include "visible_directions.h"
+
+namespace etendue {
+namespace {
+
+// What is inside of the outer cylinder and of a slab, but not inside of the inner cylinder: on a ray at most two intervals.
+class Tube final : public PlacedObject {
+ public:
+  static void describe(Description<Tube>& d) {
+    d.summary(
+         "A pipe with a thick wall, about the z axis from -height/2 to height/2: a closed solid. On its sides u goes around "
+         "and v "
+         "up, or down inside; on its ends they are as on a disc of the outer radius.",
+         "intersection with quadrics: Hearn & Baker 2004")
+        .member<&Tube::inner_radius>("inner_radius", "m", "of its bore", more_than(0), Effect::rebuild)
+        .member<&Tube::radius>("radius", "m", "its outer radius", more_than(0), Effect::rebuild)
+        .member<&Tube::height>("height", "m", "its length along z", more_than(0), Effect::rebuild);
+  }
+
+  void prepare() override {
+    if (!(radius > 0 && radius < infinity)) fail("radius", "must be positive and finite");
+    if (!(height > 0 && height < infinity)) fail("height", "must be positive and finite");
+    if (!(inner_radius > 0 && inner_radius < radius)) fail("inner_radius", "must be positive and smaller than radius");
+    // Less would be lost in rounding at the wall.
+    if (!(radius - inner_radius > 1e-5f * radius)) fail("inner_radius", "the wall is too thin");
+    r_[0] = double(radius);
+    r_[1] = double(inner_radius);
+    half_ = 0.5 * double(height);
+    areas_[outer] = 4 * M_PI * r_[0] * half_;
+    areas_[inner] = 4 * M_PI * r_[1] * half_;
+    areas_[low_end] = areas_[high_end] = M_PI * (r_[0] - r_[1]) * (r_[0] + r_[1]);
+    if (!(float(own_area()) > 0 && float(own_area()) < infinity)) fail("radius", "the tube is too small or too large");
+    place();
+  }
+
+  bool closed() const override { return true; }
+
+  SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
+    Transform scratch;
+    const Transform& t = placed(transform, time, scratch);
+    const Point3 own_from = t.back(from);
+    Facing f;
+    const bool faced = facing(own_from, f);
+    const auto sample = [&](Point2 v, SurfaceSample& s) {
+      OwnPoint own;
+      sample_facing(f, v, own);
+      carry(own, time, s.point);
+      return true;
+    };
+    const auto density = [&](const SurfacePoint& p) { return density_facing(f, from, t, p); };
+    return sample_by_both(*this, direction_share(own_from, faced), from, u, time, sample, density);
+  }
+
+  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+    Transform scratch;
+    const Transform& t = placed(transform, p.time, scratch);
+    const Point3 own_from = t.back(from);
+    Facing f;
+    const bool faced = facing(own_from, f);
+    const auto density = [&](const SurfacePoint& q) { return density_facing(f, from, t, q); };
+    return density_by_both(direction_share(own_from, faced), from, direction, p, density);
+  }
+
+  float inner_radius = 0.75f, radius = 1, height = 2;
+
+ protected:
+  Bounds3 own_bounds() const override {
+    Bounds3 box;
+    box.add(Point3{-radius, -radius, -0.5f * height});
+    box.add(Point3{radius, radius, 0.5f * height});
+    return box;
+  }
+
+  bool own_intersect(const Ray& ray, Hit& hit) const override {
+    const NearRay near(ray, 0);
+    const SlabInside slab(near, -half_, half_);
+    const QuadricInside round = near.inside(0, 0, r_[0] * r_[0]);
+    const bool by_side = round.low > slab.enter, out_by_side = round.high < slab.leave;
+    const double enter = by_side ? round.low : slab.enter, leave = out_by_side ? round.high : slab.leave;
+    if (!(enter < leave)) return false;
+    const Part first = by_side ? outer : (slab.upwards ? low_end : high_end);
+    const Part last = out_by_side ? outer : (slab.upwards ? high_end : low_end);
+    const QuadricInside bore = near.inside(0, 0, r_[1] * r_[1]);
+    const auto solid = [&](double low, Part in, double high, Part out) {
+      return low < high && (take_hit(ray, near.start + low, in, hit) || take_hit(ray, near.start + high, out, hit));
+    };
+    if (!(bore.low < bore.high) || bore.low >= leave || bore.high <= enter) return solid(enter, first, leave, last);
+    return solid(enter, first, bore.low, inner) || solid(bore.high, inner, leave, last);
+  }
+
+  void own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const override {
+    const DoubleRay r(ray);
+    const double t = exact_distance(hit), x = r.at(t, 0), y = r.at(t, 1);
+    if (hit.primitive == outer || hit.primitive == inner)
+      side_point(int(hit.primitive), x, y, std::clamp(r.at(t, 2), -half_, half_), p);
+    else
+      end_point(int(hit.primitive), x, y, p);
+  }
+
+  double own_area() const override { return areas_[outer] + areas_[inner] + areas_[low_end] + areas_[high_end]; }
+
+  float own_sample(Point2 u, OwnPoint& p) const override {
+    // Once around the profile: out along the low end, up, in along the high end and down in the bore.
+    const double area = own_area();
+    double y = double(u.y) * area;
+    constexpr Part order[] = {low_end, outer, high_end, inner};
+    int k = 0;
+    while (k < parts - 1 && y >= areas_[order[k]]) y -= areas_[order[k++]];
+    const double share = std::min(y / areas_[order[k]], 1.0);
+    point_on(order[k], 2 * M_PI * double(u.x), order[k] == high_end || order[k] == inner ? 1 - share : share, p);
+    return float(1 / area);
+  }
+
+ private:
+  enum Part { outer, inner, low_end, high_end };
+  static constexpr int parts = 4;
+
+  /// What faces a point outside of the wall.
+  struct Facing {
+    double areas[parts]{}, area = 0, azimuth = 0;  ///< [m^2], [rad]
+  };
+  /// False within the wall, from where everything may be seen.
+  bool facing(const Point3& own, Facing& f) const {
+    const double x = double(own.x), y = double(own.y), z = double(own.z), around = std::sqrt(x * x + y * y);
+    const bool above = z > half_, below = z < -half_;
+    if (!above && !below && around > r_[1] && around < r_[0]) return false;
+    f.azimuth = std::atan2(y, x);
+    if (above) f.areas[high_end] = areas_[high_end];
+    if (below) f.areas[low_end] = areas_[low_end];
+    // A point of the outer side faces the place when cos(phi - azimuth) > r / around, and one of the bore when it is less.
+    if (around > r_[0]) f.areas[outer] = areas_[outer] * std::acos(r_[0] / around) / M_PI;
+    if (around <= r_[1])
+      f.areas[inner] = areas_[inner];
+    else if (above || below)  // else the wall is in the way
+      f.areas[inner] = areas_[inner] * (1 - std::acos(r_[1] / around) / M_PI);
+    for (const double a : f.areas) f.area += a;
+    return f.area > 0;
+  }
+
+  void sample_facing(const Facing& f, Point2 u, OwnPoint& own) const {
+    double y = double(u.y) * f.area;
+    int part = 0, last = 0;
+    for (int k = 0; k < parts; ++k)
+      if (f.areas[k] > 0) last = k;
+    while (part < last && y >= f.areas[part]) y -= f.areas[part++];
+    // The arc that faces the place is around its azimuth outside, and around the opposite one inside.
+    const double half = part == outer || part == inner ? M_PI * f.areas[part] / areas_[part] : M_PI;
+    const double middle = part == inner ? f.azimuth + M_PI : f.azimuth;
+    point_on(part, middle + half * (2 * double(u.x) - 1), std::clamp(y / f.areas[part], 0.0, 1.0), own);
+  }
+
+  /// [1/m^2]
+  float density_facing(const Facing& f, const Point3& from, const Transform& t, const SurfacePoint& p) const {
+    const bool faces = dot(p.normal, p.position - from) < 0 && f.areas[p.primitive] > 0;
+    return faces ? float(1 / f.area) / area_stretch(t, p.object_normal) : 0;
+  }
+
+  /// From within the wall always by direction, from close by half of the time.
+  DirectionShare direction_share(const Point3& own, bool faced) const {
+    if (!faced) return {1, false};
+    const double x = double(own.x), y = double(own.y), z = double(own.z);
+    return {x * x + y * y + z * z < r_[0] * r_[0] + half_ * half_ ? 0.5f : 0.0f, false};
+  }
+
+  void point_on(int part, double phi, double share, OwnPoint& p) const {
+    const double cosine = std::cos(phi), sine = std::sin(phi);
+    if (part == outer || part == inner) {
+      side_point(part, r_[part] * cosine, r_[part] * sine, (2 * share - 1) * half_, p);
+    } else {
+      const double r = std::sqrt(r_[1] * r_[1] + share * (r_[0] - r_[1]) * (r_[0] + r_[1]));
+      end_point(part, r * cosine, r * sine, p);
+    }
+  }
+
+  void side_point(int part, double x, double y, double z, OwnPoint& p) const {
+    const double out = part == outer ? 1 : -1, r = out / std::sqrt(x * x + y * y);
+    p.position = {float(x), float(y), float(z)};
+    p.normal = {float(x * r), float(y * r), 0};
+    const double v = 0.5 * (1 + out * z / half_);
+    p.uv = {std::min(positive_atan2(float(y), float(x)) / (2 * pi), 1.0f), clamp(float(v), 0, 1)};
+    p.dpdu = {float(-2 * M_PI * y), float(2 * M_PI * x), 0};
+    p.dpdv = {0, 0, float(out * 2 * half_)};
+    p.primitive = std::uint32_t(part);
+    const Vector3 here{std::abs(p.position.x), std::abs(p.position.y), 0};
+    p.error = rounding_bound(3) * (along(p.normal, here) + float(extent()));
+  }
+
+  void end_point(int part, double x, double y, OwnPoint& p) const {
+    flat_point(x, y, part == high_end ? half_ : -half_, r_[0], part == high_end, extent(), p);
+    p.primitive = std::uint32_t(part);
+  }
+
+  /// The smaller of width and height: see RevolvedQuadric.
+  double extent() const { return std::min(r_[0], 2 * half_); }
+
+  double r_[2]{1, 0.75}, half_ = 1;  // outer and inner radius, half of the height
+  double areas_[parts]{};
+};
+
+const Register<Tube> registered;
+
+}  // namespace
+}  // namespace etendue

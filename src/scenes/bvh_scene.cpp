@@ -1,0 +1,175 @@
+// BvhScene: a bounding volume hierarchy of our own.
+
+#include "etendue/scene.h"
+#include "etendue/shader.h"  // objects own shaders
+#include "primitives.h"
+#include "wide_bvh.h"
+
+namespace etendue {
+namespace {
+
+/// Triangles side by side; lanes that hold none have all corners in one place, which no ray meets.
+struct Block {
+  Floats corner[3][3] = {};  ///< by corner and axis
+  std::uint32_t primitive[lanes] = {};
+
+  Floats operator()(int k, int axis) const { return corner[k][axis]; }
+};
+
+/// Where a ray meets the triangles of a block: bits of those met at a t in (0, limit).
+struct BlockHit {
+  CornerWeights<Floats> weights;
+  Floats t;
+  LaneBits met;
+
+  BlockHit(const Block& block, const ShearedRay<Floats>& ray, float limit) : weights(corner_weights(ray, block)) {
+    met = inside(weights);
+    if (!met) return;
+    t = plane_distance(ray, block);
+    met &= less(Floats{}, t) & less(t, Floats{} + limit);
+  }
+  void fill(int lane, Hit& hit) const {
+    const float scale = 1 / (weights.a[lane] + weights.b[lane] + weights.c[lane]);
+    hit.distance = t[lane];
+    hit.u = weights.b[lane] * scale;
+    hit.v = weights.c[lane] * scale;
+  }
+};
+
+class BvhScene final : public Scene {
+ public:
+  static void describe(Description<BvhScene>& d) {
+    d.summary(
+        "A scene searched by a hierarchy of bounding boxes with eight children a node; no ray slips between triangles with "
+        "common edges.",
+        "Wald, Benthin & Boulos 2008, \"Getting rid of packets\"; Woop, Benthin & Wald 2013; Ize 2013");
+  }
+
+  bool nearest(const Ray& ray, Hit& hit) const override {
+    Ray rest = ray;
+    bool found = primitives_.nearest_endless(rest, hit);
+    const ShearedRay<Floats> sheared(ray);
+    std::uint32_t triangle = none;
+    traverse(bvh_, ray, rest.maximum, [&](std::uint32_t first, std::uint32_t count) {
+      if (count & WideNode::objects) [[unlikely]] {
+        for (std::uint32_t i = first; i < first + (count & ~WideNode::objects); ++i)
+          if (objects_[i]->intersect(rest, hit)) {
+            rest.maximum = hit.distance;
+            triangle = none;
+            found = true;
+          }
+        return false;
+      }
+      for (std::uint32_t i = first; i < first + count; ++i) {
+        const BlockHit here(blocks_[i], sheared, rest.maximum);
+        for (LaneBits met = here.met; met; met &= met - 1) {
+          const int lane = std::countr_zero(met);
+          if (!(here.t[lane] < rest.maximum)) continue;
+          here.fill(lane, hit);
+          rest.maximum = hit.distance;
+          triangle = blocks_[i].primitive[lane];
+        }
+      }
+      return false;
+    });
+    if (triangle == none) return found;
+    hit.object = primitives_.object(triangle);
+    hit.primitive = primitives_.number(triangle);
+    hit.depth = 0;
+    return true;
+  }
+
+  bool any(const Ray& ray) const override {
+    if (primitives_.any_endless(ray)) return true;
+    const ShearedRay<Floats> sheared(ray);
+    bool found = false;
+    traverse(bvh_, ray, ray.maximum, [&](std::uint32_t first, std::uint32_t count) {
+      if (count & WideNode::objects) [[unlikely]] {
+        for (std::uint32_t i = first; i < first + (count & ~WideNode::objects); ++i)
+          if (objects_[i]->occludes(ray)) return found = true;
+        return false;
+      }
+      for (std::uint32_t i = first; i < first + count; ++i)
+        if (BlockHit(blocks_[i], sheared, ray.maximum).met) return found = true;
+      return false;
+    });
+    return found;
+  }
+
+  void all(const Ray& ray, HitList& list) const override {
+    primitives_.all_endless(ray, list);
+    const ShearedRay<Floats> sheared(ray);
+    traverse(bvh_, ray, ray.maximum, [&](std::uint32_t first, std::uint32_t count) {
+      if (count & WideNode::objects) {
+        for (std::uint32_t i = first; i < first + (count & ~WideNode::objects); ++i) objects_[i]->all_hits(ray, list);
+        return false;
+      }
+      for (std::uint32_t i = first; i < first + count; ++i) {
+        const BlockHit here(blocks_[i], sheared, ray.maximum);
+        for (LaneBits met = here.met; met; met &= met - 1) {
+          const int lane = std::countr_zero(met);
+          const std::uint32_t triangle = blocks_[i].primitive[lane];
+          Hit hit;
+          here.fill(lane, hit);
+          hit.object = primitives_.object(triangle);
+          hit.primitive = primitives_.number(triangle);
+          list.add(hit);
+        }
+      }
+      return false;
+    });
+  }
+
+ protected:
+  void build(std::span<const SceneObject* const> finite) override {
+    primitives_.gather(finite);
+    std::vector<BvhPrimitive> boxes;
+    boxes.reserve(primitives_.size());
+    for (size_t i = 0; i < primitives_.size(); ++i)
+      boxes.push_back({primitives_.bounds(i), std::uint32_t(i), primitives_.triangle(i)});
+    bvh_ = build_wide_bvh(std::move(boxes));
+    blocks_.clear();
+    objects_.clear();
+    for (WideNode& node : bvh_.nodes)
+      for (int i = 0; i < lanes; ++i)
+        if (node.count[i]) fill_leaf(node.child[i], node.count[i]);
+    bvh_.order = {};
+  }
+
+ private:
+  static constexpr std::uint32_t none = ~0u;
+
+  /// Puts what a leaf holds into blocks or the list of objects, and lets the leaf say where.
+  void fill_leaf(std::uint32_t& child, std::uint32_t& count) {
+    const std::span<const std::uint32_t> own(bvh_.order.data() + child, count & ~WideNode::objects);
+    if (count & WideNode::objects) {
+      child = std::uint32_t(objects_.size());
+      for (const std::uint32_t p : own) objects_.push_back(primitives_.object(p));
+      return;
+    }
+    child = std::uint32_t(blocks_.size());
+    for (size_t i = 0; i < own.size(); ++i) {
+      const size_t lane = i % lanes;
+      if (lane == 0) blocks_.emplace_back();
+      Block& block = blocks_.back();
+      block.primitive[lane] = own[i];
+      for (int k = 0; k < 3; ++k) {
+        const Point3& p = primitives_.corner(own[i], k);
+        block.corner[k][0][lane] = p.x;
+        block.corner[k][1][lane] = p.y;
+        block.corner[k][2][lane] = p.z;
+      }
+    }
+    count = std::uint32_t(blocks_.size()) - child;
+  }
+
+  Primitives primitives_;
+  WideBvh bvh_;
+  std::vector<Block> blocks_;
+  std::vector<const SceneObject*> objects_;
+};
+
+const Register<BvhScene> registered;
+
+}  // namespace
+}  // namespace etendue
