@@ -235,7 +235,8 @@ TEST(ReflectionTest, the_tree_lists_every_class_once) {
     std::istringstream words(line);
     std::string first;
     words >> first;
-    if (Registry::instance().find(first)) ++seen[first];
+    // Names stand in a column of their own; words of a summary that goes on in the next line do not.
+    if (Registry::instance().find(first) && line.find(first + "  ") != std::string::npos) ++seen[first];
   }
   for (const ClassInfo* info : described_classes()) EXPECT_EQ(seen[info->name], 1) << info->name;
 }

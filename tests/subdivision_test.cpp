@@ -301,7 +301,7 @@ TEST(DisplacedMesh, WhatCannotBeMovedIsRefused) {
   EXPECT_THROW(prepare_tree(*made), Error);
 }
 
-TEST(MeshFiles, CornersInLineAreNotLost) {
+TEST(PolygonFiles, CornersInLineAreNotLost) {
   // A cube whose bottom is divided in two, so that its front and its back have a corner in the middle of an edge.
   const std::string path = written("line.obj",
                                    "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"

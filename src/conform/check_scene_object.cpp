@@ -131,7 +131,8 @@ void check_points(const ObjectTrial& o) {
     missed += !found_nearby(o, p);
   }
   const double said = double(o.object.area(o.time));
-  o.trial.expect(ObjectTrial::few(missed, n), "rays find the points that were sampled by area",
+  // Beside an edge a ray may find the neighbour.
+  o.trial.expect(ObjectTrial::few(missed, n, 5e-3), "rays find the points that were sampled by area",
                  [&] { return fmt::format("{} of {} were not found", missed, n); });
   o.trial.expect(std::abs(area.mean() - said) < Trial::significant_errors * area.error() + 1e-3 * said,
                  "densities by area integrate to 1 over the area",

@@ -19,7 +19,7 @@ class Drawer {
     const Ref<Component> c = info.create();
     for (const Member& m : info.members) {
       if (m.required && m.kind == Kind::component)
-        set(*c, m.name, component_for(m, 2));
+        set(*c, m.name, m.list ? component_list(m, 2) : component_for(m, 2));
       else if (m.kind == Kind::file && (m.required || with_files))
         set_file(*c, info, m);
       else if (fill_lists && m.list)
