@@ -2,6 +2,7 @@
 // What is known of classes, told to people and programs: JSON, JSON Schema, plain text, manual pages. All of it is
 // derived from the registry; nothing is said here that a description does not say.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct ManualPage {
   std::string text;   ///< with its heading; links go to other pages' files
 };
 /// The index, then a page for each class: interfaces first, each followed by the classes made of it.
-std::vector<ManualPage> manual_pages();
+/// `more` may give Markdown to stand below what a class is: its picture.
+std::vector<ManualPage> manual_pages(const std::function<std::string(const ClassInfo&)>& more = {});
 
 }  // namespace etendue

@@ -90,8 +90,9 @@ std::string type_link(const Member& member) {
   return fmt::format("{}[{}]({}.md)", member.list ? "list of " : "", member.component_class, member.component_class);
 }
 
-std::string page_text(const ClassInfo& info) {
+std::string page_text(const ClassInfo& info, const std::string& more) {
   std::string text = "# " + info.name + "\n\n" + sentence(info.summary) + "\n";
+  if (!more.empty()) text += "\n" + more + "\n";
   if (!info.source.empty()) text += "\nSource: " + sentence(info.source) + "\n";
   if (parent_of(info))
     text += fmt::format("\n{} is {} {}.\n", info.name, info.abstract() ? "a special" : "one kind of", link(*info.parent));
@@ -170,7 +171,7 @@ std::string class_tree_text() {
   return text;
 }
 
-std::vector<ManualPage> manual_pages() {
+std::vector<ManualPage> manual_pages(const std::function<std::string(const ClassInfo&)>& more) {
   std::vector<const ClassInfo*> interfaces;
   for (const ClassInfo* info : described_classes())
     if (is_interface(*info)) interfaces.push_back(info);
@@ -183,9 +184,10 @@ std::vector<ManualPage> manual_pages() {
 
   std::vector<ManualPage> pages{{"index.md", "Components", index}};
   for (const ClassInfo* info : interfaces) {
-    pages.push_back({info->name + ".md", info->name, page_text(*info)});
+    pages.push_back({info->name + ".md", info->name, page_text(*info, more ? more(*info) : "")});
     for (const ClassInfo* child : children(*info))
-      if (!is_interface(*child)) pages.push_back({child->name + ".md", child->name, page_text(*child)});
+      if (!is_interface(*child))
+        pages.push_back({child->name + ".md", child->name, page_text(*child, more ? more(*child) : "")});
   }
   return pages;
 }
