@@ -54,16 +54,16 @@ def dielectric(index, alpha, distribution="ggx"):
     return ours, theirs, {"correlated": (distribution, alpha, alpha)}
 
 
-def metal(color, roughness, same=True):
+def metal(color, roughness):
     ours = f"Principled {{ base_metalness: 1, base_color: {color}, specular_roughness: {roughness} }}"
     theirs = {"type": "principled", "metallic": 1.0, "base_color": color, "roughness": roughness, "specular": 0.5}
-    return ours, theirs, {"correlated": ("ggx", roughness**2, roughness**2), "same": same}
+    return ours, theirs, {"correlated": ("ggx", roughness**2, roughness**2), "same": False}  # ours counts multiple scattering
 
 
 def glass(index, roughness, same=True):
     ours = f"Principled {{ transmission_weight: 1, specular_ior: {index}, specular_roughness: {roughness} }}"
     theirs = {"type": "principled", "spec_trans": 1.0, "eta": index, "base_color": 1.0, "roughness": roughness}
-    return ours, theirs, {"correlated": ("ggx", roughness**2, roughness**2), "same": same}
+    return ours, theirs, {"correlated": ("ggx", roughness**2, roughness**2), "same": False}  # ours counts multiple scattering
 
 
 def plastic(color, roughness):
@@ -92,7 +92,7 @@ CASES = [
     ("rough dielectric", "index 2, Beckmann, alpha 0.4", dielectric(2.0, 0.4, "beckmann")),
     ("principled", "metal 0.8, roughness 0.2", metal(0.8, 0.2)),
     ("principled", "metal 0.5, roughness 0.3", metal(0.5, 0.3)),
-    ("principled", "metal 0.8, roughness 0.6", metal(0.8, 0.6, same=False)),
+    ("principled", "metal 0.8, roughness 0.6", metal(0.8, 0.6)),
     ("principled", "glass 1.5, roughness 0.2", glass(1.5, 0.2)),
     ("principled", "plastic 0.5, roughness 0.4", plastic(0.5, 0.4)),
     ("hair", "absorption 0, roughness 0.3, 0.3", hair(0.0, 0.3, 0.3)),

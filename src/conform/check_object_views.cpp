@@ -22,12 +22,22 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
     const float h = length_squared(v - Vector3(frame.n)) / 2;
     return size_t(2 * int(dot(v, frame.s) > 0) + int(dot(v, frame.t) > 0) + (h > height / 4 ? 4 : 0));
   };
+  // Of a luminaire what is seen is what shines: points on a dark side need not be chosen.
+  const auto shines = [&](const SurfacePoint& p, const Vector3& v) {
+    return !o.object.emission || o.object.emission->emits(p, -v);
+  };
+  const auto meets = [&](const Vector3& v) {
+    const Ray ray = o.ray(from, v);
+    if (!o.object.emission) return o.object.occludes(ray);
+    Hit hit;
+    return o.object.intersect(ray, hit) && shines(o.located(ray, hit), v);
+  };
   std::array<statistics::Mean, cells> rays, samples;
   const int n = o.trial.samples(40000);
   for (int i = 0; i < n; ++i) {
     const float h = height * o.trial.uniform(), phi = 2 * pi * o.trial.uniform(), r = safe_sqrt(h * (2 - h));
     const Vector3 v = frame.to_world({r * std::cos(phi), r * std::sin(phi), 1 - h});
-    const size_t hit = o.object.occludes(o.ray(from, v)) ? cell(v) : cells;
+    const size_t hit = meets(v) ? cell(v) : cells;
     for (size_t k = 0; k < cells; ++k) rays[k].add(k == hit ? 2 * M_PI * double(height) : 0);
   }
   int disagree = 0, behind = 0;
@@ -48,7 +58,9 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
       disagree += !(std::abs(again - s.density) < 1e-2f * s.density) && std::abs(dot(p.normal, s.direction)) > 1e-2f;
       Hit hit;
       const float off = 1e-4f * s.distance + 4 * p.error;
-      if (o.object.intersect(o.ray(from, s.direction), hit) && hit.distance < s.distance + off) {
+      if (!shines(p, s.direction)) {
+        // chosen in vain
+      } else if (o.object.intersect(o.ray(from, s.direction), hit) && hit.distance < s.distance + off) {
         // Another part of the object may lie just before it.
         if (hit.distance > s.distance - (hit.primitive == p.primitive ? off : 1e-6f * s.distance + p.error)) {
           seen = cell(s.direction);

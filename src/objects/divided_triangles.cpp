@@ -1,6 +1,7 @@
 // Triangles halved along their edges.
 
 #include <bit>
+#include <cmath>
 
 #include "displacement.h"
 #include "etendue/error.h"
@@ -9,7 +10,7 @@
 namespace etendue {
 namespace {
 
-constexpr size_t most_triangles = size_t(1) << 31;
+constexpr size_t most_triangles = size_t(1) << 27;  // some 15 GB while they are made
 
 /// Numbers by pair of vertices; open addressing.
 class EdgeTable {
@@ -33,6 +34,11 @@ class EdgeTable {
   std::vector<std::uint32_t> values_;
 };
 
+[[noreturn]] void too_many(double count) {
+  throw Error("there would be about " + std::to_string(std::uint64_t(count)) + " triangles, more than the " +
+              std::to_string(most_triangles) + " there may be");
+}
+
 }  // namespace
 
 DividedTriangles::DividedTriangles(const TriangleView& view)
@@ -49,6 +55,7 @@ DividedTriangles::Place DividedTriangles::place(size_t triangle, float u, float 
 }
 
 bool DividedTriangles::divide(int levels, float edge_length) {
+  if (const double all = std::ldexp(double(triangles.size()), 2 * levels); all > double(most_triangles)) too_many(all);
   for (int i = 0; i < levels && halvings_ < most_halvings; ++i) halve(0);
   if (!(edge_length > 0)) return true;
   while (halvings_ < most_halvings)
@@ -68,8 +75,7 @@ bool DividedTriangles::halve(float longer_than) {
   size_t cuts = 0;
   for (const auto& t : triangles) cuts += size_t(marked(t[0], t[1])) + size_t(marked(t[1], t[2])) + size_t(marked(t[2], t[0]));
   if (cuts == 0) return false;
-  if (triangles.size() + cuts > most_triangles)
-    throw Error("there would be " + std::to_string(triangles.size() + cuts) + " triangles, more than 2^31");
+  if (triangles.size() + cuts > most_triangles) too_many(double(triangles.size() + cuts));
   if (within_.empty()) {
     constexpr std::uint16_t one = 1 << most_halvings;
     within_.reserve(triangles.size() + cuts);
