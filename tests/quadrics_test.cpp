@@ -268,7 +268,7 @@ TEST(Quadrics, VisibleDensitiesIntegrateToOne) {
 TEST(Quadrics, TangentsAreDerivatives) {
   Random random(5);
   std::vector<Case> cases = solids();
-  cases.push_back({"Ellipsoid", {{"radii", {1, 2, 0.1}}}});
+  cases.push_back({"Ellipsoid", {{"radii", {1, 2, 0.1}}}, {}});
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
     const Ref<SceneObject> o = object(c.name, c.settings);

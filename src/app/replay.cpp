@@ -11,14 +11,16 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
 namespace etendue {
 
-namespace {
+double splat_weight(const ImageBuffer& image) {
+  const PixelArea& area = image.area();
+  return double(image.width) * double(image.height) / (double(area.width()) * double(area.height()));
+}
 
-// ---- computing --------------------------------------------------------------------------------------------------------
+namespace {
 
 RenderContext context_of(const Job& job) { return {*job.scene, *job.camera, *job.image, *job.wavelengths, job.seed}; }
 
@@ -39,13 +41,6 @@ bool luminance_of(Spectrum value, const Wavelengths& wavelengths, double& lumina
   if (!std::isfinite(y)) return false;
   luminance = y;
   return true;
-}
-
-/// What a splat counts for beside a sample's own value, which counts 1 / n of its pixel: paths from luminaires spread over
-/// the whole film, but there are only n of them for each pixel that is rendered.
-double splat_weight(const ImageBuffer& image) {
-  const PixelArea& area = image.area();
-  return double(image.width) * double(image.height) / (double(area.width()) * double(area.height()));
 }
 
 /// What the splats of a sample bring to the picture: those that fall beside it are lost.
@@ -159,181 +154,6 @@ PixelReplay replay_pixel(Job& job, int x, int y, size_t most) {
     result.paths.push_back(std::move(path));
   }
   return result;
-}
-
-std::string replay_command(const std::string& picture_command, int x, int y, std::uint32_t sample) {
-  return fmt::format("{} --pixel {},{} --sample {}", picture_command, x, y, sample);
-}
-
-// ---- for people -------------------------------------------------------------------------------------------------------
-
-namespace {
-
-std::string numbers(const Spectrum& s) {
-  std::string text;
-  for (int i = 0; i < spectrum_size; ++i) text += fmt::format("{}{:>12.6g}", i ? " " : "", s[i]);
-  return text;
-}
-
-template <class V>
-std::string place(const V& v) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z);
-}
-
-std::string vertex_text(const PathRecord::Vertex& v, const char* what, size_t place_in_path) {
-  std::string text = fmt::format("{} {}: {}{}\n", what, place_in_path, v.kind, v.object.empty() ? "" : " on " + v.object);
-  const auto add = [&](const char* label, const std::string& value) { text += fmt::format("    {:<12}{}\n", label, value); };
-  if (v.kind != "escaped") add("position", place(v.position) + " m");
-  if (v.normal.x != 0 || v.normal.y != 0 || v.normal.z != 0) add("normal", place(v.normal));
-  add("throughput", numbers(v.throughput));
-  if (!v.emitted.black()) add("emitted", numbers(v.emitted));
-  if (!v.direct.black()) add("direct", numbers(v.direct));
-  if (!v.lobe.empty()) add("sampled", fmt::format("{}, density {:.6g}", v.lobe, v.density));
-  if (!v.note.empty()) add("note", v.note);
-  return text;
-}
-
-std::string contribution_text(const PathRecord::Contribution& c, const Wavelengths& wavelengths) {
-  std::string text =
-      fmt::format("    {}, length {}, weight {:.6g}, Y {:.6g}", c.strategy, c.length, c.weight, to_xyz(c.value, wavelengths).y);
-  if (c.splat) text += fmt::format(", falls at ({:.6f}, {:.6f})", c.film.x, c.film.y);
-  return text + fmt::format("\n    {:<12}{}\n", "", numbers(c.value));
-}
-
-std::string percent(double fraction) { return fmt::format("{:.3g} %", 100 * fraction); }
-
-}  // namespace
-
-std::string path_text(const PathRecord& record, Point2 film) {
-  Spectrum lambda, density;
-  for (int i = 0; i < spectrum_size; ++i) {
-    lambda.set(i, record.wavelengths[i]);
-    density.set(i, record.wavelengths.density(i));
-  }
-  std::string text = fmt::format("film point      ({:.6f}, {:.6f}) pixels\n", film.x, film.y);
-  text += "wavelength [nm] " + numbers(lambda) + "\n";
-  text += "density [1/nm]  " + numbers(density) + (record.wavelengths.single() ? "  (the hero alone is left)" : "") + "\n";
-  for (size_t i = 0; i < record.vertices.size(); ++i) text += vertex_text(record.vertices[i], "vertex", i);
-  for (size_t i = 0; i < record.light_vertices.size(); ++i) text += vertex_text(record.light_vertices[i], "light vertex", i);
-  if (!record.contributions.empty()) text += "contributions\n";
-  for (const PathRecord::Contribution& c : record.contributions) text += contribution_text(c, record.wavelengths);
-  const Xyz color = to_xyz(record.result, record.wavelengths);
-  text += "radiance        " + numbers(record.result) + "  W/(m^2 sr nm)\n";
-  text += fmt::format("X Y Z           {:>12.6g} {:>12.6g} {:>12.6g}\n", color.x, color.y, color.z);
-  return text;
-}
-
-std::string replay_text(const PixelReplay& replay, const std::string& picture_command) {
-  std::string text;
-  if (replay.luminance) {
-    double light = 0;
-    for (const ReplayedPath& path : replay.paths) light += path.share.value_or(0);
-    text += fmt::format("pixel {},{}: {} samples, mean Y {:.6g}", replay.x, replay.y, replay.samples, *replay.luminance);
-    if (*replay.luminance > 0) text += fmt::format("; the {} brightest bring {} of it", replay.paths.size(), percent(light));
-    text += "\n";
-  }
-  for (const ReplayedPath& path : replay.paths) {
-    if (replay.luminance) {
-      text += fmt::format("\nsample {}: Y {:.6g}", path.sample, path.luminance);
-      if (path.share) text += fmt::format(", {} of its pixel's light", percent(*path.share));
-      text += "\n" + replay_command(picture_command, replay.x, replay.y, path.sample) + "\n";
-    } else {
-      text += fmt::format("pixel {},{} sample {}\n", replay.x, replay.y, path.sample);
-      if (path.sample >= replay.samples)
-        text += fmt::format("(the picture has samples 0 to {}; this one is not in it)\n", replay.samples - 1);
-    }
-    text += path_text(path.record, path.film);
-    if (path.bad) text += "This is not a finite non-negative spectrum: it counts as black.\n";
-    if (path.splatted > 0) text += fmt::format("Y splatted      {:>12.6g}\n", path.splatted);
-  }
-  return text;
-}
-
-// ---- for programs -----------------------------------------------------------------------------------------------------
-
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json array(const Spectrum& s) {
-  Json json = Json::array();
-  for (int i = 0; i < spectrum_size; ++i) json.push_back(s[i]);
-  return json;
-}
-
-template <class V>
-Json triple(const V& v) {
-  return {v.x, v.y, v.z};
-}
-
-Json vertices_json(const std::vector<PathRecord::Vertex>& vertices) {
-  Json list = Json::array();
-  for (const PathRecord::Vertex& v : vertices)
-    list.push_back({{"kind", v.kind},
-                    {"object", v.object},
-                    {"position", triple(v.position)},
-                    {"normal", triple(v.normal)},
-                    {"lobe", v.lobe},
-                    {"density", v.density},
-                    {"throughput", array(v.throughput)},
-                    {"emitted", array(v.emitted)},
-                    {"direct", array(v.direct)},
-                    {"note", v.note}});
-  return list;
-}
-
-Json contributions_json(const ReplayedPath& path, double of_splats) {
-  const PathRecord& record = path.record;
-  Json list = Json::array();
-  for (const PathRecord::Contribution& c : record.contributions) {
-    const Point2 film = c.splat ? c.film : path.film;
-    list.push_back({{"strategy", c.strategy},
-                    {"length", c.length},
-                    {"weight", c.weight},
-                    {"value", array(c.value)},
-                    {"luminance", to_xyz(c.value, record.wavelengths).y * (c.splat ? of_splats : 1)},
-                    {"film", {film.x, film.y}},
-                    {"splat", c.splat}});
-  }
-  return list;
-}
-
-}  // namespace
-
-std::string replay_json(const Job& job, const PixelReplay& replay, const std::string& file,
-                        const std::string& picture_command) {
-  Json paths = Json::array();
-  for (const ReplayedPath& path : replay.paths) {
-    const PathRecord& record = path.record;
-    Json wavelengths = Json::array(), densities = Json::array();
-    for (int i = 0; i < spectrum_size; ++i) {
-      wavelengths.push_back(record.wavelengths[i]);
-      densities.push_back(record.wavelengths.density(i));
-    }
-    paths.push_back({{"sample", path.sample},
-                     {"command", replay_command(picture_command, replay.x, replay.y, path.sample)},
-                     {"film", {path.film.x, path.film.y}},
-                     {"wavelengths", wavelengths},
-                     {"densities", densities},
-                     {"single", record.wavelengths.single()},
-                     {"result", array(record.result)},
-                     {"bad", path.bad},
-                     {"luminance", path.luminance},
-                     {"splatted", path.splatted},
-                     {"share", path.share ? Json(*path.share) : Json()},
-                     {"vertices", vertices_json(record.vertices)},
-                     {"light_vertices", vertices_json(record.light_vertices)},
-                     {"contributions", contributions_json(path, splat_weight(*job.image))}});
-  }
-  const Json json = {{"file", file},
-                     {"renderer", job.renderer->class_info().name},
-                     {"seed", job.seed},
-                     {"pixel", {replay.x, replay.y}},
-                     {"samples", replay.samples},
-                     {"luminance", replay.luminance ? Json(*replay.luminance) : Json()},
-                     {"paths", paths}};
-  // A file name may hold bytes that are not UTF-8.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace etendue

@@ -39,6 +39,10 @@ std::string replay_text(const PixelReplay&, const std::string& picture_command);
 /// For programs to read; docs/finding-fireflies.md describes it. `file` is the description's.
 std::string replay_json(const Job&, const PixelReplay&, const std::string& file, const std::string& picture_command);
 
+/// What a splat counts for beside a sample's own value, which counts 1 / n of its pixel: paths from luminaires spread over
+/// the whole film, but there are only n of them for each pixel that is rendered.
+double splat_weight(const ImageBuffer&);
+
 /// The command that replays one sample alone.
 std::string replay_command(const std::string& picture_command, int x, int y, std::uint32_t sample);
 

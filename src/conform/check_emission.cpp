@@ -280,7 +280,7 @@ class EmissionTrial {
       at(double(trial.uniform()));
       sum.add(seen(power_sample()));
     }
-    compare_power(what, sum, said, 0.2, "W/nm as the eye weighs it");
+    compare_power(what, sum, said, 0.3, "W/nm as the eye weighs it");
   }
 
   void compare_power(const std::string& what, const statistics::Mean& m, double said, double relative,

@@ -48,7 +48,7 @@ std::optional<Value> Evaluator::value_of(Node& node, const Context& context) {
     }
     case NodeType::negation: {
       const std::optional<Value> inner = evaluate(node.children[0], {nullptr, false, context.lenient});
-      if (!inner) return inner;
+      if (!inner) return std::nullopt;
       return reporting(node.at, [&] { return negate(*inner, node.at); });
     }
     case NodeType::sum:

@@ -118,7 +118,7 @@ std::string Writer::component(const Component& c, int indent, int column) {
   if (short_enough && width <= line_width) return fmt::format("{} {{ {} }}", info.name, fmt::join(items, ", "));
   std::string result = info.name + " {\n";
   for (std::string& item : items) {
-    result.append(size_t(indent + step), ' ').append(item) += '\n';
+    result.append(size_t(indent) + step, ' ').append(item) += '\n';
     item = {};
   }
   return result.append(size_t(indent), ' ') + "}";
@@ -175,7 +175,7 @@ std::string Writer::value(const Value& v, const Member* member, int indent, int 
     std::vector<std::string> keys;
     for (const auto& key : moving->keys())
       keys.push_back(fmt::format("{} s, {}", number_text(double(key.time), 1, false), matrix(key.transform)));
-    const std::string separator = ",\n" + std::string(size_t(indent + step), ' ');
+    const std::string separator = ",\n" + std::string(size_t(indent) + step, ' ');
     return fmt::format("keyframes({})", fmt::join(keys, separator));
   }
   if (const auto* c = v.as<Ref<Component>>()) return *c ? part(**c, member, indent, column) : "none";
@@ -191,7 +191,7 @@ std::string Writer::value(const Value& v, const Member* member, int indent, int 
   }
   if (short_enough && width <= line_width) return fmt::format("[{}]", fmt::join(items, ", "));
   std::string result = "[\n";
-  for (const std::string& item : items) result.append(size_t(indent + step), ' ').append(item) += ",\n";
+  for (const std::string& item : items) result.append(size_t(indent) + step, ' ').append(item) += ",\n";
   return result.append(size_t(indent), ' ') + "]";
 }
 

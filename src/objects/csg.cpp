@@ -12,6 +12,21 @@ Csg::Csg(int weight_of_others, int least_weight) : weight_of_others_(weight_of_o
   shader = make<OperandShader>();
 }
 
+namespace {
+
+bool contains_operand_shader(const Component& part) {
+  for (const Member& m : part.class_info().members) {
+    if (m.kind != Kind::component || m.list) continue;
+    const Value value = get(part, m.name);
+    const auto* inner = value.as<Ref<Component>>();
+    const auto* below = inner ? dynamic_cast<const Shader*>(inner->get()) : nullptr;
+    if (below && (dynamic_cast<const OperandShader*>(below) || contains_operand_shader(*below))) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 // ---- preparing ------------------------------------------------------------------------------------------------------------
 
 void Csg::prepare() {
@@ -36,17 +51,22 @@ void Csg::prepare() {
   number_parts();
   combine_bounds();
   areas_ = std::make_unique<Areas>();
-  if (auto* by_operand = dynamic_cast<OperandShader*>(shader.get()))
-    for (const Ref<SceneObject>& operand : operands) by_operand->stand_for(operand->shader.get());
-  if (!something_left()) {
-    warn(class_info().name + ": nothing is left of its operands", location_of("operands"));
-    own_bounds_ = bounds_ = {};
+  if (auto* by_operand = dynamic_cast<OperandShader*>(shader.get())) {
+    for (const Ref<SceneObject>& operand : operands)
+      if (!by_operand->stand_for(*this, operand->shader.get()))
+        fail("shader", "one OperandShader cannot stand for the shaders of two solids: leave it out, or write one for each");
+  } else if (shader && contains_operand_shader(*shader)) {
+    fail("shader", "an OperandShader must be the solid's own shader, not part of another");
   }
+  // Only a guess: what is very small beside its box may be missed, so that it stays.
+  if (!something_left()) warn(class_info().name + ": nothing seems to be left of its operands", location_of("operands"));
 }
 
 void Csg::check_operand(SceneObject& operand) {
   const std::string name = operand.class_info().name, part_of = " part of a solid";
-  if (!operand.transform.valid()) operand.fail("transform", "the transform is singular, or mirrors at some of its times only");
+  if (!operand.transform.valid())
+    operand.fail("transform",
+                 "the transform is singular or beyond what can be counted with, or mirrors at some of its times only");
   if (!operand.closed()) operand.fail("", "it cannot be" + part_of + ": its surface is not closed, so it has no inside");
   if (operand.unbounded()) operand.fail("", "it cannot be" + part_of + ": it has no end");
   if (operand.emission)

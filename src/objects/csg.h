@@ -85,8 +85,8 @@ class Csg : public SceneObject {
   // Made when first asked for: only luminaires need them.
   struct Areas {
     std::once_flag made;
-    std::vector<float> values;  // over the times of all keys, at equal steps [m^2]
-    float begin = 0, end = 0, error = 0;
+    std::vector<float> times, values;  // so many between each two keys [s], [m^2]
+    float error = 0;
   };
   const Areas& areas() const;
   std::unique_ptr<Areas> areas_;

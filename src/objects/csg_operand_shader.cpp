@@ -19,8 +19,11 @@ void OperandShader::describe(Description<OperandShader>& d) {
       "the index of what lies inside is that of the first operand which light enters.");
 }
 
-void OperandShader::stand_for(const Shader* shader) {
+bool OperandShader::stand_for(const SceneObject& solid, const Shader* shader) {
+  if (solid_ && solid_ != &solid) return false;
+  solid_ = &solid;
   if (std::find(shaders_.begin(), shaders_.end(), shader) == shaders_.end()) shaders_.push_back(shader);
+  return true;
 }
 
 const Scatter* OperandShader::bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {

@@ -11,9 +11,12 @@ class OperandShader final : public Shader {
  public:
   static void describe(Description<OperandShader>&);
 
-  void prepare() override { shaders_.clear(); }
-  /// Counts a shader among those asked; null: a black one.
-  void stand_for(const Shader* shader);
+  void prepare() override {
+    shaders_.clear();
+    solid_ = nullptr;
+  }
+  /// Counts a shader of a solid among those asked; null: a black one. False: it stands for those of another solid already.
+  bool stand_for(const SceneObject& solid, const Shader* shader);
 
   const Scatter* bind(const SurfacePoint&, const Wavelengths&, Arena&) const override;
   Lobes possible_lobes() const override;
@@ -32,6 +35,7 @@ class OperandShader final : public Shader {
     return std::any_of(shaders_.begin(), shaders_.end(), [&](const Shader* s) { return s && is(*s); });
   }
 
+  const SceneObject* solid_ = nullptr;
   std::vector<const Shader*> shaders_;  // each once; null among them: there is a black one
 };
 

@@ -176,14 +176,25 @@ const Csg::Areas& Csg::areas() const {
     const bool moving = times_.size() > 1;
     const Lattice fine = moving ? Lattice{2584, 1597} : Lattice{17711, 10946};
     const Lattice coarse = moving ? Lattice{987, 610} : Lattice{6765, 4181};
-    const int steps = moving ? 32 : 0;
-    if (!times_.empty()) areas.begin = times_.front(), areas.end = times_.back();
-    for (int i = 0; i <= steps; ++i) {
-      const float time = moving ? lerp(float(i) / float(steps), areas.begin, areas.end) : areas.begin;
+    if (moving) {
+      const size_t steps = std::max<size_t>(8, 32 / (times_.size() - 1));
+      for (size_t key = 0; key + 1 < times_.size(); ++key)
+        for (size_t i = 0; i < steps; ++i) areas.times.push_back(lerp(float(i) / float(steps), times_[key], times_[key + 1]));
+      areas.times.push_back(times_.back());
+    } else {
+      areas.times.push_back(times_.empty() ? 0 : times_.front());
+    }
+    for (size_t i = 0; i < areas.times.size(); ++i) {
+      const float time = areas.times[i];
       const Transform t = transform.at(time);
       const double value = own_bounds_.empty() ? 0 : chord_area(t, time, fine.chords, fine.step);
       areas.values.push_back(float(value));
-      if (i > 0) continue;
+      if (i > 0) {  // between two times it may bend by some part of the difference
+        const double larger = std::max(areas.values[i], areas.values[i - 1]);
+        if (larger > 0)
+          areas.error = std::max(areas.error, float(0.5 * std::abs(value - double(areas.values[i - 1])) / larger));
+        continue;
+      }
       const double other = own_bounds_.empty() ? 0 : chord_area(t, time, coarse.chords, coarse.step);
       areas.error = value > 0 ? float(2 * std::abs(other - value) / value + 5.0 / fine.chords) : 0;
     }
@@ -193,11 +204,11 @@ const Csg::Areas& Csg::areas() const {
 
 float Csg::area(float time) const {
   const Areas& known = areas();
-  const auto last = float(known.values.size() - 1);
-  if (last == 0) return known.values[0];
-  const float x = std::clamp((time - known.begin) / (known.end - known.begin), 0.0f, 1.0f) * last;
-  const size_t i = std::min(size_t(x), known.values.size() - 2);
-  return lerp(x - float(i), known.values[i], known.values[i + 1]);
+  const auto after = std::upper_bound(known.times.begin(), known.times.end(), time);
+  if (after == known.times.begin()) return known.values.front();
+  if (after == known.times.end()) return known.values.back();
+  const auto i = size_t(after - known.times.begin());
+  return lerp((time - known.times[i - 1]) / (known.times[i] - known.times[i - 1]), known.values[i - 1], known.values[i]);
 }
 
 float Csg::area_error(float) const { return areas().error; }

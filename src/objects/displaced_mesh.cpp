@@ -85,7 +85,9 @@ class DisplacedMesh final : public TriangleObject {
   /// What the surface tells where the point was before it moved.
   int attribute(int number, const SurfacePoint& p, float* values) const override {
     const std::uint32_t triangle = kept_.empty() ? p.primitive : kept_[p.primitive];
-    const DividedTriangles::Place place = triangles_->place(triangle, p.u, p.v);
+    // Where a still transform mirrors, triangles were turned round: their second and third corners changed places.
+    const bool turned = !transform.animated() && transform.still().flips();
+    const DividedTriangles::Place place = triangles_->place(triangle, turned ? p.v : p.u, turned ? p.u : p.v);
     SurfacePoint before = p;
     before.object = surface.get();
     before.primitive = place.triangle;

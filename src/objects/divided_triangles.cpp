@@ -10,7 +10,7 @@
 namespace etendue {
 namespace {
 
-constexpr size_t most_triangles = size_t(1) << 27;  // some 15 GB while they are made
+constexpr size_t most_triangles = size_t(1) << 26;  // some 8 GB while they are made
 
 /// Numbers by pair of vertices; open addressing.
 class EdgeTable {

@@ -161,7 +161,7 @@ bool ImplicitObject::own_intersect(const Ray& ray, Hit& hit) const {
     if (found) {
       hit.distance = near;
       hit.primitive = std::uint32_t(part);
-      hit.u = 0;
+      hit.u = float(t - double(near));  // what the float lacks
       hit.v = 0;
     }
     return true;
@@ -171,16 +171,21 @@ bool ImplicitObject::own_intersect(const Ray& ray, Hit& hit) const {
 
 void ImplicitObject::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const {
   const DoubleRay r(ray);
-  Place x = at(r, double(hit.distance));
+  const double t = double(hit.distance) + double(hit.u);
+  Place x = at(r, t);
   for (int k = 0; k < 3; ++k) x[k] = std::clamp(x[k], low_[k], high_[k]);
-  point_at(x, int(hit.primitive), p);
+  double d2 = 0;
+  for (int k = 0; k < 3; ++k) d2 += r.direction[k] * r.direction[k];
+  // t may be rounded as on a longer ray (of a solid this is part of).
+  point_at(x, int(hit.primitive), p, 0x1p-22 * t * std::sqrt(d2));
 }
 
 // ---- points -------------------------------------------------------------------------------------------------------------
 
-/// From a place near the surface, or near a face. Coordinates are those of the box's face whose side the normal points to:
-/// u and v go along the next two axes, u backwards on a low face, so that dpdu x dpdv is along the normal.
-void ImplicitObject::point_at(Place x, int part, OwnPoint& p) const {
+/// From a place near the surface, `off` from it by rounding, or near a face. Coordinates are those of the box's face whose side
+/// the normal points to: u and v go along the next two axes, u backwards on a low face, so that dpdu x dpdv is along the
+/// normal.
+void ImplicitObject::point_at(Place x, int part, OwnPoint& p, double off) const {
   double n[3]{}, beyond = 0;
   if (part != surface) {
     const int face = part - 1, k = face / 2;
@@ -188,14 +193,14 @@ void ImplicitObject::point_at(Place x, int part, OwnPoint& p) const {
     n[k] = face % 2 ? 1 : -1;
   } else {
     // Newton's steps along the gradient: the ray's t is a float, and x as far off as that one's rounding.
-    double farthest = 0;
+    double farthest = off;
     for (int k = 0; k < 3; ++k) farthest = std::max(farthest, 1e-4 * (high_[k] - low_[k]));
     Place g = gradient(x);
     for (int i = 0; i < 4; ++i) {
       const double g2 = g[0] * g[0] + g[1] * g[1] + g[2] * g[2], step = field(x) / g2;
       beyond = std::abs(step) * std::sqrt(g2);
       if (!(beyond < farthest)) {  // at a cusp, where the gradient says little
-        beyond = 0;
+        beyond = off;
         break;
       }
       for (int k = 0; k < 3; ++k) x[k] = std::clamp(x[k] - step * g[k], low_[k], high_[k]);
@@ -206,7 +211,7 @@ void ImplicitObject::point_at(Place x, int part, OwnPoint& p) const {
     }
     const double norm = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
     for (int k = 0; k < 3; ++k) n[k] = norm > 0 && std::isfinite(norm) ? g[k] / norm : double(k == 2);
-    beyond = std::min(beyond, 1e-9 * farthest);
+    beyond = std::min(beyond, std::max(1e-9 * farthest, off));
   }
   p.position = {float(x[0]), float(x[1]), float(x[2])};
   p.normal = normalize(Normal3(float(n[0]), float(n[1]), float(n[2])));

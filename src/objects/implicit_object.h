@@ -57,7 +57,7 @@ class ImplicitObject : public PlacedObject {
 
   template <class F>
   void visit_crossings(const DoubleRay&, double from, const F& visit) const;
-  void point_at(Place, int part, OwnPoint&) const;
+  void point_at(Place, int part, OwnPoint&, double off = 0) const;
 
   double edge(int k, int i) const;
   void cell_box(const Cell&, Place& low, Place& high) const;

@@ -110,6 +110,11 @@ class ImplicitSurface final : public ImplicitObject {
     Interval slope;
     const Interval f = field_.range(box, s.ray.direction, slope);
     if (!f.contains(0)) return false;
+    // Where f is 0 all over, or at least: outside, to the last part. (What is wider than 0 by rounding alone counts as 0.)
+    if (f.low > -1e-200) {
+      if (s.inside) t = from;
+      return s.inside;
+    }
     const double middle = 0.5 * (from + to);
     if (!slope.contains(0) || to - from <= s.shortest || middle <= from || middle >= to) {
       if ((value_at(s.ray, to) < 0) == s.inside) return false;

@@ -55,10 +55,20 @@ bool RevolvedQuadric::own_intersect(const Ray& ray, Hit& hit) const {
 
 void RevolvedQuadric::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const {
   const DoubleRay r(ray);
-  const double t = exact_distance(hit), x = r.at(t, 0), y = r.at(t, 1);
-  if (hit.primitive == side)
-    side_point(x, y, std::clamp(r.at(t, 2), profile_.low, profile_.high), p);
-  else
+  const double t = exact_distance(hit);
+  double x = r.at(t, 0), y = r.at(t, 1), z = std::clamp(r.at(t, 2), profile_.low, profile_.high);
+  if (hit.primitive == side) {
+    // Onto the side by Newton's steps: t may be rounded as on a longer ray (of a solid this is part of).
+    for (int i = 0; i < 2; ++i) {
+      const double slope = profile_.half_slope(z), g2 = x * x + y * y + slope * slope;
+      if (!(g2 > 0)) break;
+      const double step = 0.5 * (x * x + y * y - profile_.squared_radius(z)) / g2;
+      x -= step * x;
+      y -= step * y;
+      z = std::clamp(z + step * slope, profile_.low, profile_.high);
+    }
+    side_point(x, y, z, p);
+  } else
     cap_point(Part(hit.primitive), x, y, p);
 }
 

@@ -3,17 +3,14 @@
 #include "subdivision.h"
 
 #include <opensubdiv/bfr/tessellation.h>
-#include <tbb/parallel_for.h>
-
-#include <atomic>
 
 #include "etendue/error.h"
-#include "limit_surface.h"
+#include "limit_division.h"
 
 namespace etendue {
 namespace {
 
-constexpr std::uint64_t most_vertices = std::uint64_t(1) << 31;
+constexpr std::uint64_t most_vertices = std::uint64_t(1) << 27;
 
 /// First places in an array for runs of given lengths; the last entry is the sum.
 template <class F>
@@ -32,15 +29,15 @@ class LimitTessellation {
         base_(topology_->GetLevel(0)),
         surfaces_(*topology_),
         cage_(&cage),
-        fineness_(fineness),
-        most_pieces_(1 << fineness.levels),
-        uvs_(!cage.uv_corners.empty()) {
-    for (const VertexAttribute& a : cage.attributes) width_ += a.width;
-    gather();
+        values_(cage),
+        division_(divide_cage(base_, surfaces_, values_, fineness)),
+        uvs_(!cage.uv_corners.empty()),
+        extra_(size_t(values_.width - 3)) {
+    result_.coarse = division_.coarse;
+    result_.without_limit = division_.without_limit;
   }
 
   LimitMesh make() {
-    divide();
     lay_out();
     evaluate();
     share();
@@ -49,133 +46,29 @@ class LimitTessellation {
   }
 
  private:
-  struct Division {
-    /// How many pieces across a face. As many both ways: the strips between very different numbers are sewn together by
-    /// slanting triangles, which would span many steps of the finer one.
-    int inside = 1;
-    bool exists = false;
-  };
-
-  LimitSurface surface() const { return LimitSurface(surfaces_, vertices_, width_, uv_values_); }
-  size_t faces() const { return size_t(base_.GetNumFaces()); }
+  size_t faces() const { return division_.faces.size(); }
   template <class F>
-  void each_face(F&& f) const {  // f(surface, face)
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, faces()), [&](const tbb::blocked_range<size_t>& some) {
-      LimitSurface of_face = surface();
-      for (size_t i = some.begin(); i < some.end(); ++i) f(of_face, int(i));
-    });
-  }
-
-  void gather() {
-    const size_t count = cage_->positions.size(), w = size_t(width_);
-    vertices_.resize(count * w);
-    for (size_t i = 0; i < count; ++i) {
-      double* to = &vertices_[i * w];
-      for (int k = 0; k < 3; ++k) *to++ = double(cage_->positions[i][k]);
-      for (const VertexAttribute& a : cage_->attributes)
-        for (int k = 0; k < a.width; ++k) *to++ = double(a.values[i * size_t(a.width) + size_t(k)]);
-    }
-    if (!uvs_) return;
-    for (const Point2& uv : cage_->uvs) uv_values_.insert(uv_values_.end(), {double(uv.x), double(uv.y)});
-  }
-
-  int limited(double pieces) {
-    if (!(pieces > most_pieces_)) return std::max(1, int(std::ceil(pieces - 1e-9)));
-    ++coarse_;
-    return most_pieces_;
-  }
-
-  // Triangles with corners on a surface in steps of 1/n by s and 1/m by t are at most
-  //     (D_ss / n^2 + 2 D_st / (n m) + D_tt / m^2) / 8
-  // from it, where D bounds the lengths of second derivatives (Filip, Magedson & Markot 1986, "Surface algorithms using bounds
-  // on derivatives"); with 2 / (n m) <= 1 / n^2 + 1 / m^2 each direction gets half of the tolerance. A curve's chords are at
-  // most D / (8 n^2) from it. The derivatives are looked at in 9 places along an edge and 25 in a face.
-  void divide() {
-    pieces_.assign(size_t(base_.GetNumEdges()), most_pieces_);
-    divisions_.assign(faces(), {});
-    const bool adaptive = fineness_.tolerance > 0 || fineness_.edge_length > 0;
-    each_face([&](LimitSurface& s, int f) {
-      Division& d = divisions_[size_t(f)];
-      d.exists = adaptive ? s.load(f) : surfaces_.FaceHasLimitSurface(f);
-      if (!d.exists) return;
-      d.inside = most_pieces_;
-      if (!adaptive) return;
-      const Far::ConstIndexArray edges = base_.GetFaceEdges(f);
-      for (int i = 0; i < edges.size(); ++i)
-        if (first_with_surface(edges[i]) == f) pieces_[size_t(edges[i])] = pieces_along(s, i);
-      d.inside = pieces_inside(s);
-    });
-    result_.coarse = coarse_;
-    result_.without_limit =
-        size_t(std::count_if(divisions_.begin(), divisions_.end(), [](const Division& d) { return !d.exists; }));
-    if (result_.without_limit == faces()) throw Error("no face has a limit surface: all lie at a boundary that is not kept");
-  }
-
-  int first_with_surface(int edge) const {
-    for (const int f : base_.GetEdgeFaces(edge))
-      if (surfaces_.FaceHasLimitSurface(f)) return f;
-    return -1;
-  }
-
-  int pieces_along(LimitSurface& s, int edge) {
-    constexpr int steps = 8;
-    std::array<std::array<double, 3>, steps + 1> p;
-    for (int i = 0; i <= steps; ++i) {
-      double st[2];
-      s.parameters().GetEdgeCoord(edge, double(i) / steps, st);
-      p[size_t(i)] = s.position(st);
-    }
-    double length = 0, second = 0;
-    for (size_t i = 0; i < steps; ++i) {
-      double first_difference = 0, second_difference = 0;
-      for (size_t k = 0; k < 3; ++k) {
-        const double d = p[i + 1][k] - p[i][k], dd = i > 0 ? d - (p[i][k] - p[i - 1][k]) : 0;
-        first_difference += d * d;
-        second_difference += dd * dd;
-      }
-      length += std::sqrt(first_difference);
-      second = std::max(second, steps * steps * std::sqrt(second_difference));
-    }
-    double pieces = 1;
-    if (fineness_.tolerance > 0) pieces = std::sqrt(second / (8 * double(fineness_.tolerance)));
-    if (fineness_.edge_length > 0) pieces = std::max(pieces, length / double(fineness_.edge_length));
-    return limited(pieces);
-  }
-
-  int pieces_inside(LimitSurface& s) {
-    const Bfr::Tessellation sample(s.parameters(), 4);
-    std::vector<double> places(size_t(2 * sample.GetNumCoords()));
-    sample.GetCoords(places.data());
-    std::array<double, 5> most{};
-    for (size_t i = 0; i < places.size(); i += 2) {
-      const std::array<double, 5> here = s.sizes(&places[i]);
-      for (size_t k = 0; k < 5; ++k) most[k] = std::max(most[k], here[k]);
-    }
-    std::array<double, 2> pieces{1, 1};
-    for (size_t k = 0; k < 2; ++k) {
-      if (fineness_.tolerance > 0) pieces[k] = std::sqrt((most[k == 0 ? 2 : 4] + most[3]) / (4 * double(fineness_.tolerance)));
-      if (fineness_.edge_length > 0) pieces[k] = std::max(pieces[k], most[k] / double(fineness_.edge_length));
-    }
-    return limited(std::max(pieces[0], pieces[1]));
+  void each_face(F&& f) const {
+    for_each_face(faces(), surfaces_, values_, f);
   }
 
   Bfr::Tessellation pattern(int f) const {
     thread_local std::vector<int> rates;
     rates.clear();
-    for (const int e : base_.GetFaceEdges(f)) rates.push_back(pieces_[size_t(e)]);
-    const Division& d = divisions_[size_t(f)];
+    for (const int e : base_.GetFaceEdges(f)) rates.push_back(division_.edges[size_t(e)]);
+    const CageDivision::Face& d = division_.faces[size_t(f)];
     const Bfr::Parameterization p = surfaces_.GetFaceParameterization(f);
     rates.push_back(d.inside);
     return Bfr::Tessellation(p, int(rates.size()), rates.data());
   }
 
   void lay_out() {
-    edge_start_ = starts(pieces_.size(), [&](size_t e) { return std::uint64_t(pieces_[e] - 1); });
+    edge_start_ = starts(division_.edges.size(), [&](size_t e) { return std::uint64_t(division_.edges[e] - 1); });
     shared_ = std::uint64_t(base_.GetNumVertices()) + edge_start_.back();
     for (std::uint64_t& s : edge_start_) s += std::uint64_t(base_.GetNumVertices());
     std::vector<std::array<std::uint64_t, 3>> counts(faces());
     each_face([&](LimitSurface&, int f) {
-      if (!divisions_[size_t(f)].exists) return;
+      if (!division_.faces[size_t(f)].exists) return;
       const Bfr::Tessellation t = pattern(f);
       counts[size_t(f)] = {std::uint64_t(t.GetNumBoundaryCoords()), std::uint64_t(t.GetNumInteriorCoords()),
                            std::uint64_t(t.GetNumFacets())};
@@ -185,29 +78,28 @@ class LimitTessellation {
     triangle_start_ = starts(faces(), [&](size_t f) { return counts[f][2]; });
     for (std::uint64_t& s : inside_start_) s += shared_;
     if (inside_start_.back() + border_start_.back() > most_vertices || triangle_start_.back() > most_vertices)
-      throw Error("there would be " + std::to_string(triangle_start_.back()) + " triangles, more than 2^31");
+      throw Error("there would be " + std::to_string(triangle_start_.back()) + " triangles, more than 2^27");
   }
 
   /// Points within faces go where they belong, those on borders wait for what the faces share.
   void evaluate() {
     resize(inside_start_.back());
     borders_.resize(border_start_.back());
-    const size_t extra = size_t(width_ - 3);
-    border_attributes_.resize(extra * borders_.size());
+    border_attributes_.resize(extra_ * borders_.size());
     each_face([&](LimitSurface& s, int f) {
-      if (!divisions_[size_t(f)].exists || !s.load(f)) return;
+      if (!division_.faces[size_t(f)].exists || !s.load(f)) return;
       const Bfr::Tessellation t = pattern(f);
       thread_local std::vector<double> places;
       places.resize(size_t(2 * t.GetNumCoords()));
       t.GetCoords(places.data());
-      std::vector<float> attributes(extra + 1);
+      std::vector<float> attributes(extra_ + 1);
       const size_t on_border = size_t(t.GetNumBoundaryCoords());
       for (size_t i = 0; i < size_t(t.GetNumCoords()); ++i) {
         const LimitPoint p = s.at(&places[2 * i], attributes.data());
         if (i < on_border) {
           const size_t at = border_start_[size_t(f)] + i;
           borders_[at] = p;
-          std::copy_n(attributes.begin(), extra, border_attributes_.begin() + std::ptrdiff_t(extra * at));
+          std::copy_n(attributes.begin(), extra_, border_attributes_.begin() + std::ptrdiff_t(extra_ * at));
         } else {
           put(inside_start_[size_t(f)] + i - on_border, p, attributes.data());
         }
@@ -246,7 +138,7 @@ class LimitTessellation {
     for (int c = 0; c < corners.size(); ++c) {
       visit(i++, std::uint64_t(corners[c]));
       const bool forwards = base_.GetEdgeVertices(edges[c])[0] == corners[c];
-      const std::uint64_t first = edge_start_[size_t(edges[c])], count = std::uint64_t(pieces_[size_t(edges[c])] - 1);
+      const std::uint64_t first = edge_start_[size_t(edges[c])], count = std::uint64_t(division_.edges[size_t(edges[c])] - 1);
       for (std::uint64_t k = 0; k < count; ++k) visit(i++, forwards ? first + k : first + count - 1 - k);
     }
   }
@@ -271,7 +163,7 @@ class LimitTessellation {
     };
     std::uint64_t vertices = inside_start_.back();
     for (size_t f = 0; f < faces(); ++f) {
-      if (!divisions_[f].exists) continue;
+      if (!division_.faces[f].exists) continue;
       around(int(f), [&](size_t i, std::uint64_t point) {
         const size_t border = border_start_[f] + i;
         std::uint32_t c = first[point];
@@ -286,12 +178,11 @@ class LimitTessellation {
       });
     }
     resize(vertices);
-    const size_t extra = size_t(width_ - 3);
     for (size_t point = 0; point < shared_; ++point)
       for (std::uint32_t c = first[point]; c != none; c = copies[c].next) {
         LimitPoint p = borders_[copies[c].border];
         p.position = borders_[source[point]].position;
-        put(copies[c].vertex, p, border_attributes_.data() + extra * source[point]);
+        put(copies[c].vertex, p, border_attributes_.data() + extra_ * source[point]);
       }
   }
 
@@ -299,7 +190,7 @@ class LimitTessellation {
     auto& triangles = result_.mesh.triangles;
     triangles.resize(triangle_start_.back());
     each_face([&](LimitSurface&, int f) {
-      if (!divisions_[size_t(f)].exists) return;
+      if (!division_.faces[size_t(f)].exists) return;
       Bfr::Tessellation t = pattern(f);
       const size_t on_border = size_t(t.GetNumBoundaryCoords()), at = triangle_start_[size_t(f)];
       thread_local std::vector<int> facets;
@@ -317,15 +208,11 @@ class LimitTessellation {
   Far::TopologyLevel base_;
   LimitSurfaces surfaces_;
   const PolygonMesh* cage_;
-  const Fineness fineness_;
-  const int most_pieces_;
+  const CageValues values_;
+  const CageDivision division_;
   const bool uvs_;
-  int width_ = 3;  // numbers of a vertex: its position and its attributes
-  std::vector<double> vertices_, uv_values_;
+  const size_t extra_;  // numbers of a vertex behind its position
 
-  std::vector<int> pieces_;  // of each edge
-  std::vector<Division> divisions_;
-  std::atomic<size_t> coarse_ = 0;
   std::uint64_t shared_ = 0;
   std::vector<std::uint64_t> edge_start_, border_start_, inside_start_, triangle_start_;
   std::vector<LimitPoint> borders_;  // as each face sees its own
@@ -338,7 +225,7 @@ class LimitTessellation {
 
 LimitMesh limit_mesh(const PolygonMesh& cage, const SubdivisionRules& rules, const Fineness& fineness) {
   if (cage.positions.size() > most_vertices || cage.corners.size() > most_vertices || cage.uvs.size() > most_vertices)
-    throw Error("more than 2^31 vertices");
+    throw Error("more than 2^27 vertices");
   return LimitTessellation(cage, rules, fineness).make();
 }
 

@@ -96,7 +96,10 @@ Transform::Transform(const Matrix& matrix) : m_(matrix) {
     for (size_t c = 0; c < 3; ++c) inverse_[4 * r + c] = float(i[3 * r + c]);
     inverse_[4 * r + 3] = float(-(i[3 * r] * m_[3] + i[3 * r + 1] * m_[7] + i[3 * r + 2] * m_[11]));
   }
-  for (float x : inverse_) valid_ = valid_ && std::isfinite(x);
+  // Beyond these, squares and products of a few are no floats any more.
+  constexpr float most = 1e15f;
+  for (size_t k = 0; k < 12; ++k)
+    valid_ = valid_ && std::isfinite(inverse_[k]) && (k % 4 == 3 || (std::abs(inverse_[k]) < most && std::abs(m_[k]) < most));
 }
 
 Transform Transform::translate(const Vector3& by) { return Transform(Matrix{1, 0, 0, by.x, 0, 1, 0, by.y, 0, 0, 1, by.z}); }

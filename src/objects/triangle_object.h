@@ -59,6 +59,9 @@ class TriangleObject : public SceneObject {
   const std::array<std::uint32_t, 3>& corner_indices(std::uint32_t primitive) const { return mesh_.triangles[primitive]; }
 
  private:
+  /// Up to this many triangles are tested one by one when a scene does not traverse them itself.
+  static constexpr size_t few = 8;
+
   /// Replaces what was adopted by what a still transform makes of it.
   void bake(const Transform&);
 

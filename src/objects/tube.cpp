@@ -94,9 +94,11 @@ class Tube final : public PlacedObject {
   void own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const override {
     const DoubleRay r(ray);
     const double t = exact_distance(hit), x = r.at(t, 0), y = r.at(t, 1);
-    if (hit.primitive == outer || hit.primitive == inner)
-      side_point(int(hit.primitive), x, y, std::clamp(r.at(t, 2), -half_, half_), p);
-    else
+    if (hit.primitive == outer || hit.primitive == inner) {
+      // Onto the side: t may come from a longer ray than was asked (of a solid).
+      const double around = std::sqrt(x * x + y * y), scale = around > 0 ? r_[hit.primitive] / around : 1;
+      side_point(int(hit.primitive), scale * x, scale * y, std::clamp(r.at(t, 2), -half_, half_), p);
+    } else
       end_point(int(hit.primitive), x, y, p);
   }
 

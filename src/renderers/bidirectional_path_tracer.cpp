@@ -56,6 +56,9 @@ class BidirectionalPathTracer final : public Renderer {
     if (!delta.empty() && !traits.specular.empty())
       advice.push_back({"mirror images of caustics of " + some_of(delta) + " by " + some_of(traits.specular),
                         "(give the luminaire a small area)"});
+    if (traits.light_beyond())
+      advice.push_back(
+          {"light from infinity that falls on " + some_of(traits.endless) + " far from everything else", "PathTracer"});
     miss_subsurface(traits, advice);
     return advice;
   }

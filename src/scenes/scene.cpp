@@ -71,7 +71,8 @@ void Scene::prepare() {
                           " stands twice in the same scene; put it into a scene, and that into an Instance for each place");
     }
     if (!objects[i]->transform.valid())
-      objects[i]->fail("transform", "the transform is singular, or mirrors at some of its times only");
+      objects[i]->fail("transform",
+                       "the transform is singular or beyond what can be counted with, or mirrors at some of its times only");
     if (const Scene* inner = scene_within(*objects[i])) nesting_ = std::max(nesting_, 1 + inner->nesting_);
   }
   if (nesting_ > Hit::deepest_nesting)

@@ -24,9 +24,9 @@ float wrapped(float angle) { return angle - 2 * pi * std::round(angle / (2 * pi)
 }  // namespace
 
 // The maps from roughness to variance and scale are fits that make equal steps look equal (eqs. 7 and 8). The residual lobe is
-// as wide as TRT. Roughness 0 would be a mirror; it counts as 0.03.
-HairFibre::HairFibre(float along, float around, float tilt, float eta) : around_(clamp(around, 0.03f, 1)), eta_(eta) {
-  const float b = clamp(along, 0.03f, 1), n = around_;
+// as wide as TRT. Roughness 0 would be a mirror; it counts as 0.05.
+HairFibre::HairFibre(float along, float around, float tilt, float eta) : around_(clamp(around, 0.05f, 1)), eta_(eta) {
+  const float b = clamp(along, 0.05f, 1), n = around_;
   const float v = square(0.726f * b + 0.812f * b * b + 3.7f * std::pow(b, 20.0f));
   variance_ = {v, 0.25f * v, 4 * v, 4 * v};
   scale_ = 0.626657069f * (0.265f * n + 1.194f * n * n + 5.372f * std::pow(n, 22.0f));  // sqrt(pi / 8)

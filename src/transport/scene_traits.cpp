@@ -28,6 +28,7 @@ void look(const Scene& scene, bool nested, SceneTraits& traits) {
       if (lobes & pass_through) note(traits.pass_through);
       if (object->shader->moves_exit()) note(traits.moved_exits);
     }
+    if (object->unbounded()) note(traits.endless);
     if (object->interior) {
       note(traits.media);
       if (object->interior->emits()) note(traits.emissive_media);
