@@ -12,8 +12,8 @@ using namespace geometry_test;
 struct Case {
   std::string name;
   std::vector<Setting> settings;
-  double area = 0, volume = 0;                        ///< [m^2], [m^3]; no volume: open
-  std::function<double(double, double, double)> off;  ///< distance of a point near the side from it [m]
+  double area = 0, volume = 0;                             ///< [m^2], [m^3]; no volume: open
+  std::function<double(double, double, double)> off = {};  ///< distance of a point near the side from it [m]
   bool convex = true;
 };
 

@@ -14,7 +14,7 @@ namespace etendue {
 class EmbreeScene final : public Scene {
   enum class Quality : std::uint8_t { low, medium, high };
   Quality quality = Quality::medium;
-  bool robust = true;
+  bool robust = false;
   bool compact = false;
 
  public:
@@ -25,8 +25,8 @@ class EmbreeScene final : public Scene {
                                        choices("low", "medium", "high"), Effect::rebuild)
         .member<&EmbreeScene::robust>(
             "robust", "",
-            "hardly a ray slips between triangles that share an edge (of rays aimed at it, one in thousands; in a BvhScene "
-            "none); some 10 % slower",
+            "hardly a ray slips between triangles that share an edge, but distances are less exact: one that "
+            "leaves a triangle may meet it again. A BvhScene does neither",
             Effect::rebuild)
         .member<&EmbreeScene::compact>("compact", "", "less memory, slower", Effect::rebuild);
   }
