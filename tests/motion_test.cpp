@@ -331,5 +331,13 @@ TEST(Motion, ABlurredPictureIsTheMeanOfStillOnes) {
   for (size_t k = 0; k < 16; ++k) EXPECT_NEAR(blurred[k] / mean[k], 1, 0.01) << "tile " << k;
 }
 
+// What floats cannot count with is refused before a ray meets it.
+TEST(Transforms, BeyondFloatsAreNotValid) {
+  EXPECT_FALSE(Transform::scale({1, 1, 1e-30f}).valid());
+  EXPECT_FALSE(Transform::scale({1e20f, 1, 1}).valid());
+  EXPECT_TRUE(Transform::scale({1e-6f, 1e-6f, 1e-6f}).valid());
+  EXPECT_TRUE((Transform::translate({1e20f, 0, 0}) * Transform::scale({1e6f, 1e6f, 1e6f})).valid());
+}
+
 }  // namespace
 }  // namespace etendue

@@ -5,24 +5,11 @@
 #include <map>
 #include <set>
 
+#include "component/html_text.h"
 #include "conform/conformance.h"
 
 namespace etendue::conform {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
 
 constexpr std::string_view style = R"(
 :root { color-scheme: light dark; --paper: #fcfcfa; --ink: #1d1f21; --quiet: #5f6368; --line: #d9d9d4; --panel: #f2f2ee;

@@ -2,24 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "component/html_text.h"
 #include "verify/report_pictures.h"
 
 namespace etendue::verify {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
 
 constexpr std::string_view style = R"(
 :root {
