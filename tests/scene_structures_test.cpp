@@ -166,10 +166,11 @@ TEST(SceneStructures, FindTheSameHits) {
         EXPECT_EQ(scenes[k]->any(r), hit2) << all_structures[k];
         const float t2 = hit2 ? found.distance : r.maximum;
         if (hit == hit2 && (!hit || std::abs(t - t2) <= 1e-5f * (t + furthest))) continue;
-        // Where the nearer one is on the edge of a triangle, rounding decides whether it is met.
+        // Where the nearer one is on the edge of a triangle, rounding decides whether it is met: from 60 sizes away by a few
+        // thousandths of a triangle.
         const Hit& nearer = t < t2 ? expected : found;
         if (nearer.object->class_info().name == "TriangleMesh" &&
-            std::min({nearer.u, nearer.v, 1 - nearer.u - nearer.v}) < 1e-3f)
+            std::min({nearer.u, nearer.v, 1 - nearer.u - nearer.v}) < 3e-3f)
           continue;
         ADD_FAILURE() << all_structures[k] << " at " << t2 << ", not " << t << ", on a " << nearer.object->class_info().name
                       << " at " << nearer.u << " " << nearer.v << ", scale " << place.scale << ", ray " << i;

@@ -2,6 +2,7 @@
 
 #include "geometry.h"
 #include "scenes/embree_device.h"
+#include "scenes/watertight.h"
 #include "triangle_test.h"
 
 namespace etendue {
@@ -26,23 +27,10 @@ Vector3 unit_normal(const Vector3& n, float& inverse_length) {
 TriangleObject::TriangleObject() = default;
 TriangleObject::~TriangleObject() = default;
 
-TriangleObject::Moment TriangleObject::moment(float time) const {
-  if (!motion_.moves()) [[likely]]
-    return {};
-  const std::vector<float>& times = motion_.times;
-  const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, time);
-  const size_t k = size_t(next - times.begin());
-  const float part = clamp((time - times[k - 1]) / (times[k] - times[k - 1]), 0, 1);
-  return {(k - 1) * vertices_, k * vertices_, part};
-}
-
 TriangleObject::Corners TriangleObject::stored_corners(std::uint32_t primitive, const Moment& m) const {
   const auto& t = mesh_.triangles[primitive];
-  if (!motion_.moves()) [[likely]]
-    return {{mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]}};
-  Corners c;
-  for (size_t i = 0; i < 3; ++i) c.p[i] = lerp(m.part, mesh_.positions[m.first + t[i]], mesh_.positions[m.second + t[i]]);
-  return c;
+  const MovingTriangleView view = moving_view();
+  return {{view.position(t[0], m), view.position(t[1], m), view.position(t[2], m)}};
 }
 
 Vector3 TriangleObject::stored_normal(std::uint32_t corner, const Moment& m) const {
@@ -75,13 +63,8 @@ TriangleObject::Corners TriangleObject::corners(std::uint32_t primitive, float t
   return c;
 }
 
-MovingTriangleView TriangleObject::moving_view() const { return {mesh_.positions, vertices_, mesh_.triangles, motion_.times}; }
-
 const EmbreeTriangles& TriangleObject::accelerator() const {
-  std::call_once(lazy_->accelerator_made, [this] {
-    lazy_->accelerator =
-        motion_.moves() ? std::make_unique<EmbreeTriangles>(moving_view()) : std::make_unique<EmbreeTriangles>(view());
-  });
+  std::call_once(lazy_->accelerator_made, [this] { lazy_->accelerator = std::make_unique<EmbreeTriangles>(moving_view()); });
   return *lazy_->accelerator;
 }
 
@@ -93,16 +76,16 @@ bool TriangleObject::intersect(const Ray& ray, Hit& hit) const {
   if (mesh_.triangles.size() > few) {
     any = accelerator().nearest(local, found.t, primitive, found.u, found.v);
   } else {
-    Ray shortened = local;
     const Moment now = moment(ray.time);
+    const ShearedRay<double> sheared(local);
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
       const Corners c = stored_corners(std::uint32_t(i), now);
-      const Point3& a = c.p[0];
-      const Vector3 e1 = c.p[1] - a, e2 = c.p[2] - a;
-      TriangleHit h;
-      if (!intersect_triangle(shortened, a, e1, e2, cross(e1, e2), h)) continue;
-      found = h;
-      shortened.maximum = h.t;
+      const auto corner = [&c](int k, int axis) { return double(c.p[k][axis]); };
+      const CornerWeights<double> weights = corner_weights(sheared, corner);
+      if (!inside(weights)) continue;
+      const float t = float(plane_distance(sheared, corner));
+      if (!(t > 0 && t < found.t)) continue;
+      found = {t, float(weights.b / weights.sum()), float(weights.c / weights.sum())};
       primitive = std::uint32_t(i);
       any = true;
     }

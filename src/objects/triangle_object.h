@@ -8,11 +8,11 @@
 #include "etendue/shader.h"  // objects own shaders
 #include "lightsamplers/light_tree.h"
 #include "mesh_data.h"
+#include "moving_triangles.h"
 
 namespace etendue {
 
 class EmbreeTriangles;
-struct MovingTriangleView;
 
 /// Where the corners of triangles are at several times. Between these they move in straight lines; before the first and
 /// after the last they rest.
@@ -70,12 +70,8 @@ class TriangleObject : public SceneObject {
   };
   /// Whether anything changes with time.
   bool moves() const { return transform.animated() || motion_.moves(); }
-  /// Two keys and how far it is from one to the other.
-  struct Moment {
-    size_t first = 0, second = 0;  // of the corners of each, among all positions
-    float part = 0;
-  };
-  Moment moment(float time) const;
+  using Moment = MovingTriangleView::Moment;
+  Moment moment(float time) const { return moving_view().moment(time); }
   Corners stored_corners(std::uint32_t primitive, const Moment&) const;
   Vector3 stored_normal(std::uint32_t corner, const Moment&) const;
   float motion_error(std::uint32_t primitive, const Moment&, const Normal3&) const;
@@ -93,7 +89,8 @@ class TriangleObject : public SceneObject {
   const std::vector<double>& cumulative_areas() const;
   const EmbreeTriangles& accelerator() const;
   TriangleView view() const { return {mesh_.positions.first(vertices_), mesh_.triangles}; }
-  MovingTriangleView moving_view() const;
+  /// Still ones as well.
+  MovingTriangleView moving_view() const { return {mesh_.positions, vertices_, mesh_.triangles, motion_.times}; }
 
   struct Plane {
     Normal3 normal;

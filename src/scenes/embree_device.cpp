@@ -2,6 +2,8 @@
 
 #include <tbb/task_arena.h>
 
+#include "watertight.h"
+
 namespace etendue {
 namespace {
 
@@ -74,20 +76,22 @@ void attach_moving_triangles(RTCScene scene, const MovingTriangleView& view, RTC
   check_embree("taking in moving triangles");
 }
 
-EmbreeTriangles::EmbreeTriangles(const TriangleView& view) : scene_(rtcNewScene(embree_device())) {
-  check_embree("making a scene");
-  attach_triangles(scene_.get(), view, RTC_BUILD_QUALITY_MEDIUM);
-  commit();
+float exact_distance(const MovingTriangleView& view, std::uint32_t triangle, const Ray& ray) {
+  const MovingTriangleView::Moment now = view.moment(ray.time);
+  const auto& t = view.triangles[triangle];
+  const Point3 p[3] = {view.position(t[0], now), view.position(t[1], now), view.position(t[2], now)};
+  return float(plane_distance(ShearedRay<double>(ray), [&p](int k, int axis) { return double(p[k][axis]); }));
 }
 
-EmbreeTriangles::EmbreeTriangles(const MovingTriangleView& view)
-    : scene_(rtcNewScene(embree_device())), clock_{view.times.front(), view.times.back()} {
+EmbreeTriangles::EmbreeTriangles(const MovingTriangleView& view) : scene_(rtcNewScene(embree_device())), view_(view) {
   check_embree("making a scene");
-  attach_moving_triangles(scene_.get(), view, RTC_BUILD_QUALITY_MEDIUM, [](unsigned) {});
-  commit();
-}
-
-void EmbreeTriangles::commit() {
+  rtcSetSceneFlags(scene_.get(), RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  if (view.times.empty()) {
+    attach_triangles(scene_.get(), {view.positions.first(view.vertices), view.triangles}, RTC_BUILD_QUALITY_MEDIUM);
+  } else {
+    clock_ = {view.times.front(), view.times.back()};
+    attach_moving_triangles(scene_.get(), view, RTC_BUILD_QUALITY_MEDIUM, [](unsigned) {});
+  }
   // Isolated: a thread that waits here within a parallel loop must not take up another part of that loop.
   tbb::this_task_arena::isolate([this] { rtcCommitScene(scene_.get()); });
   check_embree("building over triangles");
@@ -98,11 +102,16 @@ bool EmbreeTriangles::nearest(const Ray& ray, float& t, std::uint32_t& triangle,
   rtcInitIntersectContext(&context);
   RTCRayHit query;
   set_embree_ray(query.ray, ray, clock_);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene_.get(), &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  t = query.ray.tfar;
+  while (true) {
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.get(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    t = exact_distance(view_, query.hit.primID, ray);
+    if (t > 0 && t < ray.maximum) [[likely]]
+      break;
+    go_on_behind(query.ray, ray);
+  }
   triangle = query.hit.primID;
   u = query.hit.u;
   v = query.hit.v;
@@ -110,11 +119,21 @@ bool EmbreeTriangles::nearest(const Ray& ray, float& t, std::uint32_t& triangle,
 }
 
 bool EmbreeTriangles::any(const Ray& ray) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  struct Context {
+    RTCIntersectContext embree;
+    const EmbreeTriangles& triangles;
+    const Ray& ray;
+  } context{{}, *this, ray};
+  rtcInitIntersectContext(&context.embree);
+  context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
+    const Context& c = *reinterpret_cast<const Context*>(arguments->context);
+    const RTCHit& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+    const float t = exact_distance(c.triangles.view_, hit.primID, c.ray);
+    if (!(t > 0 && t < c.ray.maximum)) arguments->valid[0] = 0;
+  };
   RTCRay query;
   set_embree_ray(query, ray, clock_);
-  rtcOccluded1(scene_.get(), &context, &query);
+  rtcOccluded1(scene_.get(), &context.embree, &query);
   return query.tfar < 0;
 }
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "etendue/scene_object.h"
+#include "objects/moving_triangles.h"
 
 namespace etendue {
 
@@ -38,14 +38,10 @@ class EmbreeSceneHandle {
 /// position, and sixteen are read at the last: what owns them keeps one more.
 unsigned attach_triangles(RTCScene, const TriangleView&, RTCBuildQuality);
 
-/// Triangles whose corners move in straight lines between the times of keys, and rest before the first and after the last.
-/// The positions of all corners at the first key come first, then those at the second; sixteen bytes are read at the last.
-struct MovingTriangleView {
-  std::span<const Point3> positions;
-  size_t vertices = 0;
-  std::span<const std::array<std::uint32_t, 3>> triangles;
-  std::span<const float> times;  ///< [s], increasing; two at least
-};
+/// The distance t at which a ray that hits a triangle does so, in double from the triangle's plane where it is at the ray's
+/// time. Embree's own, in its robust mode, lies beside the plane by more than SurfacePoint::error counts with: a ray that
+/// leaves a triangle would meet it again.
+float exact_distance(const MovingTriangleView&, std::uint32_t triangle, const Ray&);
 
 /// Embree's time runs from 0 to 1: how it follows from the true one.
 struct EmbreeClock {
@@ -75,19 +71,23 @@ inline void set_embree_ray(RTCRay& to, const Ray& ray, const EmbreeClock& clock 
   to.flags = 0;
 }
 
+/// Makes a query find what lies behind the hit that it found.
+inline void go_on_behind(RTCRay& query, const Ray& ray) {
+  query.tnear = std::nextafter(query.tfar, infinity);
+  query.tfar = ray.maximum;
+}
+
 /// Triangles that are searched on their own, in their own coordinates.
 class EmbreeTriangles {
  public:
-  explicit EmbreeTriangles(const TriangleView&);
   explicit EmbreeTriangles(const MovingTriangleView&);
   bool nearest(const Ray&, float& t, std::uint32_t& triangle, float& u, float& v) const;
   bool any(const Ray&) const;
 
  private:
-  void commit();
-
   EmbreeSceneHandle scene_;
   EmbreeClock clock_;
+  MovingTriangleView view_;
 };
 
 }  // namespace etendue

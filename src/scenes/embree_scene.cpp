@@ -7,6 +7,7 @@
 #include "embree_device.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
+#include "objects/geometry.h"
 #include "objects/triangle_object.h"
 
 namespace etendue {
@@ -14,7 +15,6 @@ namespace etendue {
 class EmbreeScene final : public Scene {
   enum class Quality : std::uint8_t { low, medium, high };
   Quality quality = Quality::medium;
-  bool robust = false;
   bool compact = false;
 
  public:
@@ -23,39 +23,34 @@ class EmbreeScene final : public Scene {
               "Wald et al. 2014, \"Embree: a kernel framework for efficient CPU ray tracing\"")
         .member<&EmbreeScene::quality>("quality", "", "effort spent on the hierarchy: high takes longest to build",
                                        choices("low", "medium", "high"), Effect::rebuild)
-        .member<&EmbreeScene::robust>(
-            "robust", "",
-            "hardly a ray slips between triangles that share an edge, but distances are less exact: one that "
-            "leaves a triangle may meet it again. A BvhScene does neither",
-            Effect::rebuild)
         .member<&EmbreeScene::compact>("compact", "", "less memory, slower", Effect::rebuild);
   }
 
   bool nearest(const Ray& ray, Hit& hit) const override {
-    Context context{{}, &ray, &hit, nullptr};
+    Context context{{}, *this, ray, &hit, nullptr};
     rtcInitIntersectContext(&context.embree);
     RTCRayHit query;
     set_embree_ray(query.ray, ray, clock_);
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_.get(), &context.embree, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    complete(query.hit, query.ray.tfar, hit);
-    return true;
+    while (true) {
+      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_.get(), &context.embree, &query);
+      if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+      const unsigned instance = query.hit.instID[0];
+      const bool nested = instance != RTC_INVALID_GEOMETRY_ID;
+      if (complete(query.hit, nested ? ray_into(geometries_[instance].object->transform.still(), ray) : ray, hit)) [[likely]]
+        return true;
+      go_on_behind(query.ray, ray);
+    }
   }
 
   // Hits are noted as Embree finds them, and denied, so that it goes on.
   void all(const Ray& ray, HitList& list) const override {
-    struct Collector : Context {
-      const EmbreeScene* scene;
-    } context{{{}, &ray, nullptr, &list, this}, this};
+    Context context{{}, *this, ray, nullptr, &list};
     rtcInitIntersectContext(&context.embree);
     context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
-      const Collector& c = *reinterpret_cast<const Collector*>(arguments->context);
       Hit hit;
-      c.scene->complete(*reinterpret_cast<const RTCHit*>(arguments->hit), reinterpret_cast<const RTCRay*>(arguments->ray)->tfar,
-                        hit);
-      c.list->add(hit);
+      if (complete(*arguments, hit)) reinterpret_cast<const Context*>(arguments->context)->list->add(hit);
       arguments->valid[0] = 0;
     };
     RTCRayHit query;
@@ -66,8 +61,12 @@ class EmbreeScene final : public Scene {
   }
 
   bool any(const Ray& ray) const override {
-    Context context{{}, &ray, nullptr, nullptr};
+    Context context{{}, *this, ray, nullptr, nullptr};
     rtcInitIntersectContext(&context.embree);
+    context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
+      Hit hit;
+      if (!complete(*arguments, hit)) arguments->valid[0] = 0;
+    };
     RTCRay query;
     set_embree_ray(query, ray, clock_);
     rtcOccluded1(scene_.get(), &context.embree, &query);
@@ -82,20 +81,19 @@ class EmbreeScene final : public Scene {
                                    : quality == Quality::medium ? RTC_BUILD_QUALITY_MEDIUM
                                                                 : RTC_BUILD_QUALITY_HIGH;
     rtcSetSceneBuildQuality(scene_.get(), effort);
-    int flags = RTC_SCENE_FLAG_NONE;
-    if (robust) flags |= RTC_SCENE_FLAG_ROBUST;
+    int flags = RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
     if (compact) flags |= RTC_SCENE_FLAG_COMPACT;
-    flags |= RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;  // for `all`; costs nothing that could be measured
     rtcSetSceneFlags(scene_.get(), RTCSceneFlags(flags));
     geometries_.clear();
+    views_.clear();
     others_.clear();
     levels_ = 0;
     clock_ = {};
     for (const SceneObject* object : finite) {
       if (const std::optional<TriangleView> view = object->triangles())
-        note(attach_triangles(scene_.get(), *view, effort), {object, nullptr});
+        note(attach_triangles(scene_.get(), *view, effort), triangles_of(object, *view));
       else if (const std::optional<MovingTriangleView> moving = moving_triangles(*object))
-        attach_moving_triangles(scene_.get(), *moving, effort, [&](unsigned id) { note(id, {object, nullptr}); });
+        attach_moving_triangles(scene_.get(), *moving, effort, [&](unsigned id) { note(id, triangles_of(object, *moving)); });
       else if (const EmbreeScene* inner = instanced(*object))
         note(attach_instance(*inner, object->transform.still()), {object, inner});
       else
@@ -111,15 +109,20 @@ class EmbreeScene final : public Scene {
   struct Geometry {
     const SceneObject* object = nullptr;
     const EmbreeScene* inner = nullptr;
+    std::uint32_t view = 0;  // of triangles: which of views_
   };
+  Geometry triangles_of(const SceneObject* object, const MovingTriangleView& view) {
+    views_.push_back(view);
+    return {object, nullptr, std::uint32_t(views_.size() - 1)};
+  }
 
   /// What callbacks need: Embree hands its address back to them.
   struct Context {
     RTCIntersectContext embree;
-    const Ray* ray;
+    const EmbreeScene& scene;
+    const Ray& ray;
     Hit* hit;
-    HitList* list;                       ///< where to note all hits instead
-    const EmbreeScene* outer = nullptr;  ///< needed for that
+    HitList* list;  ///< where to note all hits instead
   };
 
   void note(unsigned id, const Geometry& geometry) {
@@ -127,19 +130,31 @@ class EmbreeScene final : public Scene {
     geometries_[id] = geometry;
   }
 
-  /// Fills a hit of triangles (those of user geometry were filled when they were found), and adds the way out.
-  void complete(const RTCHit& found, float distance, Hit& hit) const {
+  /// Fills a hit of triangles (those of user geometry were filled when they were found), and adds the way out. The ray is in
+  /// the coordinates of the scene that holds the triangle. False: it does not meet it after all.
+  bool complete(const RTCHit& found, const Ray& ray, Hit& hit) const {
     const unsigned instance = found.instID[0];
     const EmbreeScene& owner = instance == RTC_INVALID_GEOMETRY_ID ? *this : *geometries_[instance].inner;
-    if (const SceneObject* object = owner.geometries_[found.geomID].object) {
-      hit.distance = distance;
-      hit.object = object;
+    const Geometry& geometry = owner.geometries_[found.geomID];
+    if (geometry.object) {
+      const float t = exact_distance(owner.views_[geometry.view], found.primID, ray);
+      if (!(t > 0 && t < ray.maximum)) return false;
+      hit.distance = t;
+      hit.object = geometry.object;
       hit.primitive = found.primID;
       hit.u = found.u;
       hit.v = found.v;
       hit.depth = 0;
     }
     note_way_out(instance, hit);
+    return true;
+  }
+  /// The same for a hit that Embree asks about while it searches.
+  static bool complete(const RTCFilterFunctionNArguments& asked, Hit& hit) {
+    const Context& context = *reinterpret_cast<const Context*>(asked.context);
+    Ray ray = ray_of(context, *reinterpret_cast<const RTCRay*>(asked.ray));
+    ray.maximum = context.ray.maximum;  // not where the hit is
+    return context.scene.complete(*reinterpret_cast<const RTCHit*>(asked.hit), ray, hit);
   }
 
   void note_way_out(unsigned instance, Hit& hit) const {
@@ -239,7 +254,7 @@ class EmbreeScene final : public Scene {
 
   /// The ray a callback is asked about; within an instance Embree has taken it there.
   static Ray ray_of(const Context& context, const RTCRay& query) {
-    Ray ray = *context.ray;
+    Ray ray = context.ray;
     ray.maximum = query.tfar;
     if (context.embree.instID[0] != RTC_INVALID_GEOMETRY_ID) {
       ray.origin = {query.org_x, query.org_y, query.org_z};
@@ -258,7 +273,7 @@ class EmbreeScene final : public Scene {
     if (context.list) {
       const int before = context.list->size;
       object.all_hits(ray, *context.list);
-      for (int i = before; i < context.list->size; ++i) context.outer->note_way_out(instance, context.list->hits[i]);
+      for (int i = before; i < context.list->size; ++i) context.scene.note_way_out(instance, context.list->hits[i]);
       return;
     }
     if (!object.intersect(ray, *context.hit)) return;
@@ -277,6 +292,7 @@ class EmbreeScene final : public Scene {
 
   EmbreeSceneHandle scene_;
   std::vector<Geometry> geometries_;        // by Embree's number
+  std::vector<MovingTriangleView> views_;   // of all triangles, still or moving
   std::vector<const SceneObject*> others_;  // by Embree's number within the geometry that has no object
   int levels_ = 0;                          // of instances, as Embree counts them
   EmbreeClock clock_;
