@@ -297,7 +297,7 @@ TEST_F(Measured, HostileRglFiles) {
   test::Random random(3);
   for (int i = 0; i < 150; ++i) {
     std::string bad = good;
-    bad[size_t(random() * 600)] = char(random() * 256);
+    bad[size_t(random() * 600)] = char(std::uint8_t(random() * 256));
     refused("RglShader", bad);
   }
   const auto with = [&](const std::function<void(Tables&)>& change) {

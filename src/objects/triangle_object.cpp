@@ -27,12 +27,6 @@ Vector3 unit_normal(const Vector3& n, float& inverse_length) {
 TriangleObject::TriangleObject() = default;
 TriangleObject::~TriangleObject() = default;
 
-TriangleObject::Corners TriangleObject::stored_corners(std::uint32_t primitive, const Moment& m) const {
-  const auto& t = mesh_.triangles[primitive];
-  const MovingTriangleView view = moving_view();
-  return {{view.position(t[0], m), view.position(t[1], m), view.position(t[2], m)}};
-}
-
 Vector3 TriangleObject::stored_normal(std::uint32_t corner, const Moment& m) const {
   const Vector3 n(mesh_.normals[m.first + corner]);
   return motion_.moves() ? (1 - m.part) * n + m.part * Vector3(mesh_.normals[m.second + corner]) : n;

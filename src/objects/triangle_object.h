@@ -72,7 +72,11 @@ class TriangleObject : public SceneObject {
   bool moves() const { return transform.animated() || motion_.moves(); }
   using Moment = MovingTriangleView::Moment;
   Moment moment(float time) const { return moving_view().moment(time); }
-  Corners stored_corners(std::uint32_t primitive, const Moment&) const;
+  Corners stored_corners(std::uint32_t primitive, const Moment& m) const {
+    const auto& t = mesh_.triangles[primitive];
+    const MovingTriangleView view = moving_view();
+    return {{view.position(t[0], m), view.position(t[1], m), view.position(t[2], m)}};
+  }
   Vector3 stored_normal(std::uint32_t corner, const Moment&) const;
   float motion_error(std::uint32_t primitive, const Moment&, const Normal3&) const;
   /// A triangle's corners in the coordinates of the containing scene.
