@@ -134,7 +134,7 @@ TEST(Ply, HostileFilesAreRefused) {
     Random random(31);
     for (int i = 0; i < 3000; ++i) {
       std::string changed = sound;
-      changed[size_t(random.number() * float(sound.size()))] = char(random.number() * 256);
+      changed[size_t(random.number() * float(sound.size()))] = char(std::uint8_t(random.number() * 256));
       try {
         const MeshData m = read_ply(changed);
         for (const auto& t : m.triangles)
