@@ -152,6 +152,33 @@ TEST_F(CheckpointTest, files_count_by_their_contents) {
   EXPECT_TRUE(has(reason(file), "grey.csv")) << reason(file);
 }
 
+TEST_F(CheckpointTest, images_in_tiles_count_by_their_contents) {
+  const auto image = [&](const std::string& name, const char* texel) {
+    folder.write(name, std::string("P2\n1 1\n255\n") + texel);
+  };
+  image("wood.1001.pgm", "100\n");
+  image("wood.1012.pgm", "200\n");
+  const std::string file =
+      folder.write("scene.etd", ball_text("PathTracer { max_depth: 3 }", "width: 2", "ImageMap { file: \"wood.<UDIM>.pgm\" }"));
+  const auto load = [&] {
+    const Ref<Job> job = load_job(file);
+    job->renderer->samples = 2 * step;
+    return job;
+  };
+  part(load(), "state", IndexRange{0, 1});
+  const auto reason = [&] { return complaint([&] { load()->resume(folder / "state"); }); };
+  EXPECT_EQ(reason(), "");
+  image("wood.1012.pgm", "201\n");
+  EXPECT_TRUE(has(reason(), "the contents of 'wood.1012.pgm' differ between the checkpoint and this job")) << reason();
+  image("wood.1012.pgm", "200\n");
+  EXPECT_EQ(reason(), "");
+  image("wood.1002.pgm", "50\n");
+  EXPECT_TRUE(has(reason(), "only this job has 'wood.1002.pgm'")) << reason();
+  std::filesystem::remove(folder / "wood.1002.pgm");
+  std::filesystem::remove(folder / "wood.1012.pgm");
+  EXPECT_TRUE(has(reason(), "only the checkpoint has 'wood.1012.pgm'")) << reason();
+}
+
 TEST_F(CheckpointTest, damage_is_found_wherever_it_is) {
   part(ball(step + 100), "state");  // with a state from before a short pass
   const std::string good = file_text(folder / "state");

@@ -279,6 +279,29 @@ TEST(EnvironmentEmission, OfAMap) {
   EXPECT_NEAR(varied->power(object, test::wavelengths())[0], 2.5 * M_PI * double(object.area(0)), 0.01);
 }
 
+TEST(EnvironmentEmission, PowerIsThatOfItsMapWhateverTheMapAsksFor) {
+  // A map of normals, on a sky that is turned: its own coordinates are not the scene's.
+  const Ref<ObjectMap> normals = create<ObjectMap>("NormalDirectionMap"),
+                       bright = create<ObjectMap>("PowerMap", {{"base", normals}, {"exponent", 4.0}});
+  const Ref<EmissionShader> e = create<EmissionShader>("EnvironmentEmission", {{"radiance", bright}});
+  const Ref<SceneObject> sky = create<SceneObject>("Environment", {{"emission", e}});
+  set(*sky, "transform", Value(Transform::rotate(90, {1, 0, 0}) * Transform::rotate(30, {0, 1, 0})));
+  prepare_tree(*sky);
+  const Wavelengths w = test::wavelengths();
+  Spectrum sum;
+  test::Random random(5);
+  constexpr int n = 20000;
+  for (int i = 0; i < n; ++i) {
+    const SurfaceSample s = sky->sample_visible({}, random.pair(), 0);
+    sum += e->radiance(s.point, -s.direction, w) / (s.density * float(4 * M_PI * n));
+  }
+  const Spectrum power = e->power(*sky, w);
+  for (int i = 0; i < spectrum_size; ++i) {
+    const double wanted = M_PI * double(sky->area(0)) * double(sum[i]);
+    EXPECT_NEAR(double(power[i]), wanted, 0.02 * wanted);
+  }
+}
+
 TEST(EnvironmentEmission, RefusesBadFiles) {
   EXPECT_THROW(create<EmissionShader>("EnvironmentEmission", {{"file", "/nowhere/sky.exr"}}), Error);
   std::vector<float> rgb = sky();

@@ -221,6 +221,37 @@ TEST(Mappings, PlacementGoesThroughNestedScenes) {
   }
 }
 
+TEST(Mappings, TransformedMapsSeeTheFootprintMovedAlong) {
+  // Surface coordinates stay where they are whatever moves the surface, and what a ray sees of them is the same.
+  const Nested nested;
+  const Ref<ObjectMap> fine = create<ObjectMap>("CheckerMap", {{"repeat", std::vector<double>{60, 30, 1}}});
+  test::Random random(4);
+  double without = 0;
+  for (const Transform& t :
+       {Transform::rotate(70, {1, 2, 3}), Transform::scale({1, -3, 0.5f}) * Transform::rotate(40, {3, 1, 0})})
+    for (const bool world : {false, true}) {
+      const Ref<ObjectMap> moved = create<ObjectMap>("TransformedMap", {{"map", fine}});
+      set(*moved, "transform", Value(t));
+      set(*moved, "world", Value(world));
+      prepare_tree(*moved);
+      for (int i = 0; i < 200; ++i) {
+        SurfacePoint p = nested.point(random);
+        const Frame frame(p.normal);
+        p.footprint_cosine = 0.1f + 0.9f * random();
+        const float sine = safe_sqrt(1 - square(p.footprint_cosine)), angle = 2 * pi * random();
+        p.ray_direction =
+            sine * (std::cos(angle) * frame.s + std::sin(angle) * frame.t) - p.footprint_cosine * Vector3(p.normal);
+        EXPECT_NEAR(moved->scalar(p), fine->scalar(p), 5e-3f);
+        SurfacePoint circle = p;
+        circle.ray_direction = {};
+        without = std::max(without, std::abs(double(fine->scalar(circle)) - double(fine->scalar(p))));
+        p.footprint = 0;
+        EXPECT_EQ(moved->scalar(p), fine->scalar(p));
+      }
+    }
+  EXPECT_GT(without, 0.1);  // directions matter here
+}
+
 TEST(Mappings, AgreeWithTheSphereItself) {
   const Nested nested;
   const Ref<ObjectMap> uv = create<ObjectMap>("UvMap"), spherical = create<ObjectMap>("SphericalMap", {{"map", uv}});

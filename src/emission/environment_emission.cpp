@@ -94,15 +94,15 @@ class EnvironmentEmission final : public EmissionShader {
     if (!image_.rgb.empty())
       return rgb_spectrum(*space_, factor_ * mean_[0], factor_ * mean_[1], factor_ * mean_[2], ColorUse::radiance, w) *
              sphere_times_disc;
-    SurfacePoint p;
-    if (constant_map_) return map->color(p, w, ColorUse::radiance) * (factor_ * sphere_times_disc);
+    if (constant_map_) return map->color({}, w, ColorUse::radiance) * (factor_ * sphere_times_disc);
     constexpr int side = 32;
     Spectrum sum;
     for (int i = 0; i < side; ++i)
       for (int k = 0; k < side; ++k) {
-        const Vector3 d = warp::sphere({(float(i) + 0.5f) / side, (float(k) + 0.5f) / side});
-        p.object_position = Point3{} + d;
-        sum += map_radiance(p, d, w);
+        // With all that maps may ask for: normals and positions in the scene as well.
+        const Point2 u{(float(i) + 0.5f) / side, (float(k) + 0.5f) / side};
+        const SurfacePoint p = object.infinite() ? object.sample_visible({}, u, 0).point : facing(warp::sphere(u));
+        sum += map_radiance(p, p.object_position - Point3{}, w);
       }
     return sum * (sphere_times_disc / (side * side));
   }
@@ -142,6 +142,14 @@ class EnvironmentEmission final : public EmissionShader {
     float u = std::atan2(d.x, -d.z) / (2 * pi);
     if (u < 0) u += 1;
     return {std::min(u, one_minus_epsilon), safe_acos(d.y) / pi};
+  }
+
+  /// The point in a direction, for an object that is not moved.
+  static SurfacePoint facing(const Vector3& towards) {
+    SurfacePoint p;
+    p.position = p.object_position = Point3{} + towards;
+    p.normal = p.shading_normal = p.object_normal = Normal3(-towards);
+    return p;
   }
 
   Spectrum map_radiance(SurfacePoint p, const Vector3& towards, const Wavelengths& w) const {
@@ -188,15 +196,13 @@ class EnvironmentEmission final : public EmissionShader {
   double map_illuminance() {
     factor_ = 1;
     return integrate_wavelengths(Quantity::illuminance, [&](const Wavelengths& w) {
-      SurfacePoint p;
-      if (constant_map_) return map->color(p, w, ColorUse::radiance) * pi;
+      if (constant_map_) return map->color({}, w, ColorUse::radiance) * pi;
       constexpr int side = 32;
       Spectrum sum;
       for (int i = 0; i < side * side; ++i) {
         const Vector3 local = warp::cosine_hemisphere({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side});
         const Vector3 d{local.y, local.z, local.x};
-        p.object_position = Point3{} + d;
-        sum += map_radiance(p, d, w);
+        sum += map_radiance(facing(d), d, w);
       }
       return sum * (pi / (side * side));
     });

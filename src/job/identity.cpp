@@ -12,6 +12,7 @@
 #include "etendue/registry.h"
 #include "job/checkpoint.h"
 #include "job/hash.h"
+#include "maps/udim_files.h"
 
 namespace etendue {
 
@@ -104,7 +105,12 @@ class FileCollector {
       add(path);
     }
   }
+  /// A file, or the images of all unit squares that a name with <UDIM> stands for.
   void add(const std::string& path) {
+    for (const UdimFile& image : udim_files(path)) add_one(image.path);
+    add_one(path);
+  }
+  void add_one(const std::string& path) {
     std::error_code error;
     const fs::path full = fs::absolute(path, error).lexically_normal();
     paths_[error || folder_.empty() ? path : full.lexically_relative(folder_).string()] = path;
@@ -161,7 +167,12 @@ std::string difference(const Identity& a, const std::string& whose, const Identi
   const auto same = [](const Identity::File& x, const Identity::File& y) { return x == y; };
   const auto [x, y] = std::ranges::mismatch(a.files, b.files, same);
   if (x == a.files.end() && y == b.files.end()) return {};
-  if (x == a.files.end() || y == b.files.end() || x->name != y->name) return "the description names other files";
+  if (x == a.files.end() || y == b.files.end() || x->name != y->name) {
+    // In order of names: the first that only one of them has.
+    const bool only_first = y == b.files.end() || (x != a.files.end() && x->name < y->name);
+    return fmt::format("the description stands for other files: only {} has '{}'", only_first ? whose : other_whose,
+                       only_first ? x->name : y->name);
+  }
   return fmt::format("the contents of '{}' differ between {} and {}", x->name, whose, other_whose);
 }
 

@@ -24,6 +24,19 @@ Footprint footprint_of(const SurfacePoint& p) {
   return {p.footprint * std::min(1 / p.footprint_cosine, longest) * a, p.footprint * cross(n, a)};
 }
 
+// The points a cos t + b sin t are farthest from the centre, and nearest a quarter of a turn on, where the derivative of their
+// squared length, (b^2 - a^2) sin 2t + 2 a b cos 2t, vanishes.
+void set_footprint(SurfacePoint& p, const Footprint& diameters) {
+  const Vector3 &a = diameters.longer, &b = diameters.shorter;
+  const float t = 0.5f * std::atan2(2 * dot(a, b), dot(a, a) - dot(b, b)), cosine = std::cos(t), sine = std::sin(t);
+  const Vector3 major = cosine * a + sine * b;
+  const float longer = length(major), shorter = length(cosine * b - sine * a);
+  if (!(longer > 0 && longer < infinity)) return;
+  p.footprint = shorter;
+  p.footprint_cosine = std::min(shorter / longer, 1.0f);
+  p.ray_direction = safe_sqrt(1 - square(p.footprint_cosine)) / longer * major - p.footprint_cosine * Vector3(p.normal);
+}
+
 void with_tangents(SurfacePoint& p) {
   if (p.dpdu == Vector3{} && p.dpdv == Vector3{} && p.object) p.object->tangents(p);
 }

@@ -15,6 +15,9 @@ struct Footprint {
   Vector3 longer, shorter;
 };
 Footprint footprint_of(const SurfacePoint&);
+/// Gives a point the ellipse of two conjugate diameters: vectors in its surface, such as a footprint's axes become when the
+/// surface is deformed. The ray's direction is then that of a ray that sees such an ellipse.
+void set_footprint(SurfacePoint&, const Footprint&);
 
 /// The same axes as changes of the surface coordinates.
 struct UvFootprint {

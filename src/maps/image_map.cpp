@@ -6,6 +6,7 @@
 #include "maps/footprint.h"
 #include "maps/image_texture.h"
 #include "maps/linear_image.h"
+#include "maps/udim_files.h"
 
 namespace etendue {
 namespace {

@@ -6,9 +6,9 @@
 namespace etendue {
 namespace {
 
-// All of a point goes along, in both systems of coordinates: positions and tangents by the transform, normals by its inverse
-// transpose, and the footprint as the surface's area grows. What a map does with it is then what it would do on an object of
-// that shape in that place. The surface coordinates are not changed.
+// All of a point goes along, in both systems of coordinates: positions, tangents and the axes of the footprint by the
+// transform, normals by its inverse transpose. What a map does with it is then what it would do on an object of that shape in
+// that place. The surface coordinates are not changed.
 class TransformedMap final : public ObjectMap {
  public:
   static void describe(Description<TransformedMap>& d) {
@@ -36,6 +36,7 @@ class TransformedMap final : public ObjectMap {
   SurfacePoint moved(const SurfacePoint& point) const {
     SurfacePoint p = point;
     with_tangents(p);
+    const Footprint seen = footprint_of(p);
     Transform scratch, place_scratch;
     const Transform& t = placed(transform, p.time, scratch);
     const Transform& place = placement(point, place_scratch);
@@ -51,11 +52,11 @@ class TransformedMap final : public ObjectMap {
     const float area = length(cross(p.dpdu, p.dpdv));
     p.dpdu = outside(p.dpdu);
     p.dpdv = outside(p.dpdv);
-    if (area > 0) {
-      const float growth = std::sqrt(length(cross(p.dpdu, p.dpdv)) / area);
-      p.footprint *= growth;
-      p.error *= growth;
-    }
+    if (area > 0) p.error *= std::sqrt(length(cross(p.dpdu, p.dpdv)) / area);
+    if (p.footprint > 0)
+      set_footprint(p, {outside(seen.longer), outside(seen.shorter)});
+    else if (p.ray_direction != Vector3{})
+      p.ray_direction = normalize(outside(p.ray_direction));
     return p;
   }
 };
