@@ -45,15 +45,22 @@ Vector2 UvFootprint::box() const { return {std::hypot(longer.x, shorter.x), std:
 
 // A step s in the surface is du dpdu + dv dpdv. With the unit vectors a and b of the tangents, and c = a x b,
 //   du |dpdu| = (s x b) . c / c^2   and   dv |dpdv| = (a x s) . c / c^2.
+// Where the tangents do not span the surface (at a pole, on a triangle whose corners have coordinates on a line) no step
+// belongs to a change of one coordinate: a circle is taken then, by the lengths there are.
 UvFootprint uv_footprint(const SurfacePoint& point) {
   if (!(point.footprint > 0)) return {};
   SurfacePoint p = point;
   with_tangents(p);
-  const float length_u = length(p.dpdu), length_v = length(p.dpdv);
-  if (!(length_u > 0 && length_v > 0)) return {};
+  const float length_u = length(p.dpdu), length_v = length(p.dpdv), longest_tangent = std::max(length_u, length_v);
+  if (!(longest_tangent > 0)) return {};
+  const auto circle = [&] {
+    return UvFootprint{{p.footprint / (length_u > 0 ? length_u : longest_tangent), 0},
+                       {0, p.footprint / (length_v > 0 ? length_v : longest_tangent)}};
+  };
+  if (!(length_u > 0 && length_v > 0)) return circle();
   const Vector3 a = p.dpdu / length_u, b = p.dpdv / length_v, c = cross(a, b);
   const float sine2 = dot(c, c);
-  if (!(sine2 > 1e-12f)) return {};
+  if (!(sine2 > 1e-12f)) return circle();
   const auto step = [&](const Vector3& s) {
     return Vector2{dot(cross(s, b), c) / (sine2 * length_u), dot(cross(a, s), c) / (sine2 * length_v)};
   };

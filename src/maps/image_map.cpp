@@ -2,7 +2,6 @@
 
 #include "etendue/color.h"
 #include "etendue/object_map.h"
-#include "etendue/scene_object.h"
 #include "maps/footprint.h"
 #include "maps/image_texture.h"
 #include "maps/linear_image.h"
@@ -12,15 +11,8 @@ namespace etendue {
 namespace {
 
 enum class Interpolation : std::uint8_t { nearest, bilinear, trilinear, anisotropic };
-enum class Wrap : std::uint8_t { repeat, mirror, clamp, black };
 
-/// OpenImageIO's own data of this thread, asked for once.
-OIIO::TextureSystem::Perthread* thread_data() {
-  thread_local OIIO::TextureSystem::Perthread* const data = textures().get_perthread_info();
-  return data;
-}
-
-// The image's numbers are decoded to linear ones before they are filtered; mip levels are averages of linear texels too.
+// The image's numbers are decoded to linear ones before they are filtered; its smaller copies are averages of linear texels.
 // A filtered RGB value becomes a spectrum at each lookup. That is not the filtered spectrum of the texels, as the fit is
 // not linear, but it has the filtered colour, which is what an image says.
 class ImageMap final : public ObjectMap {
@@ -33,8 +25,9 @@ class ImageMap final : public ObjectMap {
                                  required)
         .member<&ImageMap::interpolation>(
             "filter", "",
-            "nearest: texels as squares; bilinear: between texels; trilinear: averaged over what a pixel sees as well; "
-            "anisotropic: over the longer shape that it sees at a slant",
+            "nearest: texels as squares; bilinear: between texels; trilinear: averaged as well, over a circle as wide as what "
+            "a "
+            "pixel sees is long; anisotropic: over the ellipse that it sees at a slant, up to 32 times as long as wide",
             choices("nearest", "bilinear", "trilinear", "anisotropic"))
         .member<&ImageMap::wrap>("wrap", "", "what lies outside the unit square", choices("repeat", "mirror", "clamp", "black"))
         .member<&ImageMap::color_space>("color_space", "", "primaries and white of the image's RGB")
@@ -73,7 +66,7 @@ class ImageMap final : public ObjectMap {
   }
 
   FilePath file;
-  Interpolation interpolation = Interpolation::trilinear;
+  Interpolation interpolation = Interpolation::anisotropic;
   Wrap wrap = Wrap::repeat;
   std::string color_space = "srgb", transfer = automatic_transfer, channel;
   Vector2 repeat{1, 1};
@@ -93,7 +86,7 @@ class ImageMap final : public ObjectMap {
       try {
         const size_t place = size_t(f.v * 10 + f.u);
         if (place >= tiles_.size()) tiles_.resize(place + 1);
-        tiles_[place] = open_texture(f.path, transfer, channel);
+        tiles_[place] = ImageTexture::open(f.path, transfer, channel);
       } catch (const Error& e) {
         fail("file", e.what());
       }
@@ -104,11 +97,8 @@ class ImageMap final : public ObjectMap {
   int look_up(const SurfacePoint& p, float rgb[3]) const {
     rgb[0] = rgb[1] = rgb[2] = 0;
     float u = p.uv.x * repeat.x, v = p.uv.y * repeat.y;
-    const ImageTexture* texture = tiles_.data();
-    OIIO::TextureOpt options;
-    static constexpr OIIO::TextureOpt::Wrap wraps[] = {OIIO::TextureOpt::WrapPeriodic, OIIO::TextureOpt::WrapMirror,
-                                                       OIIO::TextureOpt::WrapClamp, OIIO::TextureOpt::WrapBlack};
-    options.swrap = options.twrap = wraps[int(wrap)];
+    const ImageTexture* texture = tiles_.front().get();
+    Wrap outside = wrap;
     if (tiled_) {
       float column = std::floor(u), row = std::floor(v);
       // The far border of a square belongs to it where no other begins.
@@ -125,71 +115,33 @@ class ImageMap final : public ObjectMap {
       if (!texture) return 1;
       u -= column;
       v -= row;
-      options.swrap = options.twrap = OIIO::TextureOpt::WrapClamp;
+      outside = Wrap::clamp;
     }
-    options.interpmode =
-        interpolation == Interpolation::nearest ? OIIO::TextureOpt::InterpClosest : OIIO::TextureOpt::InterpBilinear;
-    Vector2 x, y;  // the two axes of what is averaged over
-    options.mipmode = OIIO::TextureOpt::MipModeNoMIP;
-    if (interpolation == Interpolation::trilinear && p.footprint > 0) {
-      options.mipmode = OIIO::TextureOpt::MipModeTrilinear;
-      footprint(p, x, y);
-    } else if (interpolation == Interpolation::anisotropic && p.footprint > 0) {
-      options.mipmode = OIIO::TextureOpt::MipModeAniso;
-      // OpenImageIO's filter is a Gaussian that reaches beyond the axes it is given. Measured on waves at many slants, with
-      // these it comes nearest to the mean over the ellipse: within 0.006 of the wave's height, without within 0.08.
-      options.swidth = options.twidth = 0.62f;
-      const UvFootprint f = uv_footprint(p);
-      x = within(f.longer);
-      y = within(f.shorter);
+    if (interpolation == Interpolation::nearest) {
+      texture->nearest({u, v}, outside, rgb);
+    } else if (interpolation == Interpolation::bilinear || !(p.footprint > 0)) {
+      texture->bilinear({u, v}, outside, rgb);
+    } else {
+      UvFootprint f = uv_footprint(p);
+      for (Vector2* axis : {&f.longer, &f.shorter}) *axis = {axis->x * repeat.x, axis->y * repeat.y};
+      if (interpolation == Interpolation::trilinear)
+        texture->trilinear({u, v}, f, outside, rgb);
+      else
+        texture->anisotropic({u, v}, f, outside, rgb);
     }
-    // Row 0 of the image is at v = 1. A failed lookup is black; prepare has read every pixel, so it can only be a file that
-    // was removed since.
-    textures().texture(texture->handle, thread_data(), options, u, 1 - v, x.x, -x.y, y.x, -y.y, texture->channels, rgb);
-    if (texture->channels == 1) rgb[1] = rgb[2] = rgb[0];
-    return texture->channels;
+    if (texture->channels() == 1) rgb[1] = rgb[2] = rgb[0];
+    return texture->channels();
   }
 
   /// The image of a unit square; null: there is none.
   const ImageTexture* tile(float u, float v) const {
     if (!(u >= 0 && u < 10 && v >= 0 && v * 10 + u < float(tiles_.size()))) return nullptr;
-    const ImageTexture& t = tiles_[size_t(v) * 10 + size_t(u)];
-    return t.handle ? &t : nullptr;
-  }
-
-  /// An axis of the footprint over the image, no longer than the image, beyond which everything is its mean.
-  Vector2 within(const Vector2& axis) const {
-    const Vector2 a{axis.x * repeat.x, axis.y * repeat.y};
-    const float longest = std::max(std::abs(a.x), std::abs(a.y));
-    return longest > 1 ? (1 / longest) * a : a;
-  }
-
-  /// The change of texture coordinates over the ray's cone: along the unit vector of dpdu, and across it in the surface.
-  /// With e1 = dpdu / |dpdu| and e2 orthogonal to it, a step w e1 changes u by w / |dpdu|; a step w e2 changes v by
-  /// w / (dpdv . e2) and u by what takes back the part of dpdv along e1.
-  void footprint(const SurfacePoint& p, Vector2& x, Vector2& y) const {
-    Vector3 dpdu = p.dpdu, dpdv = p.dpdv;
-    if (dpdu == Vector3{} && dpdv == Vector3{} && p.object) {
-      SurfacePoint copy = p;
-      p.object->tangents(copy);
-      dpdu = copy.dpdu;
-      dpdv = copy.dpdv;
-    }
-    const float length_u = length(dpdu);
-    if (!(length_u > 0)) return;
-    const Vector3 e1 = dpdu / length_u;
-    const float along = dot(dpdv, e1), across = length(dpdv - along * e1);
-    if (!(across > 0)) return;
-    const float du = p.footprint / length_u, dv = p.footprint / across;
-    // Beyond the whole image everything is its mean.
-    x.x = std::min(du * std::abs(repeat.x), 1.0f);
-    y.y = std::min(dv * std::abs(repeat.y), 1.0f);
-    y.x = clamp(-dv * along / length_u * repeat.x, -1, 1);
+    return tiles_[size_t(v) * 10 + size_t(u)].get();
   }
 
   const RgbSpace* space_ = nullptr;
   bool tiled_ = false;
-  std::vector<ImageTexture> tiles_;  // the only one, or that of square (u, v) at 10 v + u
+  std::vector<std::shared_ptr<const ImageTexture>> tiles_;  // the only one, or that of square (u, v) at 10 v + u
 };
 
 const Register<ImageMap> registered;

@@ -1,54 +1,138 @@
+// Reading images into levels of averages.
+
 #include "maps/image_texture.h"
 
-#include <OpenImageIO/imagecache.h>
-
+#include <map>
 #include <mutex>
 
 #include "etendue/error.h"
+#include "maps/image_cache.h"
 #include "maps/linear_image.h"
 
 namespace etendue {
+namespace {
 
-OIIO::TextureSystem& textures() {
-  static OIIO::TextureSystem* const system = [] {
-    OIIO::TextureSystem* s = OIIO::TextureSystem::create(false);
-    s->attribute("autotile", 64);
-    s->attribute("automip", 1);
-    s->attribute("accept_untiled", 1);
-    s->attribute("accept_unmipped", 1);
-    s->attribute("max_memory_MB", 2048.0f);
-    return s;
+/// Averages N texels to M = max(1, floor(N / 2)) along each side, by area: texel i of M covers [i N / M, (i + 1) N / M). When N
+/// is odd neighbours share texels, and the mean over the whole image stays what it is.
+class Halving {
+ public:
+  Halving(int source_width, int source_height, int channels)
+      : width(std::max(source_width / 2, 1)),
+        height(std::max(source_height / 2, 1)),
+        texels(size_t(width) * size_t(height) * size_t(channels)),
+        source_width_(source_width),
+        source_height_(source_height),
+        channels_(size_t(channels)),
+        row_(size_t(width) * size_t(channels)) {}
+
+  /// Adds part of a row of texels, from column `begin` on.
+  void add(int y, int begin, int count, const float* values) {
+    std::fill(row_.begin(), row_.end(), 0.0f);
+    for (int x = begin; x < begin + count; ++x, values += channels_)
+      share(x, source_width_, width, [&](size_t i, float part) {
+        for (size_t c = 0; c < channels_; ++c) row_[i * channels_ + c] += part * values[c];
+      });
+    share(y, source_height_, height, [&](size_t i, float part) {
+      float* const out = texels.data() + i * row_.size();
+      for (size_t k = 0; k < row_.size(); ++k) out[k] += part * row_[k];
+    });
+  }
+
+  int width, height;
+  std::vector<float> texels;
+
+ private:
+  /// The texels that texel x lies in, with the part of them it makes up; in units of 1 / M texels.
+  template <class Use>
+  static void share(std::int64_t x, std::int64_t n, std::int64_t m, Use use) {
+    const std::int64_t begin = x * m, end = begin + m;
+    for (std::int64_t i = begin / n; i * n < end; ++i)
+      use(size_t(i), float(std::min(end, (i + 1) * n) - std::max(begin, i * n)) / float(n));
+  }
+
+  int source_width_, source_height_;
+  size_t channels_;
+  std::vector<float> row_;
+};
+
+}  // namespace
+
+OIIO::ImageCache& image_cache() {
+  static OIIO::ImageCache* const cache = [] {
+    OIIO::ImageCache* c = OIIO::ImageCache::create(false);
+    c->attribute("autotile", ImageTexture::tile_side);
+    c->attribute("accept_untiled", 1);
+    c->attribute("accept_unmipped", 1);
+    c->attribute("max_memory_MB", 2048.0f);
+    return c;
   }();
-  return *system;
+  return *cache;
 }
 
-ImageTexture open_texture(const std::string& path, const std::string& transfer, const std::string& channel) {
+std::shared_ptr<const ImageTexture> ImageTexture::open(const std::string& path, const std::string& transfer,
+                                                       const std::string& channel) {
   static std::mutex mutex;
+  static auto& known = *new std::map<std::string, std::weak_ptr<const ImageTexture>>;
   const std::lock_guard lock(mutex);
-  OIIO::TextureSystem& system = textures();
-  OIIO::ImageCache& cache = *system.imagecache();
-  const OIIO::ustring key(linear_image_key(path, transfer, channel));
-  const auto refuse = [&] {
-    // OpenImageIO's message names our key; the path is what the user knows.
-    std::string reason = system.geterror();
-    if (reason.empty()) reason = cache.geterror();
-    for (size_t at; (at = reason.find(key.string())) != std::string::npos;) reason.replace(at, key.string().size(), path);
+  const std::string key = linear_image_key(path, transfer, channel);
+  if (std::shared_ptr<const ImageTexture> there = known[key].lock()) return there;
+  const auto texture = std::make_shared<ImageTexture>();
+  try {
+    texture->read(key);
+  } catch (const Error& e) {
+    // OpenImageIO's messages name our key; the path is what the user knows.
+    std::string reason = e.what();
+    for (size_t at; (at = reason.find(key)) != std::string::npos;) reason.replace(at, key.size(), path);
     while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' ')) reason.pop_back();
-    cache.invalidate(key);
+    image_cache().invalidate(OIIO::ustring(key));
     throw Error("cannot read '" + path + "': " + (reason.empty() ? "it is no image" : reason));
-  };
-  if (!cache.add_file(key, make_linear_input)) refuse();
-  OIIO::ImageSpec spec;
-  if (!cache.get_imagespec(key, spec)) refuse();
-  constexpr int rows = 64;
-  std::vector<float> strip(size_t(spec.width) * rows * size_t(spec.nchannels));
-  for (int y = 0; y < spec.height; y += rows)
-    if (!cache.get_pixels(key, 0, 0, spec.x, spec.x + spec.width, spec.y + y, spec.y + std::min(y + rows, spec.height), 0, 1,
-                          OIIO::TypeDesc::FLOAT, strip.data()))
-      refuse();
-  ImageTexture texture{system.get_texture_handle(key), spec.nchannels};
-  if (!texture.handle || !system.good(texture.handle)) refuse();
+  }
+  known[key] = texture;
   return texture;
+}
+
+void ImageTexture::read(const std::string& key) {
+  OIIO::ImageCache& cache = image_cache();
+  const OIIO::ustring name(key);
+  OIIO::ImageSpec spec;
+  if (!cache.add_file(name, make_linear_input) || !cache.get_imagespec(name, spec)) throw Error(cache.geterror());
+  handle_ = cache.get_image_handle(name);
+  channels_ = spec.nchannels;
+  left_ = spec.full_x;
+  top_ = spec.full_y;
+  begin_x_ = spec.x - left_;
+  begin_y_ = spec.y - top_;
+  pixels_x_ = spec.width;
+  pixels_y_ = spec.height;
+  const int width = spec.full_width, height = spec.full_height;
+  const double area = double(width) * height;
+  if (width < 1 || height < 1) throw Error("its display window is empty");
+  if (area > 0x1p26 && area > 16.0 * pixels_x_ * pixels_y_) throw Error("its display window is far larger than what it shows");
+  levels_.push_back({width, height, {}});
+
+  Halving half(width, height, channels_);
+  constexpr int rows = 64;
+  const size_t row = size_t(pixels_x_) * size_t(channels_);
+  const int first = std::max(begin_x_, 0), last = std::min(begin_x_ + pixels_x_, width);  // in the display window
+  std::vector<float> strip(row * rows);
+  for (int y = 0; y < pixels_y_; y += rows) {
+    const int end = std::min(y + rows, pixels_y_);
+    if (!cache.get_pixels(name, 0, 0, spec.x, spec.x + pixels_x_, spec.y + y, spec.y + end, 0, 1, OIIO::TypeDesc::FLOAT,
+                          strip.data()))
+      throw Error(cache.geterror());
+    for (int i = y; i < end; ++i)
+      if (begin_y_ + i >= 0 && begin_y_ + i < height && first < last)
+        half.add(begin_y_ + i, first, last - first,
+                 strip.data() + size_t(i - y) * row + size_t(first - begin_x_) * size_t(channels_));
+  }
+  while (levels_.back().width > 1 || levels_.back().height > 1) {
+    if (const Level& l = levels_.back(); levels_.size() > 1) {
+      half = Halving(l.width, l.height, channels_);
+      for (int y = 0; y < l.height; ++y)
+        half.add(y, 0, l.width, l.texels.data() + size_t(y) * size_t(l.width) * size_t(channels_));
+    }
+    levels_.push_back({half.width, half.height, std::move(half.texels)});
+  }
 }
 
 }  // namespace etendue
