@@ -40,8 +40,7 @@ class Cone final : public RevolvedQuadric {
              .high_radius = r1_,
              .low_cap = caps && r0_ > 0,
              .high_cap = caps && r1_ > 0,
-             .side_area = M_PI * (r0_ + r1_) * std::hypot(h, r1_ - r0_),
-             .developable = true});
+             .side_area = M_PI * (r0_ + r1_) * std::hypot(h, r1_ - r0_)});
   }
 
   float radius = 1, top_radius = 0, height = 1;
@@ -51,10 +50,6 @@ class Cone final : public RevolvedQuadric {
   double height_at(double share) const override {
     const double r = std::sqrt(r0_ * r0_ + share * (r1_ * r1_ - r0_ * r0_));
     return r + r0_ > 0 ? profile().high * share * (r0_ + r1_) / (r + r0_) : 0;
-  }
-  double share_below(double z) const override {
-    const double part = z / profile().high;
-    return part * (2 * r0_ + part * (r1_ - r0_)) / (r0_ + r1_);
   }
 
  private:

@@ -33,7 +33,7 @@ class Cylinder final : public RevolvedQuadric {
              .low_cap = caps,
              .high_cap = caps,
              .side_area = 4 * M_PI * r * half,
-             .developable = true});
+             .tube = true});
   }
 
   float radius = 1, height = 1;
@@ -41,7 +41,6 @@ class Cylinder final : public RevolvedQuadric {
 
  protected:
   double height_at(double share) const override { return profile().low + share * (profile().high - profile().low); }
-  double share_below(double z) const override { return (z - profile().low) / (profile().high - profile().low); }
 };
 
 const Register<Cylinder> registered;

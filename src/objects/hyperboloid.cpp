@@ -65,7 +65,6 @@ class Hyperboloid final : public RevolvedQuadric {
     }
     return std::copysign(std::clamp(z, 0.0, half), share - 0.5);
   }
-  double share_below(double z) const override { return 0.5 + std::copysign(0.5 * integral(std::abs(z)) / half_integral_, z); }
 
  private:
   /// z sqrt(1 + p^2 z^2) + asinh(p z) / p, for z >= 0.

@@ -47,7 +47,6 @@ class Paraboloid final : public RevolvedQuadric {
 
  protected:
   double height_at(double share) const override { return scale_ / 4 * std::expm1(std::log1p(share * whole_) * (2.0 / 3)); }
-  double share_below(double z) const override { return std::expm1(1.5 * std::log1p(4 * z / scale_)) / whole_; }
   /// By the radius: by the height positions would change infinitely fast with it at the vertex.
   Along along_profile(double, double r) const override {
     const double v = r / double(radius);

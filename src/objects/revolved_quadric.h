@@ -24,8 +24,8 @@ class RevolvedQuadric : public PlacedObject {
     double low = 0, high = 1;                     ///< heights [m]
     double low_radius = 1, high_radius = 1;       ///< [m]
     bool low_cap = false, high_cap = false;
-    double side_area = 1;      ///< of a whole turn [m^2]
-    bool developable = false;  ///< a cylinder or a cone: one plane touches it all along a straight line
+    double side_area = 1;  ///< of a whole turn [m^2]
+    bool tube = false;     ///< a cylinder: all rings are alike
     bool convex = true;
 
     double squared_radius(double z) const { return std::max(0.0, (square * z + linear) * z + constant); }
@@ -35,9 +35,8 @@ class RevolvedQuadric : public PlacedObject {
   void revolve(const Profile&);
   const Profile& profile() const { return profile_; }
 
-  /// The height below which a share of the side's area lies, and its inverse.
+  /// The height below which a share of the side's area lies.
   virtual double height_at(double share) const = 0;
-  virtual double share_below(double z) const = 0;
 
   /// The coordinate v along the profile, from 0 to 1, and the changes of height and radius with it.
   struct Along {
@@ -55,27 +54,9 @@ class RevolvedQuadric : public PlacedObject {
  private:
   enum Part : std::uint32_t { side, low_cap, high_cap };
 
-  /// What of a closed surface faces a point outside of it.
-  struct Facing {
-    static constexpr int pieces = 8;
-    double around = 0, height = 0, azimuth = 0;         ///< of the point, in own coordinates [m], [rad]
-    double low_area = 0, side_area = 0, high_area = 0;  ///< of the parts, the side by its weights [m^2]
-    double area = 0;                                    ///< their sum
-    double weights[pieces + 1]{};  ///< at equal shares of the side's area: roughly what part of the turn faces the point
-    /// Interpolated.
-    double weight(double share) const;
-    /// Where a share of the side's weight is reached.
-    double share_at(double weight_share) const;
-  };
-  bool facing(const Point3& own, Facing&) const;
-  /// Half the angle around the axis in which points of a height face the point [rad].
-  double half_width(const Facing&, double z) const;
-
-  /// By area, of what faces the point; false: none was found. And its density [1/m^2]; without Facing, that by the whole area.
-  bool sample_facing(const Facing&, Point2 u, OwnPoint&) const;
-  float density_facing(const Facing*, const Point3& from, const Transform&, const SurfacePoint&) const;
-  /// From inside always by direction, from close by half of the time.
-  DirectionShare direction_share(const Point3& own, bool faced) const;
+  struct Seen;
+  /// Of what is not seen by AxialDirections: from inside all by direction, from close by half of the time.
+  DirectionShare direction_share(const Point3& own) const;
 
   void side_point(double x, double y, double z, OwnPoint&) const;
   void cap_point(Part, double x, double y, OwnPoint&) const;

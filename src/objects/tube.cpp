@@ -1,5 +1,6 @@
 // Tube: a thick pipe, open at both ends.
 
+#include "axial_view.h"
 #include "quadric_roots.h"
 #include "visible_directions.h"
 
@@ -41,27 +42,17 @@ class Tube final : public PlacedObject {
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
     Transform scratch;
     const Transform& t = placed(transform, time, scratch);
-    const Point3 own_from = t.back(from);
-    Facing f;
-    const bool faced = facing(own_from, f);
-    const auto sample = [&](Point2 v, SurfaceSample& s) {
-      OwnPoint own;
-      sample_facing(f, v, own);
-      carry(own, time, s.point);
-      return true;
-    };
-    const auto density = [&](const SurfacePoint& p) { return density_facing(f, from, t, p); };
-    return sample_by_both(*this, direction_share(own_from, faced), from, u, time, sample, density);
+    const Seen seen(*this, t.back(from));
+    if (!seen.within_wall()) return AxialDirections(seen).sample(*this, t, from, u, time);
+    return sample_by_both(*this, everywhere, from, u, time, none, no_density);
   }
 
   float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
     Transform scratch;
     const Transform& t = placed(transform, p.time, scratch);
-    const Point3 own_from = t.back(from);
-    Facing f;
-    const bool faced = facing(own_from, f);
-    const auto density = [&](const SurfacePoint& q) { return density_facing(f, from, t, q); };
-    return density_by_both(direction_share(own_from, faced), from, direction, p, density);
+    const Seen seen(*this, t.back(from));
+    if (!seen.within_wall()) return AxialDirections(seen).density(t, from, direction, p);
+    return density_by_both(everywhere, from, direction, p, no_density);
   }
 
   float inner_radius = 0.75f, radius = 1, height = 2;
@@ -120,52 +111,54 @@ class Tube final : public PlacedObject {
   enum Part { outer, inner, low_end, high_end };
   static constexpr int parts = 4;
 
-  /// What faces a point outside of the wall.
-  struct Facing {
-    double areas[parts]{}, area = 0, azimuth = 0;  ///< [m^2], [rad]
+  /// What AxialDirections asks for: the tube as seen from outside or from its bore.
+  struct Seen {
+    const Tube& tube;
+    AxialView view;
+
+    Seen(const Tube& object, const Point3& own) : tube(object), view(own, -object.half_, object.half_, object.r_[0]) {}
+
+    /// From there everything may be seen.
+    bool within_wall() const { return view.side() == 0 && view.around() > tube.r_[1] && view.around() < tube.r_[0]; }
+
+    Elevations at(double sine, double cosine) const {
+      const double across = view.around() * sine, toward = view.around() * cosine;
+      // Where a half plane along the axis enters and leaves a circle about it.
+      const auto squared = [&](double r) { return r * r - across * across; };
+      const double outer_far = toward + std::sqrt(std::max(0.0, squared(tube.r_[0])));
+      const double outer_near = (view.around() - tube.r_[0]) * (view.around() + tube.r_[0]) / outer_far;
+      const double bore = squared(tube.r_[1]), inner_far = toward + std::sqrt(std::max(0.0, bore));
+      const double inner_near = (view.around() - tube.r_[1]) * (view.around() + tube.r_[1]) / inner_far;
+      Elevations seen;
+      if (view.side() == 0) {  // one side, for the wall is in the way of the rest
+        const double s = view.around() < tube.r_[1] ? inner_far : outer_near;
+        seen.add(view.elevation(s, -tube.half_), view.elevation(s, tube.half_));
+        return seen;
+      }
+      // From the bottom of the outer side, or straight under the point, to the far edge of the nearer end; but not where one
+      // looks through the bore.
+      const double near_end = view.side() * tube.half_, far_end = -near_end;
+      const double begin = outer_near > 0 ? view.elevation(outer_near, far_end) : view.pole(-view.side());
+      const double end = view.elevation(outer_far, near_end);
+      if (bore <= 0 || inner_far <= 0) {
+        seen.add(begin, end);
+      } else {
+        if (inner_near > 0) seen.add(begin, view.elevation(inner_near, near_end));
+        seen.add(view.elevation(inner_far, far_end), end);
+      }
+      return seen;
+    }
+
+    bool sees(const Point3&, const Vector3& direction, const SurfacePoint& p) const {
+      if (!(dot(p.normal, direction) < 0)) return false;
+      if (p.primitive != inner || (view.side() == 0 && view.around() < tube.r_[1])) return true;
+      return view.side() != 0 && view.through(p.object_position, view.side() * tube.half_, tube.r_[1]);
+    }
   };
-  /// False within the wall, from where everything may be seen.
-  bool facing(const Point3& own, Facing& f) const {
-    const double x = double(own.x), y = double(own.y), z = double(own.z), around = std::sqrt(x * x + y * y);
-    const bool above = z > half_, below = z < -half_;
-    if (!above && !below && around > r_[1] && around < r_[0]) return false;
-    f.azimuth = std::atan2(y, x);
-    if (above) f.areas[high_end] = areas_[high_end];
-    if (below) f.areas[low_end] = areas_[low_end];
-    // A point of the outer side faces the place when cos(phi - azimuth) > r / around, and one of the bore when it is less.
-    if (around > r_[0]) f.areas[outer] = areas_[outer] * std::acos(r_[0] / around) / M_PI;
-    if (around <= r_[1])
-      f.areas[inner] = areas_[inner];
-    else if (above || below)  // else the wall is in the way
-      f.areas[inner] = areas_[inner] * (1 - std::acos(r_[1] / around) / M_PI);
-    for (const double a : f.areas) f.area += a;
-    return f.area > 0;
-  }
-
-  void sample_facing(const Facing& f, Point2 u, OwnPoint& own) const {
-    double y = double(u.y) * f.area;
-    int part = 0, last = 0;
-    for (int k = 0; k < parts; ++k)
-      if (f.areas[k] > 0) last = k;
-    while (part < last && y >= f.areas[part]) y -= f.areas[part++];
-    // The arc that faces the place is around its azimuth outside, and around the opposite one inside.
-    const double half = part == outer || part == inner ? M_PI * f.areas[part] / areas_[part] : M_PI;
-    const double middle = part == inner ? f.azimuth + M_PI : f.azimuth;
-    point_on(part, middle + half * (2 * double(u.x) - 1), std::clamp(y / f.areas[part], 0.0, 1.0), own);
-  }
-
-  /// [1/m^2]
-  float density_facing(const Facing& f, const Point3& from, const Transform& t, const SurfacePoint& p) const {
-    const bool faces = dot(p.normal, p.position - from) < 0 && f.areas[p.primitive] > 0;
-    return faces ? float(1 / f.area) / area_stretch(t, p.object_normal) : 0;
-  }
-
-  /// From within the wall always by direction, from close by half of the time.
-  DirectionShare direction_share(const Point3& own, bool faced) const {
-    if (!faced) return {1, false};
-    const double x = double(own.x), y = double(own.y), z = double(own.z);
-    return {x * x + y * y + z * z < r_[0] * r_[0] + half_ * half_ ? 0.5f : 0.0f, false};
-  }
+  /// From within the wall all samples are by direction, and none by area.
+  static constexpr DirectionShare everywhere{1, false};
+  static bool none(Point2, SurfaceSample&) { return false; }
+  static float no_density(const SurfacePoint&) { return 0; }
 
   void point_on(int part, double phi, double share, OwnPoint& p) const {
     const double cosine = std::cos(phi), sine = std::sin(phi);
