@@ -56,9 +56,6 @@ class BidirectionalPathTracer final : public Renderer {
     if (!delta.empty() && !traits.specular.empty())
       advice.push_back({"mirror images of caustics of " + some_of(delta) + " by " + some_of(traits.specular),
                         "(give the luminaire a small area)"});
-    if (traits.light_beyond())
-      advice.push_back(
-          {"light from infinity that falls on " + some_of(traits.endless) + " far from everything else", "PathTracer"});
     miss_subsurface(traits, advice);
     return advice;
   }
@@ -116,7 +113,7 @@ class BidirectionalPathTracer final : public Renderer {
     float direct = 0;  ///< density of light[0] when sampled as seen from light[1]
 
     const Scene& scene() const { return context.scene; }
-    float radius() const { return context.scene.radius(); }
+    LightFront front{context.scene};
   };
 
   /// s = 0: the camera walk's last vertex lies on a luminaire.
@@ -135,8 +132,8 @@ class BidirectionalPathTracer final : public Renderer {
         ConnectedPath path{nullptr, 0, s.camera.data(), t, 0, 0, 0, 0, 0, 0, true};
         path.begun = path.camera_last_from_light = begun_density(*light_sampler, x1, x0, -z.out);
         path.direct = sampled_density(*light_sampler, x1, x0, -z.out);
-        path.camera_before_from_light = vertex_density(x0.infinite ? 1 : point.object->emission->density(point, z.out), x0, x1,
-                                                       z.out, z.chance, s.radius());
+        path.camera_before_from_light =
+            vertex_density(x0.infinite ? 1 : point.object->emission->density(point, z.out), x0, x1, z.out, z.chance, s.front);
         if (path.begun > 0 && !seeded(SeededBug::luminaire_twice)) weight = bidirectional_weight(path, heuristic);
       }
       add(s, length, 0, t, weight, light);
@@ -185,14 +182,14 @@ class BidirectionalPathTracer final : public Renderer {
     light *= visible;
     float weight = 1;
     if (weighted) {
-      const float chance = visible.average(), radius = s.radius();
+      const float chance = visible.average();
       ConnectedPath path{&x0, 1, s.camera.data(), t, 0, 0, 0, 0, 0, 0, !l.delta};
       path.begun = begun_density(*light_sampler, z, x0, l.direction);
       path.direct = sampled_density(*light_sampler, z, x0, l.direction);
-      path.light_last_from_camera = vertex_density(f.density, z, x0, l.direction, chance, radius);
+      path.light_last_from_camera = vertex_density(f.density, z, x0, l.direction, chance, s.front);
       path.camera_last_from_light = vertex_density(l.infinite ? 1 : choice.luminaire->emission->density(l.point, -l.direction),
-                                                   x0, z, -l.direction, chance, radius);
-      path.camera_before_from_light = before_from(s.camera, t, l.direction, Transport::importance, radius);
+                                                   x0, z, -l.direction, chance, s.front);
+      path.camera_before_from_light = before_from(s.camera, t, l.direction, Transport::importance, s.front);
       if (path.begun > 0 && path.direct > 0) weight = bidirectional_weight(path, heuristic);
     }
     if (seeded(SeededBug::wrong_measure) && !l.infinite) light *= 1 / (1 + l.distance);
@@ -221,13 +218,13 @@ class BidirectionalPathTracer final : public Renderer {
     light *= visible;
     float weight = 1;
     if (weighted) {
-      const float chance = visible.average(), radius = s.radius();
+      const float chance = visible.average();
       ConnectedPath path{s.light.data(),        n, s.camera.data(), t, 0, 0, 0, 0, s.direct, s.light[0].forward,
                          can_be_met(s.light[0])};
-      path.light_last_from_camera = vertex_density(at_camera.density, z, y, direction, chance, radius);
-      path.light_before_from_camera = before_from(s.light, n, -direction, Transport::radiance, radius);
-      path.camera_last_from_light = vertex_density(at_light.density, y, z, -direction, chance, radius);
-      path.camera_before_from_light = before_from(s.camera, t, direction, Transport::importance, radius);
+      path.light_last_from_camera = vertex_density(at_camera.density, z, y, direction, chance, s.front);
+      path.light_before_from_camera = before_from(s.light, n, -direction, Transport::radiance, s.front);
+      path.camera_last_from_light = vertex_density(at_light.density, y, z, -direction, chance, s.front);
+      path.camera_before_from_light = before_from(s.camera, t, direction, Transport::importance, s.front);
       weight = bidirectional_weight(path, heuristic);
     }
     add(s, n + t - 1, n, t, weight, light);
@@ -259,8 +256,8 @@ class BidirectionalPathTracer final : public Renderer {
       ray.time = y.point.time;
       ConnectedPath path{s.light.data(), n, &z, 1, 0, 0, 0, 0, s.direct, s.light[0].forward, can_be_met(s.light[0])};
       path.light_last_from_camera = vertex_density(camera_direction_density(s.context.camera, parallel_, ray), z, y,
-                                                   ray.direction, visible.average(), s.radius());
-      path.light_before_from_camera = before_from(s.light, n, lens->direction, Transport::radiance, s.radius());
+                                                   ray.direction, visible.average(), s.front);
+      path.light_before_from_camera = before_from(s.light, n, lens->direction, Transport::radiance, s.front);
       weight = bidirectional_weight(path, heuristic);
     }
     if (seeded(SeededBug::skipped_length) && n == 4) return;
@@ -288,10 +285,11 @@ class BidirectionalPathTracer final : public Renderer {
   }
 
   /// The density of a walk's vertex before its last, `count` vertices long, had a walk come from `from` through the last.
-  static float before_from(const std::vector<Vertex>& walk, int count, const Vector3& from, Transport transport, float radius) {
+  static float before_from(const std::vector<Vertex>& walk, int count, const Vector3& from, Transport transport,
+                           const LightFront& front) {
     if (count < 2) return 0;
     const Vertex &last = walk[size_t(count - 1)], &before = walk[size_t(count - 2)];
-    return vertex_density(scattering_density(last, from, last.out, transport), last, before, last.out, last.chance, radius);
+    return vertex_density(scattering_density(last, from, last.out, transport), last, before, last.out, last.chance, front);
   }
 
   static bool can_be_met(const Vertex& luminaire) { return !luminaire.point.object->delta(); }

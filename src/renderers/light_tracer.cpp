@@ -44,9 +44,6 @@ class LightTracer final : public Renderer {
           {"light of " + some_of(traits.nested_luminaires) + " in nested scenes", "PathTracer, BidirectionalPathTracer"});
     if (!traits.emissive_media.empty())
       advice.push_back({"light of the media in " + some_of(traits.emissive_media), "PathTracer, BidirectionalPathTracer"});
-    if (traits.light_beyond())
-      advice.push_back(
-          {"light from infinity that falls on " + some_of(traits.endless) + " far from everything else", "PathTracer"});
     miss_subsurface(traits, advice);
     return advice;
   }

@@ -5,24 +5,60 @@
 namespace etendue {
 namespace {
 
+/// The beginning of light that passes `p`, unit `outward` the way it came. All bounded objects lie behind p, but surfaces
+/// without end may lie before it, and light meets them first: it begins beyond the last of them. False: there is no last.
+bool begin_before_all(const Scene& scene, const Point3& p, const Vector3& outward, float time, Point3& origin) {
+  constexpr int most = 1000;
+  Ray ray;
+  ray.origin = origin = p;
+  ray.direction = outward;
+  ray.time = time;
+  SurfacePoint point;
+  for (int i = 0; i < most; ++i) {
+    Hit hit;
+    if (!scene.nearest(ray, hit)) return true;
+    scene.locate(ray, hit, point);
+    // So far that rounding on the long way does not matter.
+    origin = point.position + (scene.radius() + 1e-3f * length(point.position - p)) * outward;
+    ray.origin = point.exit(outward);
+  }
+  return false;
+}
+
 bool from_infinity(const Scene& scene, const SceneObject& luminaire, const Wavelengths& w, float time, Point2 position,
                    Point2 direction, EmittedLight& light) {
   const SurfaceSample s = luminaire.sample_visible(scene.centre(), direction, time);
   if (!(s.density > 0)) return false;
-  const float radius = scene.radius();
+  const LightFront front(scene);
   const Frame frame(Normal3(-s.direction));
-  const Point2 across = warp::disc(position);
+  const Point2 across = front.sample(position);
   light.infinite = true;
   light.point = s.point;
   light.ray.direction = -s.direction;
-  light.ray.origin = scene.centre() + radius * (s.direction + across.x * frame.s + across.y * frame.t);
+  light.ray.origin = scene.centre() + scene.radius() * s.direction + across.x * frame.s + across.y * frame.t;
   light.direction = s.density;
-  light.position = 1 / (pi * square(radius));
+  light.position = front.density(light.ray.origin, s.direction);
+  if (scene.unbounded() && !begin_before_all(scene, light.ray.origin, s.direction, time, light.ray.origin)) return false;
   light.radiance = luminaire.emission->radiance(s.point, light.ray.direction, w);
   return true;
 }
 
 }  // namespace
+
+Point2 LightFront::sample(Point2 u) const {
+  if (!endless_) {
+    const Point2 p = warp::disc(u);
+    return {radius_ * p.x, radius_ * p.y};
+  }
+  if (u.x < 0.5f) {
+    const Point2 p = warp::disc({2 * u.x, u.y});
+    return {radius_ * p.x, radius_ * p.y};
+  }
+  const float r = radius_ / (2 - 2 * u.x);
+  float sine = 0, cosine = 0;
+  sin_cos_turn(u.y, sine, cosine);
+  return {r * cosine, r * sine};
+}
 
 bool sample_emitted_light(const Scene& scene, const LightSampler& lights, const Wavelengths& w, float time,
                           SampleStream& random, EmittedLight& light) {

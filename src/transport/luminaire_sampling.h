@@ -20,8 +20,38 @@ struct EmittedLight {
   Spectrum throughput() const { return radiance / (choice * position * direction); }
 };
 
-/// Chooses a luminaire by power, a point on it and a direction; for one at infinity a direction, and a point of the disc
-/// across it around the scene. False: nothing leaves there.
+/// Where, across its direction, light from infinity begins. All that has an end lies in the scene's sphere of radius R, and a
+/// uniform point of the disc across the direction serves it. A surface without end lies beyond the disc as well, and there
+/// every point must have a chance: with u uniform, r = R / (1 - u) has the density R / r^2, and a point at the distance r from
+/// the axis R / (2 pi r^3). A camera at the height h above a plane sees, at the distance r, the area r^3 / h per solid angle:
+/// so about as many points fall in each pixel, up to the horizon. Of two points one lies within the disc then:
+///     p(r) = 1 / (2 pi R^2) for r < R,   R / (4 pi r^3) for r > R   [1/m^2],   and 1 / (pi R^2) in scenes without such
+///     surfaces.
+class LightFront {
+ public:
+  explicit LightFront(const Scene& scene)
+      : centre_(scene.centre()), radius_(scene.radius()), endless_(scene.unbounded()), within_(1 / (pi * square(radius_))) {
+    if (endless_) within_ /= 2;
+  }
+
+  /// The distance from the axis through the scene's centre and the azimuth around it, as x and y [m].
+  Point2 sample(Point2 u) const;
+  /// [1/m^2] across the direction, of the light that passes a point. Its place along the direction does not matter.
+  float density(const Point3& p, const Vector3& direction) const {
+    if (!endless_) return within_;
+    const float r2 = length_squared(cross(p - centre_, direction));
+    return r2 > square(radius_) ? radius_ / (4 * pi * r2 * std::sqrt(r2)) : within_;
+  }
+
+ private:
+  Point3 centre_;
+  float radius_;
+  bool endless_;
+  float within_;
+};
+
+/// Chooses a luminaire by power, a point on it and a direction; for one at infinity a direction, and a place across it as
+/// LightFront has it. False: nothing leaves there.
 bool sample_emitted_light(const Scene&, const LightSampler&, const Wavelengths&, float time, SampleStream&, EmittedLight&);
 
 }  // namespace etendue

@@ -21,7 +21,7 @@ class Walk {
         path_(path),
         ray_(start.ray),
         density_(start.direction_density),
-        radius_(scene.radius()),
+        front_(scene),
         track_(scene.has_interiors()) {}
 
   void run() {
@@ -116,7 +116,7 @@ class Walk {
     if (point) v.point = *point;
     v.media = v.point.media;
     v.chance = chance;
-    v.forward = vertex_density(density_, path_[path_.size() - 2], v, ray_.direction, chance, radius_);
+    v.forward = vertex_density(density_, path_[path_.size() - 2], v, ray_.direction, chance, front_);
     return v;
   }
 
@@ -161,7 +161,7 @@ class Walk {
   /// The density of the vertex before, had the walk come the other way through v.
   void set_reverse(const Vertex& v, float density) {
     Vertex& before = path_[path_.size() - 2];
-    before.reverse = vertex_density(density, v, before, v.out, v.chance, radius_);
+    before.reverse = vertex_density(density, v, before, v.out, v.chance, front_);
   }
 
   /// The factor undoes the change of radiance by refraction, which comes back when the path leaves the medium.
@@ -187,7 +187,8 @@ class Walk {
   Ray ray_;
   Spectrum carried_{1.0f};  // product of the weights of scattering, media and roulette
   float density_;           // [1/sr] of the ray's direction
-  float eta_squared_ = 1, radius_;
+  float eta_squared_ = 1;
+  LightFront front_;
   bool track_;
 };
 

@@ -25,7 +25,7 @@ float scattering_density(const Vertex& v, const Vector3& out, const Vector3& in,
 }
 
 float vertex_density(float density, const Vertex& a, const Vertex& b, const Vector3& direction, float chance,
-                     float scene_radius) {
+                     const LightFront& front) {
   density *= chance;
   if (b.infinite || b.kind == Vertex::Kind::escape) return density;
   if (b.kind == Vertex::Kind::volume)
@@ -33,7 +33,7 @@ float vertex_density(float density, const Vertex& a, const Vertex& b, const Vect
   else if (b.point.normal != Normal3{})
     density *= std::abs(dot(b.point.normal, direction));
   if (a.parallel) return density;
-  if (a.infinite) return density / (pi * square(scene_radius));
+  if (a.infinite) return density * front.density(b.point.position, direction);
   return density / length_squared(b.point.position - a.point.position);
 }
 

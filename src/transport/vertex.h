@@ -6,7 +6,8 @@
 // along the edge,
 //     p(b) = p_w S |cos_b| / d^2   or   p_w S s_b / d^2   (Veach 1997, section 8.2.2; Pauly, Kollig & Keller 2000,
 // "Metropolis light transport for participating media", section 3). Points of a luminaire at infinity have densities
-// per solid angle, and what they light has density |cos| / (pi R^2), R the radius of the scene.
+// per solid angle, and what they light has the density p_A |cos| or p_A s_b, with p_A that of its place across the direction
+// (LightFront).
 //
 // These densities only weigh strategies against one another, and for that need be the same whichever strategy made
 // the path: S and s_b are means over the path's wavelengths, and specular scattering counts 1.
@@ -15,6 +16,7 @@
 #include "etendue/medium_stack.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
+#include "transport/luminaire_sampling.h"
 
 namespace etendue {
 
@@ -55,7 +57,7 @@ float scattering_density(const Vertex&, const Vector3& out, const Vector3& in, T
 /// The density of a vertex b that was chosen from a by a direction of solid-angle density `density`; `direction` is unit
 /// from a to b, `chance` that of getting along the edge.
 float vertex_density(float density, const Vertex& a, const Vertex& b, const Vector3& direction, float chance,
-                     float scene_radius);
+                     const LightFront&);
 
 /// A ray from one vertex to another that ends just before it.
 Ray connecting_ray(const Vertex& from, const Vertex& to);
