@@ -1,5 +1,6 @@
 // Solids made of others by union, intersection and difference, against closed forms and a test of points.
 
+#include "objects/csg.h"
 #include "etendue/arena.h"
 #include "etendue/language.h"
 #include "geometry_support.h"
@@ -241,6 +242,70 @@ TEST(Csg, WhatHasNoInsideIsRefusedWhereItStands) {
   EXPECT_NE(message("Union { operands: [] }").find("1 Union.operands"), std::string::npos);
   const auto nothing = solid("Difference { operands: [ Sphere {}, Box { size: [3, 3, 3] m } ] }");
   EXPECT_FALSE(nothing->bounds().empty());
+}
+
+// Operands whose surfaces are open, or whose faces do not agree on what is outside, are told from those that are not.
+TEST(Csg, OperandsThatAreOpenOrDisagreeAreRefusedWhereTheyStand) {
+  const auto message = [](const std::string& operands) {
+    try {
+      solid("Difference { operands: [ Box {},\n" + operands + " ] }");
+    } catch (const Error& e) {
+      return std::to_string(e.location.line) + " " + e.what();
+    }
+    return std::string();
+  };
+  const auto tetrahedron = [](const std::string& faces, const std::string& more = "") {
+    return "TriangleMesh { positions: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]] m, triangles: [" + faces + "]" + more + " }";
+  };
+  const std::string whole = "[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]", moving = ", times: [0, 1], motion_positions: ";
+  const std::string open = "2 TriangleMesh: it cannot be part of a solid: its surface is not closed";
+  EXPECT_EQ(message(tetrahedron(whole)), "");
+  EXPECT_EQ(message(tetrahedron("[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]")), "");  // inside out, but all alike
+  EXPECT_EQ(message(tetrahedron("[0, 2, 1], [0, 1, 3], [0, 3, 2]")).find(open), 0u);
+  EXPECT_EQ(message(tetrahedron("[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 3, 2]")).find(open), 0u);           // one face turned
+  EXPECT_EQ(message(tetrahedron(whole + ", [1, 2, 3]")).find(open), 0u);                                  // one twice
+  EXPECT_EQ(message(tetrahedron(whole, moving + "[[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]] m")), "");  // it grows
+  EXPECT_EQ(message("Curve { form: ribbon }").substr(0, 9), "2 Curve: ");
+  EXPECT_EQ(message("Union { operands: [ Sphere {},\nUnion { operands: [ Sphere {},\nDisc {} ] } ] }").substr(0, 8),
+            "4 Disc: ");
+}
+
+TEST(Csg, WhereNothingIsLeftThereIsAWarning) {
+  testing::internal::CaptureStderr();
+  solid("\nDifference {\n operands: [ Sphere {}, Box { size: [3, 3, 3] m } ] }");
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find(":3:"), std::string::npos) << said;
+  EXPECT_NE(said.find("nothing seems to be left"), std::string::npos) << said;
+}
+
+// A part is one number of 32 bits: 16 of them tell 2^16 objects apart, and leave 2^16 for the triangles of a mesh, whether it
+// stands still or moves.
+TEST(Csg, PartsThatAreTooManyAreRefused) {
+  const auto solid_of = [](const std::string& later) {
+    std::string positions, triangles, keys;
+    const int n = 182;  // squares along each side of a closed sheet: 2 n^2 = 66248 triangles
+    for (int i = 0; i < n * n; ++i) {
+      // A torus, of n by n vertices.
+      const double u = 2 * M_PI * (i % n) / n, v = 2 * M_PI * (i / n) / n;
+      const auto corner = [&](double r) {
+        return "[" + std::to_string((2 + r * std::cos(v)) * std::cos(u)) + "," +
+               std::to_string((2 + r * std::cos(v)) * std::sin(u)) + "," + std::to_string(r * std::sin(v)) + "],";
+      };
+      positions += corner(1);
+      keys += corner(0.9);
+      const int x = (i % n + 1) % n + i / n * n, y = (i + n) % (n * n), z = (x + n) % (n * n);
+      for (const int k : {i, x, z, i, z, y}) triangles += std::to_string(k) + ",";
+    }
+    return "TriangleMesh { positions: [" + positions + "] m, triangles: [" + triangles + "]" +
+           (later.empty() ? "" : ", times: [0, 1], motion_positions: [" + keys + "] m") + " }";
+  };
+  for (const std::string later : {"", "moving"}) {
+    std::vector<Ref<SceneObject>> operands{ref_cast<SceneObject>(parse_component(solid_of(later), "mesh"))};
+    for (int i = 0; i < (1 << 15); ++i) operands.push_back(ref_cast<SceneObject>(Registry::instance().create("Sphere")));
+    const Ref<Csg> all = ref_cast<Csg>(Registry::instance().create("Union"));
+    all->operands = std::move(operands);
+    EXPECT_THROW(prepare_tree(*all), Error) << later;
+  }
 }
 
 }  // namespace

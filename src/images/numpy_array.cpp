@@ -21,7 +21,7 @@ std::string_view after(std::string_view text, std::string_view key) {
 
 // NumPy enhancement proposal 1: "\x93NUMPY", two bytes of version, the header's length in two bytes (four from version 2
 // on), the header as the text of a Python dictionary, the numbers.
-Image parse_numpy_array(std::string_view bytes) {
+NumpyArray parse_numpy_header(std::string_view bytes) {
   constexpr std::string_view magic = "\x93NUMPY";
   if (!bytes.starts_with(magic) || bytes.size() < 12) throw Error("it is not a NumPy array");
   const auto byte = [&](size_t i) { return size_t(static_cast<unsigned char>(bytes[i])); };
@@ -47,30 +47,44 @@ Image parse_numpy_array(std::string_view bytes) {
     sizes.push_back(n);
     shape.remove_prefix(size_t(end - shape.data()));
   }
+  const size_t width = doubles ? 8 : 4;
+  size_t room = NumpyArray::most_numbers;  // divided, not multiplied: a product of many sizes might not be counted right
+  for (const size_t n : sizes) {
+    if (n == 0) throw Error("its shape is empty");
+    if (n > room) throw Error("its shape is too large: at most 2^30 numbers are read");
+    room /= n;
+  }
+  size_t needed = width;
+  for (const size_t n : sizes) needed *= n;
+  if (data.size() < needed) throw Error("it ends too early");
+  if (data.size() > needed) throw Error("it is longer than its shape says");
+  return {std::move(sizes), data, doubles};
+}
+
+double NumpyArray::operator[](size_t i) const {
+  double number = 0;
+  if (doubles) {
+    std::memcpy(&number, data.data() + 8 * i, 8);
+  } else {
+    float f;
+    std::memcpy(&f, data.data() + 4 * i, 4);
+    number = double(f);
+  }
+  return number;
+}
+
+Image parse_numpy_array(std::string_view bytes) {
+  const NumpyArray array = parse_numpy_header(bytes);
+  std::vector<size_t> sizes = array.shape;
   if (sizes.size() == 2) sizes.push_back(1);
   if (sizes.size() != 3 || sizes[2] == 2)
     throw Error("its shape is not (height, width), (height, width, 1) or (height, width, 3 or more)");
-  constexpr size_t limit = 1 << 20;
-  for (const size_t n : sizes)
-    if (n == 0 || n > limit) throw Error("its shape is empty or too large");
-  const size_t count = sizes[0] * sizes[1] * sizes[2], needed = count * (doubles ? 8 : 4);
-  if (data.size() < needed) throw Error("it ends too early");
-  if (data.size() > needed) throw Error("it is longer than its shape says");
-
   std::vector<std::string> channels;
   if (sizes[2] == 1) channels = {"Y"};
   for (size_t c = 0; sizes[2] > 1 && c < sizes[2]; ++c)
     channels.push_back(c < 3 ? std::string(1, char('X' + c)) : "channel." + std::to_string(c));
   Image image{int(sizes[1]), int(sizes[0]), std::move(channels)};
-  if (doubles) {
-    std::memcpy(image.values.data(), data.data(), needed);
-  } else {
-    for (size_t i = 0; i < count; ++i) {
-      float f;
-      std::memcpy(&f, data.data() + 4 * i, 4);
-      image.values[i] = double(f);
-    }
-  }
+  for (size_t i = 0; i < image.values.size(); ++i) image.values[i] = array[i];
   image.metadata["color_space"] = "xyz";
   return image;
 }

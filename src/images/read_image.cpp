@@ -105,7 +105,8 @@ bool complete_targa(const std::string& file) {
   return at <= file.size();
 }
 
-Image read_numpy(const std::string& path) {
+Image read_numpy(const std::string& path, std::uintmax_t size) {
+  if (size / 8 > NumpyArray::most_numbers + 1024) refuse(path, "it is too large: at most 2^30 numbers are read");
   const std::string bytes = read_bytes(path);
   try {
     Image image = parse_numpy_array(bytes);
@@ -126,7 +127,7 @@ Image read_image(const std::string& path) {
   const auto file_size = std::filesystem::file_size(path, code);
   if (!code && file_size == 0) refuse(path, "it is empty");
   if (!std::ifstream(path, std::ios::binary)) refuse(path, std::generic_category().message(errno));
-  if (lower_extension(path) == ".npy") return read_numpy(path);
+  if (lower_extension(path) == ".npy") return read_numpy(path, code ? 0 : file_size);
 
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
   if (!input) refuse(path, OIIO::geterror());

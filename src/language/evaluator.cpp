@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "language/turns.h"
+
 namespace etendue::language {
 
 std::optional<Value> Evaluator::evaluate(Node& node, const Context& context) {
@@ -108,7 +110,10 @@ std::optional<Value> Evaluator::call_function(Node& node, const Context& context
   }
   if (!good && is_function(node.text)) return std::nullopt;
   std::optional<Value> value = reporting(node.at, [&] { return call(node.text, arguments, node.at, allow_files_); });
-  if (value) value->location = node.at;
+  if (!value) return value;
+  value->location = node.at;
+  if (node.text == "rotate") note_turn(node, arguments);
+  if (node.text == "keyframes") warn_of_long_turns(node);
   return value;
 }
 

@@ -6,16 +6,18 @@
 #include "bezier_cells.h"
 #include "bezier_region.h"
 #include "bezier_table.h"
+#include "numbered_parts.h"
 #include "placed_object.h"
 
 namespace etendue {
 
 /// A hit's primitive is the number of a patch, its u and v are s and t on it.
-class BezierObject : public PlacedObject {
+class BezierObject : public PlacedObject, public NumberedParts {
  public:
   BezierObject();
   ~BezierObject() override;
   bool closed() const override { return closed_; }
+  std::uint64_t part_count() const override { return patches_.size(); }
 
  protected:
   /// How fine the grid of a number of patches is.

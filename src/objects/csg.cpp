@@ -5,6 +5,7 @@
 
 #include "csg_operand_shader.h"
 #include "geometry.h"
+#include "numbered_parts.h"
 
 namespace etendue {
 
@@ -74,21 +75,28 @@ void Csg::check_operand(SceneObject& operand) {
   if (operand.interior) warn(name + ": the medium inside" + part_of + " is that of the solid", operand.location_of("interior"));
 }
 
+namespace {
+
+/// Objects that do not say how many they have number some faces, or nothing.
+constexpr std::uint64_t few_parts = 16;
+
+}  // namespace
+
 void Csg::number_parts() {
   leaves_ = 0;
-  most_triangles_ = 0;
+  most_parts_ = 1;
   first_leaf_.clear();
   for (size_t i = 0; i < operands.size(); ++i) {
     first_leaf_.push_back(leaves_);
     leaves_ += nested_[i] ? nested_[i]->leaves_ : 1;
-    const std::optional<TriangleView> view = operands[i]->triangles();
-    const size_t triangles = nested_[i] ? nested_[i]->most_triangles_ : view ? view->triangles.size() : 0;
-    most_triangles_ = std::max(most_triangles_, triangles);
+    const auto* parts = dynamic_cast<const NumberedParts*>(operands[i].get());
+    most_parts_ = std::max(most_parts_, nested_[i] ? nested_[i]->most_parts_ : parts ? parts->part_count() : few_parts);
   }
   shift_ = 32 - std::bit_width(leaves_ - 1);
-  if (most_triangles_ > std::uint64_t(1) << shift_)
-    fail("operands", "there is room for " + std::to_string(std::uint64_t(1) << shift_) + " triangles in each of " +
-                         std::to_string(leaves_) + " objects, but one has " + std::to_string(most_triangles_));
+  const std::uint64_t room = std::uint64_t(1) << shift_;
+  if (most_parts_ > room)
+    fail("operands", "there is room for " + std::to_string(room) + " triangles or other parts in each of " +
+                         std::to_string(leaves_) + " objects, but one has " + std::to_string(most_parts_));
 }
 
 std::uint32_t Csg::encode(size_t operand, std::uint32_t primitive) const {

@@ -77,9 +77,9 @@ class Csg : public SceneObject {
   std::vector<const Csg*> nested_;         // for each operand; null: it is none of these
   std::vector<std::uint32_t> first_leaf_;  // the number of the first innermost operand in each
   std::uint32_t leaves_ = 0;
-  size_t most_triangles_ = 0;  // in a mesh among them
-  int shift_ = 32;             // bits of a primitive that number an innermost operand's own
-  std::vector<float> times_;   // of all keys among the operands
+  std::uint64_t most_parts_ = 1;  // of one among them
+  int shift_ = 32;                // bits of a primitive that number an innermost operand's own
+  std::vector<float> times_;      // of all keys among the operands
   Bounds3 own_bounds_, bounds_;
 
   // Made when first asked for: only luminaires need them.

@@ -3,12 +3,13 @@
 #include "curve_pieces.h"
 #include "curve_ribbon.h"
 #include "curve_tube.h"
+#include "numbered_parts.h"
 
 namespace etendue {
 namespace {
 
 // A hit's primitive is four times a piece's number, plus a tube's face.
-class Curve final : public PlacedObject, public Pieces {
+class Curve final : public PlacedObject, public Pieces, public NumberedParts {
  public:
   enum class Form { tube, ribbon };
 
@@ -77,6 +78,7 @@ class Curve final : public PlacedObject, public Pieces {
   }
 
   bool closed() const override { return form == Form::tube; }
+  std::uint64_t part_count() const override { return 4 * std::uint64_t(pieces_.size()); }  // with ends and joints
 
   std::vector<Point3> points{{0, 0, 0}, {0, 0, 1}};
   std::vector<float> radius{0.05f};

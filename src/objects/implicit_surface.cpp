@@ -9,6 +9,10 @@ namespace {
 // 0 there is at most one root, found between ends of different sign; other ranges are halved (Mitchell 1990, "Robust ray
 // intersection with interval arithmetic"; Duff 1992, "Interval arithmetic and recursive subdivision for implicit functions
 // and constructive solid geometry"). f is bounded once more by its value in the middle and f'.
+//
+// A formula may be so wild that its bounds say nothing anywhere. So that each ray ends, no more than `most_ranges` ranges are
+// halved in one search (usual ones take some tens, or hundreds along silhouettes); those still waiting then count as smallest:
+// of each the ends alone are compared. What is found is a crossing all the same, but others may lie before it.
 class ImplicitSurface final : public ImplicitObject {
  public:
   static void describe(Description<ImplicitSurface>& d) {
@@ -32,7 +36,7 @@ class ImplicitSurface final : public ImplicitObject {
         .member<&ImplicitSurface::tolerance>(
             "tolerance", "1",
             "parts of the solid, and gaps, may be missed where a ray is in them for less than this, in longest edges "
-            "of the box",
+            "of the box; and thicker ones where a ray would take more than 16384 steps, of which there is a warning",
             range(1e-12, 1e-3), Effect::rebuild);
   }
 
@@ -48,7 +52,16 @@ class ImplicitSurface final : public ImplicitObject {
       throw Error(what + " (at character " + std::to_string(e.location.column) + " of the formula)", at);
     }
     shortest_ = tolerance * double(max_component(high - low));
-    settle(low, high, capped, "formula");
+    ranges_left_ = most_prepared;
+    preparing_ = true;
+    try {
+      settle(low, high, capped, "formula");
+    } catch (...) {
+      preparing_ = false;
+      throw;
+    }
+    preparing_ = false;
+    warn_of_long_searches();
   }
 
   std::string formula = "pow(sqrt(x*x + y*y) - 0.65, 2) + z*z - 0.09";
@@ -81,8 +94,12 @@ class ImplicitSurface final : public ImplicitObject {
     }
     double speed = 0;
     for (const double d : r.direction) speed += d * d;
-    const Search search{r, shortest_ / std::sqrt(speed), inside};
-    if (!first_in(search, from, to, t)) return false;
+    // Preparing tries many lines, and shares a number of ranges among them.
+    int ranges = preparing_ ? int(std::min<std::int64_t>(ranges_left_, most_ranges)) : most_ranges;
+    const int allowed = ranges;
+    const bool found = first_in({r, shortest_ / std::sqrt(speed), inside, ranges}, from, to, t);
+    if (preparing_) ranges_left_ -= allowed - std::max(ranges, 0);
+    if (!found) return false;
     inside = !inside;
     return true;
   }
@@ -96,7 +113,38 @@ class ImplicitSurface final : public ImplicitObject {
     const DoubleRay& ray;
     double shortest;  // range of t
     bool inside;      // before the crossing
+    int& ranges;      // that may still be halved
   };
+  static constexpr int most_ranges = 1 << 14;
+  static constexpr std::int64_t most_prepared = 1 << 22;  // while preparing, of all lines together
+
+  /// Sends some lines through the box, and counts those that are not searched to the end.
+  void warn_of_long_searches() const {
+    constexpr int lines = 64;
+    int ended = 0;
+    for (int i = 0; i < lines; ++i) {
+      // Through the middle of the box, or near it, in directions spread evenly (a Fibonacci spiral).
+      const double z = 1 - (2 * i + 1.0) / lines, r = std::sqrt(1 - z * z), phi = 2.399963229728653 * i;
+      const double direction[3] = {r * std::cos(phi), r * std::sin(phi), z};
+      Ray ray;
+      double reach = infinity;
+      for (int k = 0; k < 3; ++k) {
+        const double half = 0.5 * (double(high[k]) - double(low[k]));
+        ray.origin[k] = float(double(low[k]) + half * (1 + 0.3 * direction[(k + 1) % 3]));
+        ray.direction[k] = float(direction[k]);
+        reach = std::min(reach, 0.7 * half / std::max(std::abs(direction[k]), 1e-6));
+      }
+      const DoubleRay line(ray);
+      int ranges = most_ranges;
+      double t = 0;
+      first_in({line, shortest_, value_at(line, 0) < 0, ranges}, 0, reach, t);
+      ended += ranges <= 0;
+    }
+    if (ended > 0)
+      warn("ImplicitSurface: " + std::to_string(ended) + " of " + std::to_string(lines) + " lines tried take more than " +
+               std::to_string(most_ranges) + " steps and were not searched to the end: parts of the surface may be missed",
+           location_of("formula"));
+  }
 
   double value_at(const DoubleRay& r, double t) const { return field_.value({r.at(t, 0), r.at(t, 1), r.at(t, 2)}); }
 
@@ -116,11 +164,12 @@ class ImplicitSurface final : public ImplicitObject {
       return s.inside;
     }
     const double middle = 0.5 * (from + to);
-    if (!slope.contains(0) || to - from <= s.shortest || middle <= from || middle >= to) {
+    if (!slope.contains(0) || to - from <= s.shortest || middle <= from || middle >= to || s.ranges <= 0) {
       if ((value_at(s.ray, to) < 0) == s.inside) return false;
       t = root(s, from, to);
       return true;
     }
+    --s.ranges;
     const double half = 0.5 * (to - from), f_middle = value_at(s.ray, middle);
     const double reach = half * std::max(std::abs(slope.low), std::abs(slope.high)) * (1 + 1e-12);
     const double rounding = 1e-12 * std::max(std::abs(f.low), std::abs(f.high));
@@ -166,6 +215,8 @@ class ImplicitSurface final : public ImplicitObject {
 
   FormulaField field_;
   double shortest_ = 0;  // [m]
+  bool preparing_ = false;
+  mutable std::int64_t ranges_left_ = 0;  // while preparing
 };
 
 const Register<ImplicitSurface> registered;

@@ -59,33 +59,41 @@ MeshData read_mesh(const std::string& path) {
   }
 }
 
-void drop_unusable(MeshData& mesh, const std::string& whose) {
-  size_t kept = 0, not_finite = 0, without_area = 0;
+namespace {
+
+bool countable(const Point3& p) {
   constexpr float largest = 1e18f;  // squares of coordinates must stay finite, and so does Embree require
+  return std::abs(p.x) < largest && std::abs(p.y) < largest && std::abs(p.z) < largest;  // false for NaN
+}
+
+/// Whether twice the area is below 1e-7 of the longest side's square: the height is lost in the rounding of the corners.
+bool without_height(const Point3& a, const Point3& b, const Point3& c) {
+  double e1[3], e2[3], longest = 0;
+  for (int k = 0; k < 3; ++k) {
+    e1[k] = double(b[k]) - double(a[k]);
+    e2[k] = double(c[k]) - double(a[k]);
+    longest = std::max({longest, std::abs(e1[k]), std::abs(e2[k])});
+  }
+  const double x = e1[1] * e2[2] - e1[2] * e2[1], y = e1[2] * e2[0] - e1[0] * e2[2], z = e1[0] * e2[1] - e1[1] * e2[0];
+  const double least = 1e-7 * longest * longest;
+  return !(x * x + y * y + z * z > least * least) || longest < 1e-18;
+}
+
+}  // namespace
+
+void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Point3> later) {
+  size_t kept = 0, not_finite = 0, without_area = 0;
+  const size_t vertices = mesh.positions.size();
   for (const auto& t : mesh.triangles) {
-    double p[3][3];
-    bool usable = true;
-    for (size_t c = 0; c < 3; ++c) {
-      const Point3& q = mesh.positions[t[c]];
-      usable = usable && std::abs(q.x) < largest && std::abs(q.y) < largest && std::abs(q.z) < largest;  // false for NaN
-      p[c][0] = q.x;
-      p[c][1] = q.y;
-      p[c][2] = q.z;
-    }
-    if (!usable) {
+    const Point3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    if (!countable(a) || !countable(b) || !countable(c)) {
       ++not_finite;
       continue;
     }
-    double e1[3], e2[3], longest = 0;
-    for (int k = 0; k < 3; ++k) {
-      e1[k] = p[1][k] - p[0][k];
-      e2[k] = p[2][k] - p[0][k];
-      longest = std::max({longest, std::abs(e1[k]), std::abs(e2[k])});
-    }
-    const double x = e1[1] * e2[2] - e1[2] * e2[1], y = e1[2] * e2[0] - e1[0] * e2[2], z = e1[0] * e2[1] - e1[1] * e2[0];
-    // Twice the area below 1e-7 of the longest side's square: the height is lost in the rounding of the corners.
-    const double least = 1e-7 * longest * longest;
-    if (!(x * x + y * y + z * z > least * least) || longest < 1e-18) {
+    bool flat = without_height(a, b, c);
+    for (size_t k = 0; flat && k < later.size(); k += vertices)
+      flat = without_height(later[k + t[0]], later[k + t[1]], later[k + t[2]]);
+    if (flat) {
       ++without_area;
       continue;
     }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,8 +50,9 @@ MeshData read_obj(std::string_view file);
 MeshData read_mesh(const std::string& path);
 
 /// Removes triangles with a corner that is not finite and triangles without area, with one warning for each kind that
-/// names `whose`. Throws Error when nothing is left.
-void drop_unusable(MeshData&, const std::string& whose);
+/// names `whose`. Throws Error when nothing is left. Of a mesh that changes its shape, `later` holds all positions at the
+/// second key, then those at the third, and so on: triangles go only when they have no area at any key.
+void drop_unusable(MeshData&, const std::string& whose, std::span<const Point3> later = {});
 
 /// Appends the triangles of a polygon given by its corners' indices: a fan when it is convex, else by cutting ears.
 void append_polygon(MeshData&, const std::uint32_t* corners, size_t count);

@@ -98,8 +98,27 @@ class Metaballs final : public ImplicitObject {
   }
 
   bool may_cross(const Place& from, const Place& to) const override {
-    const auto [least, most] = range(balls_.size(), [&](size_t i) -> const Ball& { return balls_[i]; }, from, to);
-    return least <= double(threshold) && most >= double(threshold);
+    const Block block = block_between(from, to);
+    bool inside = false, outside = false;
+    for (int z = block[2][0]; z <= block[2][1]; ++z)
+      for (int y = block[1][0]; y <= block[1][1]; ++y)
+        for (int x = block[0][0]; x <= block[0][1]; ++x) {
+          const Cell& cell = cells_[cell_index(x, y, z)];
+          Sign sign = cell.sign;
+          if (sign == Sign::mixed) {
+            auto [low, high] = cell_box({x, y, z});
+            for (size_t k = 0; k < 3; ++k) {
+              low[k] = std::max(low[k], from[k]);
+              high[k] = std::min(high[k], to[k]);
+            }
+            const auto [least, most] = range(cell, low, high);
+            if (least <= double(threshold) && most >= double(threshold)) return true;
+            sign = least > double(threshold) ? Sign::inside : Sign::outside;
+          }
+          (sign == Sign::inside ? inside : outside) = true;
+          if (inside && outside) return true;
+        }
+    return false;
   }
 
  private:
@@ -118,12 +137,11 @@ class Metaballs final : public ImplicitObject {
     const Ball* ball;
   };
 
-  /// Bounds of the density in a box.
-  template <class F>
-  static std::pair<double, double> range(size_t count, const F& ball_at, const Place& from, const Place& to) {
+  /// Bounds of the density in a box within a cell.
+  std::pair<double, double> range(const Cell& cell, const Place& from, const Place& to) const {
     double least = 0, most = 0;
-    for (size_t i = 0; i < count; ++i) {
-      const Ball& ball = ball_at(i);
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+      const Ball& ball = balls_[listed_[i]];
       double near = 0, far = 0;
       for (size_t k = 0; k < 3; ++k) {
         const double a = from[k] - ball.center[k], b = to[k] - ball.center[k], nearest = std::max({a, -b, 0.0});
@@ -139,40 +157,97 @@ class Metaballs final : public ImplicitObject {
     return {least - rounding, most + rounding};
   }
 
+  using Block = std::array<std::array<int, 2>, 3>;  // the first and the last cell along each axis
+
+  /// Cells that hold one ball each, if balls lie evenly; where they overlap so much that lists grow long, larger ones.
   void make_grid(const Bounds3& box) {
     constexpr double most_cells = 64;
-    const Vector3 size = box.high - box.low;
-    const double volume = double(size.x) * double(size.y) * double(size.z);
-    const double wanted = std::cbrt(volume / (64 + 8 * double(balls_.size())));  // edge of a cell
-    for (int k = 0; k < 3; ++k) {
-      const double edge = double(box.high[k]) - double(box.low[k]);
-      count_[k] = int(std::clamp(std::ceil(edge / wanted), 1.0, most_cells));
-      low_[size_t(k)] = double(box.low[k]);
-      scale_[size_t(k)] = count_[k] / edge;
+    const double most_entries = double(size_t(1) << 22) + 256 * double(balls_.size());
+    Place edge;
+    for (size_t k = 0; k < 3; ++k) {
+      edge[k] = double(box.high[int(k)]) - double(box.low[int(k)]);
+      low_[k] = double(box.low[int(k)]);
     }
-    cells_.assign(size_t(count_[0]) * size_t(count_[1]) * size_t(count_[2]), {});
-    listed_.clear();
-    most_listed_ = 0;
+    double wanted = std::cbrt(edge[0] * edge[1] * edge[2] / (64 + 8 * double(balls_.size())));  // edge of a cell
+    for (double entries = infinity; entries > most_entries; wanted *= 1.5) {
+      for (size_t k = 0; k < 3; ++k) {
+        count_[k] = int(std::clamp(std::ceil(edge[k] / wanted), 1.0, most_cells));
+        scale_[k] = count_[k] / edge[k];
+      }
+      entries = 0;
+      for (const Ball& ball : balls_) {
+        double cells = 1;
+        for (const auto& [first, last] : block_of(ball)) cells *= last - first + 1;
+        entries += cells;
+      }
+      if (count_[0] == 1 && count_[1] == 1 && count_[2] == 1) break;
+    }
+    list_balls();
     for (int z = 0; z < count_[2]; ++z)
       for (int y = 0; y < count_[1]; ++y)
         for (int x = 0; x < count_[0]; ++x) {
-          const int at[3] = {x, y, z};
-          Place from, to;
-          for (size_t k = 0; k < 3; ++k) {
-            constexpr double margin = 1e-9;  // in cells: places are found in them by rounded coordinates
-            from[k] = low_[k] + (at[k] - margin) / scale_[k];
-            to[k] = low_[k] + (at[k] + 1 + margin) / scale_[k];
-          }
           Cell& cell = cells_[cell_index(x, y, z)];
-          cell.begin = std::uint32_t(listed_.size());
-          for (size_t i = 0; i < balls_.size(); ++i)
-            if (overlaps(balls_[i], from, to)) listed_.push_back(std::uint32_t(i));
-          cell.end = std::uint32_t(listed_.size());
           most_listed_ = std::max(most_listed_, size_t(cell.end - cell.begin));
-          const auto [least, most] =
-              range(cell.end - cell.begin, [&](size_t i) -> const Ball& { return balls_[listed_[cell.begin + i]]; }, from, to);
+          const auto [from, to] = cell_box({x, y, z});
+          const auto [least, most] = range(cell, from, to);
           cell.sign = most < double(threshold) ? Sign::outside : (least > double(threshold) ? Sign::inside : Sign::mixed);
         }
+  }
+
+  /// Gives each cell the balls that reach into it, in their order: how many there are is counted first.
+  void list_balls() {
+    cells_.assign(size_t(count_[0]) * size_t(count_[1]) * size_t(count_[2]), {});
+    most_listed_ = 0;
+    const auto for_cells_of = [&](const Ball& ball, const auto& visit) {
+      const Block block = block_of(ball);
+      for (int z = block[2][0]; z <= block[2][1]; ++z)
+        for (int y = block[1][0]; y <= block[1][1]; ++y)
+          for (int x = block[0][0]; x <= block[0][1]; ++x) {
+            const auto [from, to] = cell_box({x, y, z});
+            if (overlaps(ball, from, to)) visit(cells_[cell_index(x, y, z)]);
+          }
+    };
+    for (const Ball& ball : balls_) for_cells_of(ball, [](Cell& cell) { ++cell.end; });
+    std::uint32_t sum = 0;
+    for (Cell& cell : cells_) {
+      const std::uint32_t count = cell.end;
+      cell.begin = cell.end = sum;
+      sum += count;
+    }
+    listed_.resize(sum);
+    for (size_t i = 0; i < balls_.size(); ++i)
+      for_cells_of(balls_[i], [&](Cell& cell) { listed_[cell.end++] = std::uint32_t(i); });
+  }
+
+  /// The cell at a coordinate along an axis, or the nearest.
+  int cell_at(double x, size_t k) const {
+    return int(std::clamp(std::floor((x - low_[k]) * scale_[k]), 0.0, double(count_[k] - 1)));
+  }
+
+  /// Cells a box touches, and those that touch it but for rounding.
+  Block block_between(const Place& from, const Place& to) const {
+    Block block;
+    for (size_t k = 0; k < 3; ++k) {
+      const double margin = 2 * cell_margin / scale_[k];
+      block[k] = {cell_at(from[k] - margin, k), cell_at(to[k] + margin, k)};
+    }
+    return block;
+  }
+
+  Block block_of(const Ball& ball) const {
+    const double reach = std::sqrt(1 / ball.inverse_square);
+    const Place& c = ball.center;
+    return block_between({c[0] - reach, c[1] - reach, c[2] - reach}, {c[0] + reach, c[1] + reach, c[2] + reach});
+  }
+
+  /// A cell as it is for balls: places are found in it by rounded coordinates.
+  std::pair<Place, Place> cell_box(const std::array<int, 3>& at) const {
+    Place from, to;
+    for (size_t k = 0; k < 3; ++k) {
+      from[k] = low_[k] + (at[k] - cell_margin) / scale_[k];
+      to[k] = low_[k] + (at[k] + 1 + cell_margin) / scale_[k];
+    }
+    return {from, to};
   }
 
   static bool overlaps(const Ball& ball, const Place& from, const Place& to) {
@@ -191,10 +266,7 @@ class Metaballs final : public ImplicitObject {
   /// Calls visit(ball, u) for each ball a place is in.
   template <class F>
   void for_balls_at(const Place& x, const F& visit) const {
-    int at[3];
-    for (size_t k = 0; k < 3; ++k)
-      at[k] = int(std::clamp(std::floor((x[k] - low_[k]) * scale_[k]), 0.0, double(count_[k] - 1)));
-    const Cell& cell = cells_[cell_index(at[0], at[1], at[2])];
+    const Cell& cell = cells_[cell_index(cell_at(x[0], 0), cell_at(x[1], 1), cell_at(x[2], 2))];
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
       const Ball& ball = balls_[listed_[i]];
       double r2 = 0;
@@ -262,6 +334,7 @@ class Metaballs final : public ImplicitObject {
     b[6] -= s * v4 * u2;
   }
 
+  static constexpr double cell_margin = 1e-9;  // in cells
   std::vector<Ball> balls_;
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> listed_;

@@ -161,7 +161,7 @@ class SignedDistanceGrid final : public ImplicitObject {
 
  private:
   using Corners = std::array<double, 8>;  // x runs fastest
-  static constexpr size_t most_points = size_t(1) << 30;
+  static constexpr size_t most_points = NumpyArray::most_numbers;
 
   void take_list() {
     if (resolution.size() != 3) fail("resolution", "three numbers are needed: how many distances along x, y and z");
@@ -191,16 +191,15 @@ class SignedDistanceGrid final : public ImplicitObject {
     const std::string path = file.resolved();
     try {
       const MappedFile mapped(path);
-      const Image array = parse_numpy_array(mapped.text());  // rows are z, pixels y, channels x
-      points_[0] = int(array.channels.size());
-      points_[1] = array.width;
-      points_[2] = array.height;
-      values_.assign(array.values.begin(), array.values.end());
+      const NumpyArray array = parse_numpy_header(mapped.text());
+      if (array.shape.size() != 3 || *std::min_element(array.shape.begin(), array.shape.end()) < 2)
+        throw Error("an array of shape (nz, ny, nx) with at least 2 numbers along each is needed");
+      for (size_t k = 0; k < 3; ++k) points_[k] = int(array.shape[2 - k]);
+      values_.resize(array.count());
+      for (size_t i = 0; i < values_.size(); ++i) values_[i] = float(array[i]);
     } catch (const Error& error) {
       fail("file", "'" + path + "': " + error.what());
     }
-    for (const int n : points_)
-      if (n < 2) fail("file", "'" + path + "': an array of shape (nz, ny, nx) with at least 2 numbers along each is needed");
   }
 
   size_t point_index(int x, int y, int z) const {

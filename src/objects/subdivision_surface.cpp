@@ -96,7 +96,7 @@ class SubdivisionSurface final : public TriangleObject {
       limit = limit_mesh(cage, sharp, {levels, tolerance, edge_length});
       drop_unusable(limit.mesh, whose);
     } catch (const Error& error) {
-      fail("", error.what());
+      fail(file.empty() ? "positions" : "file", error.what());
     } catch (const std::bad_alloc&) {
       fail("levels", "not enough memory for so many triangles");
     }

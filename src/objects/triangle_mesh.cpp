@@ -69,16 +69,18 @@ class TriangleMesh final : public TriangleObject {
 
   void prepare() override {
     std::shared_ptr<const MeshData> mesh;
+    const bool moves = !motion_files.empty() || !motion_positions.empty();
     if (!file.empty()) {
       if (!positions.empty() || !triangles.empty() || !normals.empty() || !uvs.empty() || !colors.empty())
         fail("file", "a mesh comes from a file or from lists, not from both");
-      mesh = from_file("file", file);
+      mesh = from_file("file", file, moves);
     } else {
       MeshData own = listed();
+      if (!moves) drop(own);
       make_shareable(own);
       mesh = std::make_shared<const MeshData>(std::move(own));
     }
-    MeshMotion motion = keyed(*mesh);
+    MeshMotion motion = keyed(mesh);
     if (flat && !mesh->normals.empty()) {
       auto bare = std::make_shared<MeshData>(*mesh);
       bare->normals = {};
@@ -110,38 +112,51 @@ class TriangleMesh final : public TriangleObject {
     const float* values;  // of the mesh that was adopted
   };
 
-  /// What a file holds; as long as some mesh uses it, and the file is the same, it is read once.
-  std::shared_ptr<const MeshData> from_file(const char* member, const FilePath& path) const {
+  /// What a file holds; as long as some mesh uses it, and the file is the same, it is read once. `whole`: with the triangles
+  /// that cannot be used, for at another key they may have an area.
+  std::shared_ptr<const MeshData> from_file(const char* member, const FilePath& path, bool whole) const {
     struct Known {
       std::filesystem::file_time_type written;
       std::uintmax_t size = 0;
       std::weak_ptr<const MeshData> mesh;
     };
     static std::mutex mutex;
-    static auto* all = new std::map<std::string, Known>;
+    static auto* all = new std::map<std::pair<std::string, bool>, Known>;
     const std::string name = path.resolved();
+    const std::pair key(name, whole);
     std::error_code none;  // what is wrong with the file, reading it tells
     const auto written = std::filesystem::last_write_time(name, none);
     const auto size = std::filesystem::file_size(name, none);
     const std::lock_guard lock(mutex);
     std::erase_if(*all, [](const auto& entry) { return entry.second.mesh.expired(); });
-    if (const auto known = all->find(name);
+    if (const auto known = all->find(key);
         known != all->end() && known->second.written == written && known->second.size == size)
       if (auto mesh = known->second.mesh.lock()) return mesh;
     try {
       MeshData mesh = read_mesh(name);
-      drop_unusable(mesh, "'" + name + "'");
+      if (!whole) drop_unusable(mesh, "'" + name + "'");
       make_shareable(mesh);
       auto made = std::make_shared<const MeshData>(std::move(mesh));
-      (*all)[name] = {written, size, made};
+      (*all)[key] = {written, size, made};
       return made;
     } catch (const Error& error) {
       fail(member, error.what());
     }
   }
 
-  /// The positions and normals at all keys, of which the mesh has the first.
-  MeshMotion keyed(const MeshData& mesh) const {
+  /// Takes out the triangles that cannot be used; `later`: the positions at all keys but the first.
+  void drop(MeshData& mesh, std::span<const Point3> later = {}) const {
+    const std::string own_name = origin && !origin->name.empty() ? origin->name : "TriangleMesh";
+    try {
+      drop_unusable(mesh, file.empty() ? own_name : "'" + file.resolved() + "'", later);
+    } catch (const Error& error) {
+      fail(file.empty() ? "positions" : "file", error.what());
+    }
+  }
+
+  /// The positions and normals at all keys, of which the mesh has the first. Of a mesh that moves, the triangles that cannot
+  /// be used at any of them are taken out.
+  MeshMotion keyed(std::shared_ptr<const MeshData>& mesh) const {
     MeshMotion motion;
     const bool from_lists = !motion_positions.empty();
     if (!from_lists && motion_files.empty()) {
@@ -150,23 +165,26 @@ class TriangleMesh final : public TriangleObject {
       return motion;
     }
     if (from_lists && !motion_files.empty()) fail("motion_files", "later keys come from files or from lists, not from both");
-    const size_t n = mesh.positions.size() - 1;
+    const size_t n = mesh->positions.size() - 1;
+    if (n == 0) fail("file", "a mesh without vertices has no later keys");
     if (motion_positions.size() % n != 0)
       fail("motion_positions", std::to_string(motion_positions.size()) + " positions are no multiple of the mesh's " +
                                    std::to_string(n) + " vertices");
     const size_t later = from_lists ? motion_positions.size() / n : motion_files.size();
     if (times.size() != later + 1)
       fail("times", std::to_string(times.size()) + " times for " + std::to_string(later + 1) + " keys (the first is the mesh)");
-    for (size_t i = 1; i < times.size(); ++i)
-      if (!(times[i - 1] < times[i])) fail("times", "the times of keys must increase");
+    for (size_t i = 0; i < times.size(); ++i) {
+      if (!std::isfinite(times[i])) fail("times", "the times of keys must be finite");
+      if (i > 0 && !(times[i - 1] < times[i])) fail("times", "the times of keys must increase");
+    }
     if (!motion_normals.empty() && motion_normals.size() != motion_positions.size())
       fail("motion_normals",
            std::to_string(motion_normals.size()) + " normals for " + std::to_string(motion_positions.size()) + " positions");
 
     motion.times = times;
     motion.positions.reserve(n * times.size() + 1);
-    motion.positions.assign(mesh.positions.begin(), mesh.positions.end() - 1);
-    motion.normals = mesh.normals;
+    motion.positions.assign(mesh->positions.begin(), mesh->positions.end() - 1);
+    motion.normals = mesh->normals;
     bool normals_known = from_lists ? !motion_normals.empty() : true;
     if (from_lists) {
       motion.positions.insert(motion.positions.end(), motion_positions.begin(), motion_positions.end());
@@ -176,7 +194,7 @@ class TriangleMesh final : public TriangleObject {
       }
     }
     for (const FilePath& path : motion_files) {
-      const std::shared_ptr<const MeshData> key = from_file("motion_files", path);
+      const std::shared_ptr<const MeshData> key = from_file("motion_files", path, true);
       if (key->positions.size() != n + 1)
         fail("motion_files", "'" + path.resolved() + "' has " + std::to_string(key->positions.size() - 1) +
                                  " vertices, the first key " + std::to_string(n));
@@ -184,8 +202,13 @@ class TriangleMesh final : public TriangleObject {
       motion.normals.insert(motion.normals.end(), key->normals.begin(), key->normals.end());
       normals_known = normals_known && !key->normals.empty();
     }
+    auto kept = std::make_shared<MeshData>(*mesh);
+    kept->positions.pop_back();
+    drop(*kept, std::span(motion.positions).subspan(n));
+    kept->positions.push_back({});
+    if (kept->triangles.size() < mesh->triangles.size()) mesh = std::move(kept);
     constexpr float largest = 1e18f;  // as of all meshes
-    for (const auto& t : mesh.triangles)
+    for (const auto& t : mesh->triangles)
       for (const std::uint32_t c : t)
         for (size_t k = n; k < motion.positions.size(); k += n) {
           const Point3& p = motion.positions[k + c];
@@ -193,12 +216,12 @@ class TriangleMesh final : public TriangleObject {
             fail(from_lists ? "motion_positions" : "motion_files",
                  "vertex " + std::to_string(c) + " of key " + std::to_string(k / n + 1) + " is not finite");
         }
-    if (mesh.normals.empty()) {
+    if (mesh->normals.empty()) {
       motion.normals = {};
     } else if (!normals_known) {
       motion.normals = {};
       for (size_t k = 0; k < motion.positions.size(); k += n)
-        append_normals({&motion.positions[k], n}, mesh.triangles, motion.normals);
+        append_normals({&motion.positions[k], n}, mesh->triangles, motion.normals);
     }
     motion.positions.push_back({});
     return motion;
@@ -233,11 +256,6 @@ class TriangleMesh final : public TriangleObject {
           fail("triangles", "triangle " + std::to_string(i / 3) + " refers to vertex " + std::to_string(triangles[k]) + " of " +
                                 std::to_string(n) + " (counting from 0)");
       mesh.triangles.push_back({triangles[i], triangles[i + 1], triangles[i + 2]});
-    }
-    try {
-      drop_unusable(mesh, origin && !origin->name.empty() ? origin->name : "TriangleMesh");
-    } catch (const Error& error) {
-      fail("positions", error.what());
     }
     return mesh;
   }

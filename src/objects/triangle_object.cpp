@@ -15,7 +15,12 @@ Vector3 unit_normal(const Vector3& n, float& inverse_length) {
     inverse_length = 1 / std::sqrt(nn);
     return inverse_length * n;
   }
-  const float s = 1 / max_component(abs(n));
+  const float largest = max_component(abs(n));
+  if (!(largest > 0)) {  // of a motion, at the moment at which the triangle is flat
+    inverse_length = 1e30f;
+    return {0, 0, 1};
+  }
+  const float s = 1 / largest;
   const Vector3 m = s * n;
   const float l = 1 / length(m);
   inverse_length = std::min(s * l, 1e30f);

@@ -9,6 +9,7 @@
 #include "lightsamplers/light_tree.h"
 #include "mesh_data.h"
 #include "moving_triangles.h"
+#include "numbered_parts.h"
 
 namespace etendue {
 
@@ -27,7 +28,7 @@ struct MeshMotion {
 /// rendering; one whose transform moves in its own. Triangles that change their shape are where they are at the time that
 /// is asked about. Barycentric coordinates u and v of a hit belong to a triangle's second and third
 /// corner.
-class TriangleObject : public SceneObject {
+class TriangleObject : public SceneObject, public NumberedParts {
  public:
   TriangleObject();
   ~TriangleObject() override;
@@ -45,6 +46,8 @@ class TriangleObject : public SceneObject {
   NormalCone normals() const override;
   bool closed() const override;
   std::optional<TriangleView> triangles() const override;
+  /// Triangles, whether they move or not.
+  std::uint64_t part_count() const override { return mesh_.triangles.size(); }
   /// The triangles when they change their shape and nothing else moves.
   std::optional<MovingTriangleView> moving_triangles() const;
 

@@ -80,7 +80,7 @@ class DirectRenderer final : public Renderer {
       radiance += light;
       sample.note_length(length, light);
     };
-    for (;;) {  // goes round where light passes straight on
+    for (int crossings = 0; crossings <= most_crossings; ++crossings) {  // goes round where light passes straight on
       if (!meet_surface(scene, ray, media, hit, point)) {
         for (const SceneObject* far : scene.infinite_luminaires()) {
           far->surface_point(ray, hit, point);
@@ -116,6 +116,7 @@ class DirectRenderer final : public Renderer {
       if (!straight) return radiance;
       throughput *= *straight;
     }
+    return radiance;
   }
 
  private:
@@ -179,7 +180,7 @@ class DirectRenderer final : public Renderer {
         const float density = direct_light_density(*light_sampler, point.position, point.normal, next->direction, on_luminaire);
         return heuristic_weight(heuristic, n * next->density, float(light_samples) * density);
       };
-      for (;;) {
+      for (int crossings = 0; crossings <= most_crossings; ++crossings) {
         if (!meet_surface(scene, ray, around, hit, met)) {
           for (const SceneObject* far : scene.infinite_luminaires()) {
             far->surface_point(ray, hit, met);

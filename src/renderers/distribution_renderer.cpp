@@ -171,7 +171,7 @@ class DistributionRenderer final : public Renderer {
         if (sample.random.next() >= survival) return;
         branch.throughput /= survival;
       }
-      if (branch.throughput.black()) return;
+      if (branch.throughput.black() || !branch.may_go_on(next->lobe)) return;
     }
   }
 
@@ -208,7 +208,7 @@ class DistributionRenderer final : public Renderer {
           child.throughput *= value / density;
         }
         step(sample, child, place, *next, density, kind.count + rivals);
-        if (child.throughput.black()) continue;
+        if (child.throughput.black() || !child.may_go_on(next->lobe)) continue;
         if (!first) record_surface(sample.record, place.point, branch.throughput);  // each branch from its surface on
         first = false;
         record_scatter(sample.record, *next);

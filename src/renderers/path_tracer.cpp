@@ -80,6 +80,7 @@ class PathTracer final : public Renderer {
     Point3 from;
     Normal3 from_normal;
     float crossed = 0;  // distance to the last boundary passed straight on [m]
+    int crossings = 0;  // of those since the last vertex
 
     const auto arrive = [&](int length, const Spectrum& light) {
       if (seeded(SeededBug::skipped_length) && length == 4) return;
@@ -133,6 +134,7 @@ class PathTracer final : public Renderer {
           if (throughput.black()) break;
           if (flight.scattered) {
             if (depth >= max_depth) break;
+            crossings = 0;
             ray.origin = ray(flight.distance);
             from = ray.origin;
             from_normal = {};
@@ -158,6 +160,7 @@ class PathTracer final : public Renderer {
       if (track_media) {
         settle_coincident(scene, ray, hit, point, media);
         if (hidden_by_priority(media, *point.object)) {
+          if (++crossings > most_crossings) break;
           crossed += hit.distance;
           cross_boundary(media, *point.object, point.normal, ray.direction);
           ray.origin = point.exit(ray.direction);
@@ -228,7 +231,7 @@ class PathTracer final : public Renderer {
       throughput *= next->weight;
       record_scatter(sample.record, *next);
       if (!clear && next->lobe == pass_through) {
-        goes_on = !throughput.black();
+        goes_on = !throughput.black() && ++crossings <= most_crossings;
         crossed += hit.distance;
         if (track_media) cross_boundary(media, *point.object, point.normal, next->direction);
         ray.origin = point.exit(ray.direction);
@@ -241,6 +244,7 @@ class PathTracer final : public Renderer {
         --depth;
         continue;
       }
+      crossings = 0;
       eta_squared *= next->eta * next->eta;
       if (next->dispersive) throughput *= sample.wavelengths.drop_secondary();
       goes_on = roulette(depth);

@@ -109,6 +109,10 @@ void Scene::prepare() {
     if (box.empty()) continue;  // without extent: a point light, an empty scene
     if (!is_finite(box.low) || !is_finite(box.high) || !is_finite(box.diagonal()))
       object->fail("", "the object's bounds are not finite");
+    // Edges longer than this have products whose squares are no floats.
+    constexpr float largest = 2 * SceneObject::endless;
+    if (!object->unbounded() && max_component(box.diagonal()) > largest)
+      object->fail("", "the object is larger than 2e9 m, which is beyond what can be counted with");
     if (object->unbounded()) {
       unbounded_ = true;
       if (object->luminaire() && !inner) object->fail("emission", "an object without end would give off endless power");

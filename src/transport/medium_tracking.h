@@ -6,6 +6,10 @@
 
 namespace etendue {
 
+/// Boundaries a path may cross straight on from one vertex to the next. One that crosses more is held in place by rounding, or
+/// by an object whose distances are wrong: it ends, rather than go on, and take memory, for ever.
+constexpr int most_crossings = 1000;
+
 /// The path goes through the surface of an object in a direction. One that is not closed has no inside: a sheet of it
 /// bounds nothing; nor has one whose shader stands for a sheet.
 inline void cross_boundary(MediumStack& media, const SceneObject& object, const Normal3& normal, const Vector3& direction) {

@@ -33,7 +33,7 @@ class Walk {
   /// From one vertex to the next; false: the walk has ended.
   bool step() {
     Spectrum edge(1.0f);  // transmittance of the edge, for the strategies' densities
-    while (!carried_.black()) {
+    for (int crossings = 0; crossings <= most_crossings && !carried_.black(); ++crossings) {
       Hit hit;
       const bool found = scene_.nearest(ray_, hit);
       if (const VolumeShader* volume = track_ ? volume_of(media_) : nullptr) {

@@ -17,11 +17,11 @@ inline MediumStack* media_around(const Scene& scene, const Ray& ray, MediumStack
 /// The nearest surface on a ray; boundaries inside something of higher priority are crossed on the way, which moves the
 /// ray's origin. `media` are those around the ray; null: nothing is tracked.
 inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& hit, SurfacePoint& point) {
-  while (scene.nearest(ray, hit)) {
+  for (int crossings = 0; scene.nearest(ray, hit); ++crossings) {
     scene.locate(ray, hit, point);
     if (media) settle_coincident(scene, ray, hit, point, *media);
     point.media = media;
-    if (!media || !hidden_by_priority(*media, *point.object)) return true;
+    if (!media || !hidden_by_priority(*media, *point.object) || crossings == most_crossings) return true;
     cross_boundary(*media, *point.object, point.normal, ray.direction);
     ray.origin = point.exit(ray.direction);
     ray.width = point.footprint;
@@ -92,6 +92,13 @@ struct RayBranch {
   MediumStack media = {};
   bool tracked = false;  ///< whether media are
   int depth = 1;         ///< segments from the camera to the ray's end
+  int crossings = 0;     ///< surfaces it went straight on through since it was last scattered
+
+  /// Notes a step on; false: it must end (see most_crossings).
+  bool may_go_on(Lobe lobe) {
+    crossings = lobe == pass_through ? crossings + 1 : 0;
+    return crossings <= most_crossings;
+  }
 
   RayBranch(const Scene& scene, const Ray& camera_ray, const Wavelengths& w) : ray(camera_ray), wavelengths(w) {
     tracked = media_around(scene, ray, media) != nullptr;

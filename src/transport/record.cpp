@@ -59,14 +59,37 @@ void record_scatter_slowly(PathRecord& record, const ScatterSample& s) {
   if (s.dispersive) v.note = "dispersion: only the hero wavelength goes on";
 }
 
+namespace {
+
+/// An object's place among the scene's own. Of many objects each thread keeps a sorted list for the scene it last asked about,
+/// which is told by its version.
+int place_in(const Scene& scene, const SceneObject* object) {
+  constexpr size_t few = 32;
+  if (scene.objects.size() <= few) {
+    const auto place =
+        std::find_if(scene.objects.begin(), scene.objects.end(), [&](const Ref<SceneObject>& o) { return o.get() == object; });
+    return int(place - scene.objects.begin());
+  }
+  static thread_local std::uint64_t version = 0;
+  static thread_local std::vector<std::pair<const SceneObject*, int>> places;
+  if (version != scene.version()) {
+    places.clear();
+    for (const Ref<SceneObject>& o : scene.objects) places.emplace_back(o.get(), int(places.size()));
+    std::sort(places.begin(), places.end());
+    version = scene.version();
+  }
+  const auto place = std::lower_bound(places.begin(), places.end(), std::pair(object, 0));
+  return place != places.end() && place->first == object ? place->second : int(scene.objects.size());
+}
+
+}  // namespace
+
 void note_features(Features& features, const Scene& scene, const SurfacePoint& point, const Hit& hit, const Scatter* scatter,
                    const Vector3& out, const Wavelengths& wavelengths, float distance_before) {
   features.normal = Vector3(dot(point.shading_normal, out) < 0 ? -point.shading_normal : point.shading_normal);
   features.depth = distance_before + hit.distance;
   const SceneObject* top = hit.depth > 0 ? hit.scenes[hit.depth - 1] : hit.object;
-  const auto place =
-      std::find_if(scene.objects.begin(), scene.objects.end(), [&](const Ref<SceneObject>& o) { return o.get() == top; });
-  features.object = int(place - scene.objects.begin()) + 1;
+  features.object = place_in(scene, top) + 1;
   if (!scatter) return;
   static const RgbSpace& srgb = rgb_space("srgb");
   const Xyz c = to_xyz(scatter->albedo(out) * srgb.illuminant->evaluate(wavelengths, ColorUse::reflectance), wavelengths);

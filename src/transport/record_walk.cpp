@@ -1,5 +1,6 @@
 #include "transport/record_walk.h"
 
+#include "transport/medium_tracking.h"
 #include "transport/record.h"
 
 namespace etendue {
@@ -30,7 +31,7 @@ void note_first_surface(const Scene& scene, const Ray& camera_ray, SampleContext
   float crossed = 0;
   Hit hit;
   SurfacePoint point;
-  while (scene.nearest(ray, hit)) {
+  for (int crossings = 0; crossings <= most_crossings && scene.nearest(ray, hit); ++crossings) {
     scene.locate(ray, hit, point);
     const Shader* shader = point.object->shader.get();
     if (shader && shader->possible_lobes() == pass_through) {

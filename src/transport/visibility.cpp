@@ -13,7 +13,7 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
   const Point3 end = std::isfinite(ray.maximum) ? ray(ray.maximum) : Point3{};
   Spectrum fraction(1.0f);
   SurfacePoint point;
-  for (;;) {
+  for (int crossings = 0; crossings <= most_crossings; ++crossings) {
     Hit hit;
     const bool found = scene.nearest(ray, hit);
     if (around)
@@ -51,6 +51,7 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
       ray.direction = rest / ray.maximum;
     }
   }
+  return {};
 }
 
 }  // namespace etendue
