@@ -33,7 +33,7 @@ std::vector<Row> rows() {
 class EndlessSurfaces : public testing::TestWithParam<Case> {};
 TEST_P(EndlessSurfaces, ReflectAKnownLight) { expect_row(GetParam()); }
 INSTANTIATE_TEST_SUITE_P(All, EndlessSurfaces, testing::ValuesIn(cases(rows())),
-                         [](const auto& info) { return info.param.row.name + "_" + info.param.way.renderer; });
+                         [](const auto& each) { return each.param.row.name + "_" + each.param.way.renderer; });
 
 constexpr int width = 24, height = 16, tile = 4, passes = 16, tiles = (width / tile) * (height / tile);
 

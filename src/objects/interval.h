@@ -5,7 +5,8 @@
 #include <cmath>
 #include <limits>
 
-namespace etendue {
+// A namespace of its own, so that its functions hide nobody else's: they are found by their arguments.
+namespace etendue::intervals {
 
 /// From low to high; a result holds all that the operation can give, rounding included. (Moore 1966, "Interval analysis".)
 struct Interval {
@@ -87,4 +88,8 @@ inline Interval whole_power(const Interval& x, int n) {
   return p;
 }
 
-}  // namespace etendue
+}  // namespace etendue::intervals
+
+namespace etendue {
+using intervals::Interval;
+}

@@ -176,9 +176,9 @@ class Metaballs final : public ImplicitObject {
       }
       entries = 0;
       for (const Ball& ball : balls_) {
-        double cells = 1;
-        for (const auto& [first, last] : block_of(ball)) cells *= last - first + 1;
-        entries += cells;
+        double covered = 1;
+        for (const auto& [first, last] : block_of(ball)) covered *= last - first + 1;
+        entries += covered;
       }
       if (count_[0] == 1 && count_[1] == 1 && count_[2] == 1) break;
     }
