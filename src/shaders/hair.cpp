@@ -22,10 +22,21 @@ namespace {
 //
 // Not reciprocal: the exchanged path meets the fibre where this one leaves it, at another h, and f |in.z| does not depend on
 // the ribbon's slope towards `in`. Seen from afar, averaged over h, it is but for the tilt.
+//
+// On a ribbon h goes from edge to edge, and from behind the other way around. On what encloses a volume, such as a tube, it is
+// the sine of the angle between the normal and `out` around the fibre: with e the direction of `out` across the fibre's
+// x, the normal z is h (e cross x) + sqrt(1 - h^2) e, so h = -e.y. The one scattering at the point where light is met stands
+// for all that happens within the fibre; so from inside the wall is not there, for light that leaves on the far side.
 class HairScatter final : public Scatter {
  public:
-  HairScatter(const SurfacePoint& p, const Frame& frame, const HairFibre& fibre, float h, Spectrum absorption)
-      : Scatter(p, frame, glossy_reflection | glossy_transmission), fibre_(fibre), h_(h), absorption_(absorption) {}
+  static constexpr Lobes all = glossy_reflection | glossy_transmission | pass_through;
+
+  HairScatter(const SurfacePoint& p, const Frame& frame, const HairFibre& fibre, bool round, Spectrum absorption)
+      : Scatter(p, frame, round ? all : Lobes(all & ~pass_through)),
+        fibre_(fibre),
+        round_(round),
+        across_(std::isfinite(p.uv.y) ? clamp(-1 + 2 * p.uv.y, -1, 1) : 0),
+        absorption_(absorption) {}
 
  protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
@@ -35,13 +46,21 @@ class HairScatter final : public Scatter {
     return local_value_and_density(out, in, which).density;
   }
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
-    if (in.z == 0) return {};
+    if (in.z == 0 || leaves(out)) return {};
     ScatterValue r = along_and_around(Angles(out), section(out), in);
     r.value /= std::abs(in.z);
     return r;
   }
 
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    if (leaves(out)) {
+      s.in = -out;
+      s.value = Spectrum(1.0f);
+      s.density = 1;
+      s.lobe = pass_through;
+      return (which & pass_through) != 0;
+    }
+    if (!(which & glossy_lobes)) return false;
     const Angles from(out);
     const HairFibre::Section across = section(out);
     const auto probability = probabilities(across);
@@ -62,6 +81,7 @@ class HairScatter final : public Scatter {
 
   // Exact: which side light leaves on depends on phi alone.
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    if (leaves(out)) return (which & pass_through) ? Spectrum(1.0f) : Spectrum();
     const HairFibre::Section across = section(out);
     const float front_begins = out.z > 0 ? 0 : -pi;
     Spectrum sum;
@@ -82,9 +102,13 @@ class HairScatter final : public Scatter {
     float phi;
   };
 
+  /// Whether a path has come to the wall of a round fibre from inside.
+  bool leaves(const Vector3& out) const { return round_ && out.z < 0; }
   HairFibre::Section section(const Vector3& out) const {
     const Angles from(out);
-    return fibre_.section(from.sine, from.cosine, h_, absorption_);
+    float h = out.z < 0 ? -across_ : across_;
+    if (round_) h = from.cosine > 0 ? clamp(-out.y / from.cosine, -1, 1) : 0;
+    return fibre_.section(from.sine, from.cosine, h, absorption_);
   }
   static std::array<float, HairFibre::lobes> probabilities(const HairFibre::Section& across) {
     std::array<float, HairFibre::lobes> r;
@@ -108,7 +132,8 @@ class HairScatter final : public Scatter {
   }
 
   HairFibre fibre_;
-  float h_;
+  bool round_;
+  float across_;  // h on a ribbon seen from its front
   Spectrum absorption_;
 };
 
@@ -118,8 +143,9 @@ class HairShader final : public Shader {
 
   static void describe(Description<HairShader>& d) {
     d.summary(
-         "Fibres of hair or fur, which run along the first surface coordinate (dpdu); the second one goes from 0 to 1 across "
-         "them, so that a flat ribbon looks like a round fibre.",
+         "Fibres of hair or fur, which run along the first surface coordinate (dpdu). On what encloses a volume, such as a "
+         "tube, the place across the fibre follows from the normal; on anything else, such as a flat ribbon, from the second "
+         "surface coordinate, from 0 to 1, so that it looks like a round fibre.",
          "Chiang et al. 2016, A practical and controllable hair and fur model for production path tracing")
         .member<&HairShader::pigment>("pigment", "", "what gives the hair its color: one of the following members",
                                       choices("melanin", "color", "absorption"))
@@ -152,10 +178,9 @@ class HairShader final : public Shader {
     if (const SceneObject* around = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
       eta /= MediumStack::index(around, w)[0];
     const HairFibre fibre(scalar_at(*longitudinal_roughness, p), scalar_at(*azimuthal_roughness, p), radians(tilt), eta);
-    const float h = std::isfinite(p.uv.y) ? clamp(-1 + 2 * p.uv.y, -1, 1) : 0;
-    return arena.make<HairScatter>(p, tangent_frame(p), fibre, h, absorption_at(p, w, fibre));
+    return arena.make<HairScatter>(p, tangent_frame(p), fibre, p.object && p.object->closed(), absorption_at(p, w, fibre));
   }
-  Lobes possible_lobes() const override { return glossy_reflection | glossy_transmission; }
+  Lobes possible_lobes() const override { return HairScatter::all; }
   // Light that goes through a fibre is outside again: there is no inside to be in.
   bool transmits() const override { return false; }
   bool reciprocal() const override { return false; }  // see HairScatter
