@@ -8,6 +8,7 @@
 #include "etendue/error.h"
 #include "heightfield_grid.h"
 #include "maps/linear_image.h"
+#include "visible_directions.h"
 
 namespace etendue {
 namespace {
@@ -60,6 +61,22 @@ class Heightfield final : public PlacedObject {
     table_ = std::make_unique<Table>();
     measure();
     place();
+  }
+
+  // From close by half of the samples are by direction: in points by area the nearest cells would hardly ever be found.
+  SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
+    const auto sample = [&](Point2 v, SurfaceSample& s) {
+      OwnPoint own;
+      if (!(own_sample(v, own) > 0)) return false;
+      carry(own, time, s.point);
+      return true;
+    };
+    return sample_by_both(*this, direction_share(from, time), from, u, time, sample,
+                          [this](const SurfacePoint& p) { return area_density(p); });
+  }
+  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+    return density_by_both(direction_share(from, p.time), from, direction, p,
+                           [this](const SurfacePoint& q) { return area_density(q); });
   }
 
   FilePath image;
@@ -168,6 +185,15 @@ class Heightfield final : public PlacedObject {
     // Rounding of the position in any direction, for it may cross into the next cell, of u and v across a step, and of
     // where it is moved to; intersection itself is in double.
     p.error = rounding_bound(3) * (length(p.position - Point3{}) + float(step_x_ + step_y_));
+  }
+
+  DirectionShare direction_share(const Point3& from, float time) const {
+    Transform scratch;
+    const Point3 own = placed(transform, time, scratch).back(from);
+    const auto [low, high] = grid_.range();
+    const Vector3 off{std::max(std::abs(own.x) - size.x / 2, 0.0f), std::max(std::abs(own.y) - size.y / 2, 0.0f),
+                      std::max({low - own.z, own.z - high, 0.0f})};
+    return {max_component(off) < 0.25f * std::min(size.x, size.y) ? 0.5f : 0.0f, false};
   }
 
   static Normal3 normal_of(double slope_x, double slope_y) {
