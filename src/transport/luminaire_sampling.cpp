@@ -27,15 +27,15 @@ bool begin_before_all(const Scene& scene, const Point3& p, const Vector3& outwar
 
 bool from_infinity(const Scene& scene, const SceneObject& luminaire, const Wavelengths& w, float time, Point2 position,
                    Point2 direction, EmittedLight& light) {
-  const SurfaceSample s = luminaire.sample_visible(scene.centre(), direction, time);
-  if (!(s.density > 0)) return false;
   const LightFront front(scene);
+  const SurfaceSample s = luminaire.sample_visible(front.centre(), direction, time);
+  if (!(s.density > 0)) return false;
   const Frame frame(Normal3(-s.direction));
   const Point2 across = front.sample(position);
   light.infinite = true;
   light.point = s.point;
   light.ray.direction = -s.direction;
-  light.ray.origin = scene.centre() + scene.radius() * s.direction + across.x * frame.s + across.y * frame.t;
+  light.ray.origin = front.centre() + scene.radius() * s.direction + across.x * frame.s + across.y * frame.t;
   light.direction = s.density;
   light.position = front.density(light.ray.origin, s.direction);
   if (scene.unbounded() && !begin_before_all(scene, light.ray.origin, s.direction, time, light.ray.origin)) return false;

@@ -30,10 +30,14 @@ struct EmittedLight {
 class LightFront {
  public:
   explicit LightFront(const Scene& scene)
-      : centre_(scene.centre()), radius_(scene.radius()), endless_(scene.unbounded()), within_(1 / (pi * square(radius_))) {
+      : centre_(is_finite(scene.centre()) ? scene.centre() : Point3{}),
+        radius_(scene.radius()),
+        endless_(scene.unbounded()),
+        within_(1 / (pi * square(radius_))) {
     if (endless_) within_ /= 2;
   }
 
+  const Point3& centre() const { return centre_; }
   /// The distance from the axis through the scene's centre and the azimuth around it, as x and y [m].
   Point2 sample(Point2 u) const;
   /// [1/m^2] across the direction, of the light that passes a point. Its place along the direction does not matter.
