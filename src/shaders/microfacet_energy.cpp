@@ -3,10 +3,12 @@
 // Masking changes with v most where v is as flat as the facets are, Fresnel's F over all angles. The coordinate
 // t = (c (1 + b) / (c + b) + c) / 2 with b = a / 2, of the cosine c of v and the alpha a along v, gives half of the table to
 // each, and the flat directions the same place for all a; so tables are linear between few values. For isotropic surfaces
-// they are within 0.001 (F = 1) or mostly 0.003 (dielectrics; 0.01 from the denser side at some grazing angles), for others
-// within 0.01 of E. Each takes 3 to 30 ms to compute.
+// they are within 0.001 (F = 1) or 0.0035 (dielectrics; 0.005 from the denser side where the index is below 1.2), for others
+// within 0.01 of E. Each takes 3 to 30 ms to compute, those of dielectrics as much for each step of the index.
 
+#include <array>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "shaders/fresnel.h"
@@ -154,19 +156,12 @@ struct AnisotropicReflectionTable {
 
 /// Isotropic dielectrics, by the index behind the surface over that in front: at equal steps of the root of 1 - 1 / n, n being
 /// the higher index over the lower, up to 4, and by side. For n near 1 that is in proportion to the cosine of the critical
-/// angle.
+/// angle, which changes albedos most: seen from the denser side through facets of one direction, all else being flat, light is
+/// lost or not. So steps are small, and what lies between two of them is computed when it is first asked for.
 template <Boundary boundary>
 class EtaTable {
  public:
-  explicit EtaTable(Kind kind) {
-    const Slopes slopes(kind, 40, 20, pi);
-    const auto rule = gauss_legendre(24);
-    for (int e = 0; e < etas; ++e) {
-      const float n = std::max(1 / (1 - (1 - 1 / highest) * square(float(e) / float(etas - 1))), 1.001f);
-      planes_.emplace_back(kind, n, slopes, rule);
-      planes_.emplace_back(kind, 1 / n, slopes, rule);
-    }
-  }
+  explicit EtaTable(Kind kind) : kind_(kind) {}
   float missing(float eta, const MicrofacetDistribution& d, const Vector3& v) const {
     return between(eta, [&](const Plane& plane) { return plane.missing(d, v); });
   }
@@ -175,18 +170,32 @@ class EtaTable {
   }
 
  private:
-  static constexpr int etas = 10;
+  static constexpr int etas = 96;
   static constexpr float highest = 4;
-  using Plane = IsotropicPlane<boundary, 18, 28>;
+  using Plane = IsotropicPlane<boundary, 28, 56>;
+  struct Slot {
+    std::once_flag made;
+    std::unique_ptr<const Plane> plane;
+  };
 
+  const Plane& plane(int index, bool denser_side) const {
+    Slot& slot = slots_[denser_side][size_t(index)];
+    std::call_once(slot.made, [&] {
+      const float n = std::max(1 / (1 - (1 - 1 / highest) * square(float(index) / float(etas - 1))), 1.001f);
+      slot.plane = std::make_unique<const Plane>(kind_, denser_side ? 1 / n : n, slopes_, rule_);
+    });
+    return *slot.plane;
+  }
   template <class F>
   float between(float eta, F&& f) const {
     const Place e(std::sqrt((1 - std::min(eta, 1 / eta)) / (1 - 1 / highest)), etas);
-    const Plane* low = &planes_[size_t(2 * e.index + (eta < 1))];
-    return e.mix(f(low[0]), f(low[2]));
+    return e.mix(f(plane(e.index, eta < 1)), f(plane(e.index + 1, eta < 1)));
   }
 
-  std::vector<Plane> planes_;
+  Kind kind_;
+  Slopes slopes_{kind_, 64, 32, pi};
+  std::vector<Node> rule_ = gauss_legendre(24);
+  mutable std::array<Slot, etas> slots_[2];
 };
 using RefractionTable = EtaTable<Boundary::dielectric>;
 using CoatTable = EtaTable<Boundary::coat>;
