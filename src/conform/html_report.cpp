@@ -12,19 +12,10 @@ namespace etendue::conform {
 namespace {
 
 constexpr std::string_view style = R"(
-:root { color-scheme: light dark; --paper: #fcfcfa; --ink: #1d1f21; --quiet: #5f6368; --line: #d9d9d4; --panel: #f2f2ee;
-        --good: #1a6b3c; --bad: #b2182b; --open: #8a5a00; }
-@media (prefers-color-scheme: dark) {
-  :root { --paper: #17191b; --ink: #e4e4e0; --quiet: #a0a4a8; --line: #3a3d40; --panel: #212427;
-          --good: #6fcf97; --bad: #ff7b86; --open: #e5b454; } }
-body { max-width: 76rem; margin: 2rem auto; padding: 0 1.25rem; background: var(--paper); color: var(--ink);
-       font: 16px/1.5 system-ui, sans-serif; }
-h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2rem; padding-top: .8rem; border-top: 1px solid var(--line); }
-code, pre { font-size: .85rem; overflow-wrap: anywhere; }
-pre { background: var(--panel); padding: .6rem; white-space: pre-wrap; border-radius: .3rem; }
-.quiet { color: var(--quiet); } .passed { color: var(--good); } .failed { color: var(--bad); } .not { color: var(--open); }
+pre { font-size: .85rem; overflow-wrap: anywhere; background: var(--panel); padding: .6rem; white-space: pre-wrap;
+      border-radius: .3rem; }
+.passed { color: var(--good); } .failed { color: var(--bad); } .not { color: var(--open); }
 .failed, .not { font-weight: 600; }
-.scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .9rem; } td, th { padding: .25rem .8rem .25rem 0; text-align: left;
         border-bottom: 1px solid var(--line); vertical-align: top; } td.n { text-align: right; }
 )";
@@ -56,10 +47,10 @@ std::string html_report(const std::vector<Outcome>& outcomes, const std::string&
   }
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta "
-      "charset=\"utf-8\"><title>Conformance</title><style>{}</style></head><body>\n"
+      "charset=\"utf-8\"><title>Conformance</title><style>{}{}</style></head><body>\n"
       "<h1>Conformance of {} classes</h1>\n<p><code>{}</code></p>\n<p>{} checks of single parts passed, "
       "<span class=\"{}\">{} failed</span>, {} could not be made.</p>\n",
-      style, classes.size(), escaped(command_line), all.passed, all.failed > 0 ? "failed" : "passed", all.failed,
+      page_style, style, classes.size(), escaped(command_line), all.passed, all.failed > 0 ? "failed" : "passed", all.failed,
       all.not_tried);
 
   html += "<div class=\"scroll\"><table><tr><th>class<th>parts<th>passed<th>failed<th>not tried</tr>\n";

@@ -1,8 +1,6 @@
 // AshikhminShirley: an anisotropic Phong highlight with Fresnel reflection over a matt base that fades as it grows.
 
-#include "etendue/shader.h"
-#include "etendue/warp.h"
-#include "shaders/half_vector.h"
+#include "shaders/matte_glossy_scatter.h"
 #include "shaders/reflectance.h"
 #include "shaders/scalar_map.h"
 #include "shaders/tangent_frame.h"
@@ -66,80 +64,37 @@ const Table& albedo_table() {
   return table;
 }
 
-class AshikhminShirleyScatter final : public Scatter {
+class AshikhminShirleyScatter final : public HalfVectorScatter<AshikhminShirleyScatter> {
  public:
   AshikhminShirleyScatter(const SurfacePoint& p, const Frame& frame, Lobes lobes, Spectrum matte, Spectrum specular,
                           PhongHalf shape, const Table& table)
-      : Scatter(p, frame, lobes),
+      : HalfVectorScatter(p, frame, lobes),
         base_(matte * (Spectrum(1.0f) - specular)),
         specular_(specular),
         shape_(shape),
         table_(&table) {}
 
- protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).value;
-  }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).density;
-  }
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    if (!(out.z * in.z > 0)) return {};
-    return value_and_density_of(out, in, glossy_probability(out, which), which);
-  }
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const float glossy = glossy_probability(out, which);
-    if (choice < glossy) {
-      s.in = mirrored_at(shape_.sample(u), above(out));
-      s.lobe = glossy_reflection;
-    } else {
-      s.in = warp::cosine_hemisphere(u);
-      s.lobe = diffuse_reflection;
-    }
-    if (!(s.in.z > 0)) return false;
-    if (out.z < 0) s.in.z = -s.in.z;
-    const ScatterValue both = value_and_density_of(out, s.in, glossy, which);
-    s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
-    return s.density > 0;
-  }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    Spectrum sum;
-    if (which & diffuse_reflection) sum += base_ * passed(out);
-    if (which & glossy_reflection) sum += glossy_albedo(out);
-    return sum;
-  }
-
  private:
-  static float passed(const Vector3& v) { return 1 - schlick_growth(0.5f * std::abs(v.z)); }
-
-  static float width(float exponent) { return 1 / std::sqrt(std::sqrt(exponent + 1)); }
+  friend class MatteGlossyScatter<AshikhminShirleyScatter>;
+  friend class HalfVectorScatter<AshikhminShirleyScatter>;
+  Spectrum matte(const Vector3& out, const Vector3& in) const { return base_ * (28 / (23 * pi) * passed(out) * passed(in)); }
+  ScatterValue glossy(const Vector3& out, const Vector3& in) const {
+    const HalfVector half = half_vector(out, in);
+    const float density = shape_.density(half) / (4 * half.u);
+    const Spectrum fresnel = specular_ + (Spectrum(1.0f) - specular_) * schlick_growth(half.u);
+    return {fresnel * (density / std::max(std::abs(out.z), std::abs(in.z))), density};
+  }
+  Vector3 sample_half(Point2 u) const { return shape_.sample(u); }
+  Spectrum matte_albedo(const Vector3& out) const { return base_ * passed(out); }
   Spectrum glossy_albedo(const Vector3& out) const {
     const Table::Value mean = table_->turned(out, width(shape_.nu), width(shape_.nv));
     return specular_ * mean[0] + (Spectrum(1.0f) - specular_) * mean[1];
   }
-  float glossy_probability(const Vector3& out, Lobes which) const {
-    if (!(which & glossy_reflection)) return 0;
-    if (!(which & diffuse_reflection)) return 1;
-    const float glossy = std::max(glossy_albedo(out).average(), 1e-4f);
-    return glossy / (glossy + base_.average() * passed(out));
-  }
-  ScatterValue value_and_density_of(const Vector3& out, const Vector3& in, float glossy, Lobes which) const {
-    ScatterValue r;
-    const float v_out = std::abs(out.z), v_in = std::abs(in.z);
-    if (which & diffuse_reflection) {
-      r.value = base_ * (28 / (23 * pi) * passed(out) * passed(in));
-      r.density = (1 - glossy) * v_in * inverse_pi;
-    }
-    if (which & glossy_reflection) {
-      const HalfVector half = half_vector(out, in);
-      const float density = shape_.density(half) / (4 * half.u);
-      const Spectrum fresnel = specular_ + (Spectrum(1.0f) - specular_) * schlick_growth(half.u);
-      r.value += fresnel * (density / std::max(v_out, v_in));
-      r.density += glossy * density;
-    }
-    return r;
-  }
+  float matte_weight(const Vector3& out) const { return base_.average() * passed(out); }
+  float glossy_weight(const Vector3& out) const { return std::max(glossy_albedo(out).average(), 1e-4f); }
+
+  static float passed(const Vector3& v) { return 1 - schlick_growth(0.5f * std::abs(v.z)); }
+  static float width(float exponent) { return 1 / std::sqrt(std::sqrt(exponent + 1)); }
 
   Spectrum base_, specular_;  ///< base_: Rd (1 - Rs)
   PhongHalf shape_;

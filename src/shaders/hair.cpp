@@ -1,9 +1,9 @@
 // HairShader: hair and fur.
 
 #include "shaders/hair.h"
+#include "shaders/joint_scatter.h"
 
 #include "etendue/medium_stack.h"
-#include "etendue/shader.h"
 #include "shaders/reflectance.h"
 #include "shaders/scalar_map.h"
 #include "shaders/tangent_frame.h"
@@ -27,24 +27,18 @@ namespace {
 // the sine of the angle between the normal and `out` around the fibre: with e the direction of `out` across the fibre's
 // x, the normal z is h (e cross x) + sqrt(1 - h^2) e, so h = -e.y. The one scattering at the point where light is met stands
 // for all that happens within the fibre; so from inside the wall is not there, for light that leaves on the far side.
-class HairScatter final : public Scatter {
+class HairScatter final : public JointScatter {
  public:
   static constexpr Lobes all = glossy_reflection | glossy_transmission | pass_through;
 
   HairScatter(const SurfacePoint& p, const Frame& frame, const HairFibre& fibre, bool round, Spectrum absorption)
-      : Scatter(p, frame, round ? all : Lobes(all & ~pass_through)),
+      : JointScatter(p, frame, round ? all : Lobes(all & ~pass_through)),
         fibre_(fibre),
         round_(round),
         across_(std::isfinite(p.uv.y) ? clamp(-1 + 2 * p.uv.y, -1, 1) : 0),
         absorption_(absorption) {}
 
  protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).value;
-  }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).density;
-  }
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
     if (in.z == 0 || leaves(out)) return {};
     ScatterValue r = along_and_around(Angles(out), section(out), in);

@@ -1,8 +1,8 @@
 // Lafortune: any number of generalised cosine lobes, as they are fitted to measured materials, over a Lambertian base.
 
-#include "etendue/shader.h"
 #include "etendue/warp.h"
 #include "shaders/half_vector.h"
+#include "shaders/joint_scatter.h"
 #include "shaders/reflectance.h"
 #include "shaders/tangent_frame.h"
 
@@ -69,19 +69,13 @@ struct CosineLobe {
 constexpr size_t most_lobes = 8;
 using Colors = std::array<Spectrum, most_lobes>;
 
-class LafortuneScatter final : public Scatter {
+class LafortuneScatter final : public JointScatter {
  public:
   LafortuneScatter(const SurfacePoint& p, const Frame& frame, Lobes lobes, const std::vector<CosineLobe>& list,
                    Spectrum diffuse, const Colors& colors)
-      : Scatter(p, frame, lobes), list_(list.data()), count_(list.size()), diffuse_(diffuse), colors_(colors) {}
+      : JointScatter(p, frame, lobes), list_(list.data()), count_(list.size()), diffuse_(diffuse), colors_(colors) {}
 
  protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).value;
-  }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).density;
-  }
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(out.z * in.z > 0)) return {};
     return value_and_density_of(above(out), above(in), shares(above(out), which), which);

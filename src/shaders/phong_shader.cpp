@@ -1,7 +1,6 @@
 // PhongShader: a Phong lobe over a Lambertian base, normalised so that energy is conserved and f is reciprocal.
 
-#include "etendue/shader.h"
-#include "etendue/warp.h"
+#include "shaders/matte_glossy_scatter.h"
 #include "shaders/reflectance.h"
 
 namespace etendue {
@@ -19,10 +18,10 @@ namespace {
 // cosine of `out`. It is 1 at c = 1, and at c = 0 the mean of sin(alpha) max(cos(phi), 0), which gives
 // a0 = (n + 2) / (2 pi) B((n + 1) / 2, 3 / 2). a is convex between, so the straight line between the ends bounds it from above;
 // it is exact for n = 0 and in the limit of large n.
-class PhongScatter final : public Scatter {
+class PhongScatter final : public MatteGlossyScatter<PhongScatter> {
  public:
   PhongScatter(const SurfacePoint& p, Lobes lobes, Spectrum diffuse, Spectrum specular, float exponent, float grazing_albedo)
-      : Scatter(p, lobes),
+      : MatteGlossyScatter(p, lobes),
         diffuse_(diffuse),
         specular_(specular),
         exponent_(exponent),
@@ -31,22 +30,11 @@ class PhongScatter final : public Scatter {
         specular_weight_(specular.average()) {}
 
  protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).value;
-  }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).density;
-  }
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    if (!(out.z * in.z > 0)) return {};
-    return combine(in, lobe_power(length_squared(in - mirror(out))), glossy_probability(out, which), which);
-  }
-
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const float glossy = glossy_probability(out, which);
+    const float probability = glossy_probability(out, which);
     const Vector3 r = mirror(out);
     float power = 0;
-    if (choice < glossy) {
+    if (choice < probability) {
       // cos(alpha) = u^(1/(n+1)), found through t = 1 - cos(alpha), which stays exact for sharp lobes.
       const float t = -std::expm1(std::log(std::max(u.x, 1e-30f)) / (exponent_ + 1));
       const float sine = safe_sqrt(t * (2 - t)), phi = 2 * pi * u.y;
@@ -62,47 +50,29 @@ class PhongScatter final : public Scatter {
       if (s.in.z == 0) return false;
       power = lobe_power(length_squared(s.in - r));
     }
-    const ScatterValue both = combine(s.in, power, glossy, which);
-    s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
-    return s.density > 0;
-  }
-
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    Spectrum sum;
-    if (which & diffuse_reflection) sum += diffuse_;
-    if (which & glossy_reflection) sum += specular_ * glossy_albedo(out);
-    return sum;
+    return complete(s, combine(s.in, probability, which, [&] { return matte(out, s.in); }, [&] { return lobe(power); }));
   }
 
  private:
-  static Vector3 mirror(const Vector3& v) { return {-v.x, -v.y, v.z}; }
+  friend class MatteGlossyScatter<PhongScatter>;
+  Spectrum matte(const Vector3&, const Vector3&) const { return diffuse_ * inverse_pi; }
+  ScatterValue glossy(const Vector3& out, const Vector3& in) const {
+    return lobe(lobe_power(length_squared(in - mirror(out))));
+  }
+  Spectrum matte_albedo(const Vector3&) const { return diffuse_; }
+  Spectrum glossy_albedo(const Vector3& out) const { return specular_ * relative_albedo(out); }
+  float matte_weight(const Vector3&) const { return diffuse_weight_; }
+  float glossy_weight(const Vector3& out) const { return specular_weight_ * relative_albedo(out); }
+  float relative_albedo(const Vector3& out) const { return lerp(std::abs(out.z), grazing_albedo_, 1); }
 
+  static Vector3 mirror(const Vector3& v) { return {-v.x, -v.y, v.z}; }
   /// cos(alpha)^n from the squared distance d2 of the two unit vectors: cos(alpha) = 1 - d2 / 2.
   float lobe_power(float d2) const {
     if (d2 >= 2) return 0;
     return std::exp(exponent_ * std::log1p(-0.5f * d2));
   }
-  float glossy_albedo(const Vector3& out) const { return lerp(std::abs(out.z), grazing_albedo_, 1); }
-
-  float glossy_probability(const Vector3& out, Lobes which) const {
-    if (!(which & glossy_reflection)) return 0;
-    if (!(which & diffuse_reflection)) return 1;
-    const float glossy = specular_weight_ * glossy_albedo(out);
-    return glossy / (glossy + diffuse_weight_);
-  }
-
-  ScatterValue combine(const Vector3& in, float power, float glossy, Lobes which) const {
-    ScatterValue r;
-    if (which & diffuse_reflection) {
-      r.value = diffuse_ * inverse_pi;
-      r.density = (1 - glossy) * std::abs(in.z) * inverse_pi;
-    }
-    if (which & glossy_reflection) {
-      r.value += specular_ * ((exponent_ + 2) * power / (2 * pi));
-      r.density += glossy * (exponent_ + 1) * power / (2 * pi);
-    }
-    return r;
+  ScatterValue lobe(float power) const {
+    return {specular_ * ((exponent_ + 2) * power / (2 * pi)), (exponent_ + 1) * power / (2 * pi)};
   }
 
   Spectrum diffuse_, specular_;

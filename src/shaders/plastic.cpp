@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "etendue/medium_stack.h"
-#include "etendue/shader.h"
 #include "etendue/warp.h"
 #include "shaders/fresnel.h"
+#include "shaders/joint_scatter.h"
 #include "shaders/reflectance.h"
 #include "shaders/roughness.h"
 
@@ -34,11 +34,12 @@ struct Coat {
   float through(const Vector3& v) const { return rough ? (*rough)(v) : 1 - fresnel_dielectric(std::abs(v.z), eta); }
 };
 
-class PlasticScatter final : public Scatter {
+class PlasticScatter final : public JointScatter {
  public:
   PlasticScatter(const SurfacePoint& p, const MicrofacetDistribution& distribution, const Coat& coat, Spectrum body,
                  bool nonlinear)
-      : Scatter(p, Lobes((body.black() ? 0 : diffuse_reflection) | (coat.rough ? glossy_reflection : specular_reflection))),
+      : JointScatter(p,
+                     Lobes((body.black() ? 0 : diffuse_reflection) | (coat.rough ? glossy_reflection : specular_reflection))),
         distribution_(distribution),
         coat_(coat) {
     const float inside = clamp(1 - coat.through_mean / square(coat.eta), 0, 0.9999f);
@@ -50,12 +51,6 @@ class PlasticScatter final : public Scatter {
   }
 
  protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).value;
-  }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).density;
-  }
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(out.z * in.z > 0)) return {};
     const float through = coat_.through(out), coat_probability = probability_of_coat(through, which);

@@ -42,7 +42,7 @@ float PrincipledScatter::Top::passed(const Vector3& v) const {
 // A film can make facets reflect more than its base does alone, at some wavelengths: at most, at normal incidence, as a
 // boundary of the index ratio n1^2 / (n0 n2) or its inverse (a quarter-wave film). The matt body is lit by what is then left.
 PrincipledScatter::PrincipledScatter(const SurfacePoint& p, const Frame& frame, const PrincipledLayers& layers)
-    : Scatter(p, frame, lobes_of(layers)),
+    : JointScatter(p, frame, lobes_of(layers)),
       layers_(layers),
       coat_(layers.coat_facets, layers.coat_eta),
       gloss_(layers.facets,

@@ -1,8 +1,8 @@
 #pragma once
 // Scattering by the layers of Principled.
 
-#include "etendue/shader.h"
 #include "shaders/eon.h"
+#include "shaders/joint_scatter.h"
 #include "shaders/microfacet.h"
 #include "shaders/sheen.h"
 
@@ -47,18 +47,12 @@ struct PrincipledLayers {
 };
 
 /// All lobes of a surface like these layers.
-class PrincipledScatter final : public Scatter {
+class PrincipledScatter final : public JointScatter {
  public:
   static Lobes lobes_of(const PrincipledLayers&);
   PrincipledScatter(const SurfacePoint& p, const Frame& frame, const PrincipledLayers&);
 
  protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).value;
-  }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).density;
-  }
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     return combine(out, in, which, plan(out, which));
   }

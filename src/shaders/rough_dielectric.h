@@ -1,9 +1,9 @@
 #pragma once
 // RoughDielectric: scattering at a boundary of facets between two transparent bodies.
 
-#include "etendue/shader.h"
 #include "etendue/warp.h"
 #include "shaders/fresnel.h"
+#include "shaders/joint_scatter.h"
 #include "shaders/microfacet.h"
 
 namespace etendue {
@@ -23,13 +23,13 @@ namespace etendue {
 // al. 2014, "Hero wavelength spectral sampling", at a single vertex): no weight exceeds 4 times that of a path of its own, and
 // no wavelength needs to be dropped. What `Scatter` makes of the index for radiance is the hero's, 1 / eta_hero^2 in place of
 // 1 / eta^2; f is multiplied by eta_hero / eta, which keeps both transports adjoint, and cancels over a way in and out.
-class RoughDielectric final : public Scatter {
+class RoughDielectric final : public JointScatter {
  public:
   /// eta: index below (z < 0) over that above. `multiple`: whether light scattered more than once is counted, where it is
   /// known. `single`: the path has only its hero left.
   RoughDielectric(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution, Spectrum eta,
                   bool multiple, bool single)
-      : Scatter(p, frame, glossy_reflection | glossy_transmission),
+      : JointScatter(p, frame, glossy_reflection | glossy_transmission),
         distribution_(distribution),
         multiple_refraction_({distribution.kind, std::sqrt(distribution.alpha_x * distribution.alpha_y)}, eta[0]),
         eta_(eta),
@@ -44,12 +44,6 @@ class RoughDielectric final : public Scatter {
   }
 
  protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).value;
-  }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).density;
-  }
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (out.z == 0 || in.z == 0) return {};
     ScatterValue r = out.z * in.z > 0 ? reflection(out, in, which) : transmission(out, in, which);

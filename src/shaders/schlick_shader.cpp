@@ -1,7 +1,7 @@
 // SchlickShader: one or two layers, each from a mirror through gloss to matt by its roughness.
 
-#include "etendue/shader.h"
 #include "etendue/warp.h"
+#include "shaders/joint_scatter.h"
 #include "shaders/reflectance.h"
 #include "shaders/scalar_map.h"
 #include "shaders/schlick_lobe.h"
@@ -64,23 +64,17 @@ const Table& albedo_table() {
   return table;
 }
 
-class SchlickScatter final : public Scatter {
+class SchlickScatter final : public JointScatter {
  public:
   /// With one layer, `base` has no lobes.
   SchlickScatter(const SurfacePoint& p, const Frame& frame, const Layer& top, const Layer& base, const Table& table)
-      : Scatter(p, frame, lobes_of(top) | lobes_of(base)), top_(top), base_(base), table_(&table) {}
+      : JointScatter(p, frame, lobes_of(top) | lobes_of(base)), top_(top), base_(base), table_(&table) {}
 
   static Lobes lobes_of(const Layer& l) {
     return Lobes((l.d > 0 ? diffuse_reflection : 0) | (l.g > 0 ? glossy_reflection : 0) | (l.s > 0 ? specular_reflection : 0));
   }
 
  protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return out.z * in.z > 0 ? value_and_density_of(out, in, shares(out, which), which).value : Spectrum();
-  }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return out.z * in.z > 0 ? value_and_density_of(out, in, shares(out, which), which).density : 0;
-  }
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     return out.z * in.z > 0 ? value_and_density_of(out, in, shares(out, which), which) : ScatterValue();
   }

@@ -1,8 +1,6 @@
 // WardShader: an anisotropic highlight of Gaussian slopes (brushed metal, lacquered wood) over a Lambertian base.
 
-#include "etendue/shader.h"
-#include "etendue/warp.h"
-#include "shaders/half_vector.h"
+#include "shaders/matte_glossy_scatter.h"
 #include "shaders/reflectance.h"
 #include "shaders/scalar_map.h"
 #include "shaders/tangent_frame.h"
@@ -48,70 +46,30 @@ const Table& albedo_table() {
   return table;
 }
 
-class WardScatter final : public Scatter {
+class WardScatter final : public HalfVectorScatter<WardScatter> {
  public:
   WardScatter(const SurfacePoint& p, const Frame& frame, Lobes lobes, Spectrum diffuse, Spectrum specular, Slopes slopes,
               const Table& table)
-      : Scatter(p, frame, lobes), diffuse_(diffuse), specular_(specular), slopes_(slopes), table_(&table) {}
-
- protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).value;
-  }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).density;
-  }
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    if (!(out.z * in.z > 0)) return {};
-    return value_and_density_of(out, in, glossy_probability(out, which), which);
-  }
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const float glossy = glossy_probability(out, which);
-    if (choice < glossy) {
-      s.in = mirrored_at(slopes_.sample(u), above(out));
-      s.lobe = glossy_reflection;
-    } else {
-      s.in = warp::cosine_hemisphere(u);
-      s.lobe = diffuse_reflection;
-    }
-    if (!(s.in.z > 0)) return false;
-    if (out.z < 0) s.in.z = -s.in.z;
-    const ScatterValue both = value_and_density_of(out, s.in, glossy, which);
-    s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
-    return s.density > 0;
-  }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    Spectrum sum;
-    if (which & diffuse_reflection) sum += diffuse_;
-    if (which & glossy_reflection) sum += specular_ * glossy_albedo(out);
-    return sum;
-  }
+      : HalfVectorScatter(p, frame, lobes), diffuse_(diffuse), specular_(specular), slopes_(slopes), table_(&table) {}
 
  private:
-  float glossy_albedo(const Vector3& out) const { return table_->turned(out, std::sqrt(slopes_.ax), std::sqrt(slopes_.ay))[0]; }
-  float glossy_probability(const Vector3& out, Lobes which) const {
-    if (!(which & glossy_reflection)) return 0;
-    if (!(which & diffuse_reflection)) return 1;
-    const float glossy = specular_.average() * glossy_albedo(out);
-    return glossy / (glossy + diffuse_.average());
+  friend class MatteGlossyScatter<WardScatter>;
+  friend class HalfVectorScatter<WardScatter>;
+  Spectrum matte(const Vector3&, const Vector3&) const { return diffuse_ * inverse_pi; }
+  ScatterValue glossy(const Vector3& out, const Vector3& in) const {
+    const HalfVector half = half_vector(out, in);
+    const float t = half.h.z, per_h = slopes_.density(half.h);
+    if (!(per_h > 0)) return {};  // where the exponential is 0, t^4 may be as well
+    const float density = per_h / (4 * half.u * t * t * t);
+    return {specular_ * (density / (half.u * t)), density};
   }
-  ScatterValue value_and_density_of(const Vector3& out, const Vector3& in, float glossy, Lobes which) const {
-    ScatterValue r;
-    if (which & diffuse_reflection) {
-      r.value = diffuse_ * inverse_pi;
-      r.density = (1 - glossy) * std::abs(in.z) * inverse_pi;
-    }
-    if (which & glossy_reflection) {
-      const HalfVector half = half_vector(out, in);
-      const float t = half.h.z, per_h = slopes_.density(half.h);
-      if (per_h > 0) {  // where the exponential is 0, t^4 may be as well
-        const float density = per_h / (4 * half.u * t * t * t);
-        r.value += specular_ * (density / (half.u * t));
-        r.density += glossy * density;
-      }
-    }
-    return r;
+  Vector3 sample_half(Point2 u) const { return slopes_.sample(u); }
+  Spectrum matte_albedo(const Vector3&) const { return diffuse_; }
+  Spectrum glossy_albedo(const Vector3& out) const { return specular_ * relative_albedo(out); }
+  float matte_weight(const Vector3&) const { return diffuse_.average(); }
+  float glossy_weight(const Vector3& out) const { return specular_.average() * relative_albedo(out); }
+  float relative_albedo(const Vector3& out) const {
+    return table_->turned(out, std::sqrt(slopes_.ax), std::sqrt(slopes_.ay))[0];
   }
 
   Spectrum diffuse_, specular_;

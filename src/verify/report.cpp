@@ -9,27 +9,8 @@ namespace etendue::verify {
 namespace {
 
 constexpr std::string_view style = R"(
-:root {
-  color-scheme: light dark;
-  --paper: #fcfcfa; --ink: #1d1f21; --quiet: #5f6368; --line: #d9d9d4; --panel: #f2f2ee;
-  --good: #1a6b3c; --bad: #b2182b; --open: #8a5a00;
-}
-@media (prefers-color-scheme: dark) {
-  :root {
-    --paper: #17191b; --ink: #e4e4e0; --quiet: #a0a4a8; --line: #3a3d40; --panel: #212427;
-    --good: #6fcf97; --bad: #ff7b86; --open: #e5b454;
-  }
-}
-body { max-width: 76rem; margin: 2rem auto; padding: 0 1.25rem; background: var(--paper); color: var(--ink);
-       font: 16px/1.5 system-ui, sans-serif; }
-h1 { font-size: 1.6rem; margin-bottom: .25rem; }
-h2 { font-size: 1.25rem; margin-top: 2.5rem; padding-top: 1rem; border-top: 1px solid var(--line); }
-p, li { max-width: 48rem; }
-code { font-size: .9em; overflow-wrap: anywhere; }
-.quiet { color: var(--quiet); }
 .agree { color: var(--good); } .undecided { color: var(--open); } .DISAGREE { color: var(--bad); }
 .agree, .undecided, .DISAGREE { font-weight: 600; }
-.scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .9rem; }
 th, td { padding: .3rem .8rem; text-align: right; border-bottom: 1px solid var(--line); white-space: nowrap; }
 th { font-weight: 600; vertical-align: bottom; }
@@ -83,8 +64,8 @@ class Report {
     for (const PairAgreement& pair : agreement_.pairs) worst = std::max(worst, pair.verdict);
     add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<title>Do they agree? {}</title>\n<style>{}</style>\n</head>\n<body>\n",
-        escaped(context_.file), style);
+        "<title>Do they agree? {}</title>\n<style>{}{}</style>\n</head>\n<body>\n",
+        escaped(context_.file), page_style, style);
     add("<h1>Do the renderers agree on <code>{}</code>?</h1>\n<p class=\"quiet\"><code>{}</code></p>\n", escaped(context_.file),
         escaped(context_.command_line));
     constexpr std::string_view words[] = {"They agree.", "No disagreement, but not everything could be decided.",

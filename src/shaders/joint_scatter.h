@@ -1,0 +1,20 @@
+#pragma once
+// JointScatter: for models whose value and density come from one computation.
+
+#include "etendue/shader.h"
+
+namespace etendue {
+
+class JointScatter : public Scatter {
+ protected:
+  using Scatter::Scatter;
+  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override = 0;
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const final {
+    return local_value_and_density(out, in, which).value;
+  }
+  float local_density(const Vector3& out, const Vector3& in, Lobes which) const final {
+    return local_value_and_density(out, in, which).density;
+  }
+};
+
+}  // namespace etendue
