@@ -31,7 +31,7 @@ TEST(AdviceText, a_path_tracer_loses_caustics_of_a_point_light_through_glass) {
     EXPECT_NE(name, "PathTracer");
     EXPECT_NE(name, "Renderer") << "an interface is no renderer";
   }
-  EXPECT_EQ(luminaires_text(traits), "1: 1 point light");
+  EXPECT_EQ(luminaires_text(*job->scene, traits), "1: 1 point light");
 }
 
 TEST(AdviceText, without_next_event_a_path_tracer_loses_lights_without_extent) {
@@ -70,8 +70,8 @@ TEST(AdviceText, luminaires_are_counted_by_kind) {
       "PathTracer {}", camera, 4,
       objects({floor_disc, round_lamp, round_lamp, "Environment { emission: DiffuseEmission {} }",
                std::string("BruteForceScene { objects: [ ") + round_lamp + " ] }", "Point { emission: DiffuseEmission {} }"})));
-  EXPECT_EQ(luminaires_text(scene_traits(*job->scene, *job->camera)),
-            "5: 1 point light, 2 area lights, 1 environment, 1 in a nested scene");
+  EXPECT_EQ(luminaires_text(*job->scene, scene_traits(*job->scene, *job->camera)),
+            "5: 1 point light, 3 area lights, 1 environment; 1 in nested scenes");
 }
 
 }  // namespace

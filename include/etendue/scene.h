@@ -1,12 +1,15 @@
 #pragma once
 // Scene (an accelerator): finds what rays hit. Is itself a SceneObject, so scenes nest.
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "etendue/scene_object.h"
 
 namespace etendue {
+
+class NestedLuminaires;
 
 class Scene : public SceneObject {
  public:
@@ -38,7 +41,8 @@ class Scene : public SceneObject {
     point.ray_direction = ray.direction;
   }
 
-  /// Objects that emit, those at infinity included.
+  /// Objects that emit, those at infinity included. One in a nested scene is in the list once for each place where that
+  /// stands, by an object that stands for it there (see SceneObject::original), as points on it name it.
   std::span<const SceneObject* const> luminaires() const { return luminaires_; }
   /// Luminaires at infinity that rays which hit nothing see; those without extent are not among them.
   std::span<const SceneObject* const> infinite_luminaires() const { return infinite_; }
@@ -89,6 +93,7 @@ class Scene : public SceneObject {
 
   Bounds3 bounds_;  // of the objects, in the scene's own coordinates
   std::vector<const SceneObject*> luminaires_, infinite_;
+  std::shared_ptr<const NestedLuminaires> nested_;  // null: there are none, or this scene is a nested one itself
   std::vector<Bounds3> interiors_;  // of the objects that paths can enter, and of scenes in which there are such; of many
                                     // such only the union, and the tree
   bool has_interiors_ = false, has_null_surfaces_ = false, unbounded_ = false;

@@ -130,6 +130,9 @@ class SceneObject : public Component {
   /// Returns how many; 0: the object has none by this name.
   virtual int attribute(int /*number*/, const SurfacePoint&, float* /*values*/) const { return 0; }
 
+  /// The object the user wrote, when this one stands for it: in one of several places, or with another shader.
+  virtual const SceneObject& original() const { return *this; }
+
   /// Place among the luminaires of the scene the renderer sees; -1: none. Set by Scene::prepare.
   int luminaire_index = -1;
 };

@@ -11,22 +11,21 @@
 namespace etendue {
 
 struct SceneTraits {
-  /// Each list names objects, as the user did; empty: there are none of the kind.
-  std::vector<std::string> specular;           ///< surfaces with mirror-like lobes, pass-through aside
-  std::vector<std::string> refracting;         ///< those of them that transmit
-  std::vector<std::string> smooth;             ///< surfaces with diffuse or glossy lobes
-  std::vector<std::string> glossy;             ///< surfaces with glossy lobes
-  std::vector<std::string> points;             ///< luminaires without extent at a finite place
-  std::vector<std::string> distant;            ///< luminaires that are a single direction
-  std::vector<std::string> areas;              ///< luminaires with an area
-  std::vector<std::string> environments;       ///< luminaires at infinity that rays can meet
-  std::vector<std::string> nested_luminaires;  ///< luminaires in nested scenes, which can only be met, not sampled
-  std::vector<std::string> media;              ///< objects with a scattering or absorbing volume
-  std::vector<std::string> emissive_media;     ///< objects with a volume that emits
-  std::vector<std::string> moved_exits;        ///< surfaces that light which enters leaves elsewhere (subsurface scattering)
-  std::vector<std::string> pass_through;       ///< surfaces that let light pass straight on
-  std::vector<std::string> endless;            ///< surfaces that go on for ever
-  bool pinhole = true;                         ///< the camera's lens is a point (or its rays parallel): no path meets it
+  /// Each list names objects, as the user did, each once wherever its scene stands; empty: there are none of the kind.
+  std::vector<std::string> specular;        ///< surfaces with mirror-like lobes, pass-through aside
+  std::vector<std::string> refracting;      ///< those of them that transmit
+  std::vector<std::string> smooth;          ///< surfaces with diffuse or glossy lobes
+  std::vector<std::string> glossy;          ///< surfaces with glossy lobes
+  std::vector<std::string> points;          ///< luminaires without extent at a finite place
+  std::vector<std::string> distant;         ///< luminaires that are a single direction
+  std::vector<std::string> areas;           ///< luminaires with an area
+  std::vector<std::string> environments;    ///< luminaires at infinity that rays can meet
+  std::vector<std::string> media;           ///< objects with a scattering or absorbing volume
+  std::vector<std::string> emissive_media;  ///< objects with a volume that emits
+  std::vector<std::string> moved_exits;     ///< surfaces that light which enters leaves elsewhere (subsurface scattering)
+  std::vector<std::string> pass_through;    ///< surfaces that let light pass straight on
+  std::vector<std::string> endless;         ///< surfaces that go on for ever
+  bool pinhole = true;                      ///< the camera's lens is a point (or its rays parallel): no path meets it
 
   /// Light from infinity falls on the sphere around what has an end: paths that begin there miss what has none beyond it.
   bool light_beyond() const { return !endless.empty() && !(distant.empty() && environments.empty()); }

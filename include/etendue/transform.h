@@ -83,6 +83,8 @@ class AnimatedTransform {
   AnimatedTransform(const Transform& still) : keys_{{0, still}} {}  // NOLINT: a still transform is one
   /// Keys in increasing time; at least one.
   explicit AnimatedTransform(std::vector<Key> keys);
+  /// First b, then this. Each goes on between its own keys as it does alone; the product's are at the times of both.
+  AnimatedTransform operator*(const AnimatedTransform& b) const;
 
   bool animated() const { return keys_.size() > 1; }
   /// The transform of the first key: the only one when not animated.
@@ -90,7 +92,7 @@ class AnimatedTransform {
   Transform at(float time) const;
   const std::vector<Key>& keys() const { return keys_; }
   bool valid() const;
-  bool operator==(const AnimatedTransform& b) const { return keys_ == b.keys_; }
+  bool operator==(const AnimatedTransform& b) const { return keys_ == b.keys_ && factors_ == b.factors_; }
 
   /// Bounds of a moving box over [begin, end], found by sampling the motion finely and widened by the largest step.
   Bounds3 sweep(const Bounds3& box, float begin, float end) const;
@@ -104,7 +106,8 @@ class AnimatedTransform {
   static Parts decompose(const Transform&);
 
   std::vector<Key> keys_;
-  std::vector<Parts> parts_;  // one for each key when animated
+  std::vector<Parts> parts_;                // one for each key when animated
+  std::vector<AnimatedTransform> factors_;  // of a product that is animated, the last to be applied first
 };
 
 }  // namespace etendue

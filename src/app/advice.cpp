@@ -74,21 +74,23 @@ std::vector<std::string> renderers_that_find_all(const SceneTraits& traits) {
   return names;
 }
 
-std::string luminaires_text(const SceneTraits& traits) {
-  std::uint64_t count = 0;
+std::string luminaires_text(const Scene& scene, const SceneTraits& traits) {
+  size_t points = 0, distant = 0, areas = 0, environments = 0, nested = 0;
+  for (const SceneObject* luminaire : scene.luminaires()) {
+    ++(luminaire->delta() ? luminaire->infinite() ? distant : points : luminaire->infinite() ? environments : areas);
+    nested += &luminaire->original() != luminaire;
+  }
   std::string kinds;
-  const auto add = [&](const std::vector<std::string>& list, const char* one, const char* several) {
-    if (list.empty()) return;
-    count += list.size();
-    kinds += fmt::format("{}{} {}", kinds.empty() ? ": " : ", ", grouped(list.size()), list.size() == 1 ? one : several);
+  const auto add = [&](size_t count, const char* one, const char* several) {
+    if (count > 0) kinds += fmt::format("{}{} {}", kinds.empty() ? ": " : ", ", grouped(count), count == 1 ? one : several);
   };
-  add(traits.points, "point light", "point lights");
-  add(traits.distant, "distant light", "distant lights");
-  add(traits.areas, "area light", "area lights");
-  add(traits.environments, "environment", "environments");
-  add(traits.nested_luminaires, "in a nested scene", "in nested scenes");
-  add(traits.emissive_media, "emitting volume", "emitting volumes");
-  return grouped(count) + kinds;
+  add(points, "point light", "point lights");
+  add(distant, "distant light", "distant lights");
+  add(areas, "area light", "area lights");
+  add(environments, "environment", "environments");
+  add(traits.emissive_media.size(), "emitting volume", "emitting volumes");
+  if (nested > 0) kinds += fmt::format("; {} in nested scenes", grouped(nested));
+  return grouped(scene.luminaires().size() + traits.emissive_media.size()) + kinds;
 }
 
 }  // namespace etendue

@@ -19,7 +19,8 @@ void advise(const Job&);
 /// Names of the known renderers that, with their defaults, miss nothing in a scene.
 std::vector<std::string> renderers_that_find_all(const SceneTraits&);
 
-/// "4: 1 point light, 1 area light, 2 environments": how many luminaires there are, by kind.
-std::string luminaires_text(const SceneTraits&);
+/// "4: 1 point light, 2 area lights, 1 environment; 2 in nested scenes": how many luminaires there are, by kind, those of
+/// nested scenes in each place where these stand.
+std::string luminaires_text(const Scene&, const SceneTraits&);
 
 }  // namespace etendue

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <unordered_set>
+#include <unordered_map>
 
 #include "app/advice.h"
 #include "app/scene_options.h"
@@ -12,27 +12,59 @@ namespace etendue {
 
 namespace {
 
-struct Contents {
-  std::uint64_t objects = 0, triangles = 0, scenes = 0;
-  std::unordered_set<const Scene*> seen;  // one that stands in many places counts once
+/// How much there is of something: what is stored, and what one sees, as scenes may stand in many places. (Doubles: there may
+/// be no end of the latter.)
+struct Amount {
+  double stored = 0, placed = 0;
 };
 
-void count(const Scene& scene, Contents& contents) {
-  ++contents.scenes;
-  for (const Ref<SceneObject>& object : scene.objects) {
-    if (!object) continue;
-    if (const Scene* nested = scene_within(*object)) {
-      if (contents.seen.insert(nested).second) count(*nested, contents);
-      continue;
+struct Contents {
+  Amount objects, triangles, scenes;
+};
+
+/// Counts each scene once, and what is in it in each place where it stands.
+class Counter {
+ public:
+  Contents count(const Scene& scene) {
+    const auto [place, fresh] = known_.try_emplace(&scene);
+    Contents& here = place->second;  // stays where it is when others are added
+    if (!fresh) return {{0, here.objects.placed}, {0, here.triangles.placed}, {0, here.scenes.placed}};
+    here.scenes = {1, 1};
+    const auto add = [](Amount& to, const Amount& more) {
+      to.stored += more.stored;
+      to.placed += more.placed;
+    };
+    for (const Ref<SceneObject>& object : scene.objects) {
+      if (const Scene* inner = scene_within(*object)) {
+        const Contents more = count(*inner);
+        add(here.objects, more.objects);
+        add(here.triangles, more.triangles);
+        add(here.scenes, more.scenes);
+        continue;
+      }
+      add(here.objects, {1, 1});
+      const auto view = object->triangles();
+      const double triangles = view ? double(view->triangles.size()) : 0;
+      add(here.triangles, {triangles, triangles});
     }
-    ++contents.objects;
-    if (const auto view = object->triangles()) contents.triangles += view->triangles.size();
+    return here;
   }
+
+ private:
+  std::unordered_map<const Scene*, Contents> known_;
+};
+
+std::string amount_text(const Amount& amount) {
+  constexpr double most = 1e15;
+  const std::string stored = grouped(std::uint64_t(amount.stored));
+  if (amount.placed == amount.stored) return stored;
+  return stored + ", " + (amount.placed < most ? grouped(std::uint64_t(amount.placed)) : fmt::format("{:.1e}", amount.placed)) +
+         " in all places where nested scenes stand";
 }
 
 /// What of the scene's light the job's renderer misses, and which renderers find all of it.
 void report_light(const Job& job, const SceneTraits& traits) {
-  if (job.scene->luminaires().empty() && traits.nested_luminaires.empty() && traits.emissive_media.empty()) {
+  if (job.scene->luminaires().empty() && traits.emissive_media.empty()) {
     fmt::print("Nothing emits light: the picture will be black.\n");
     return;
   }
@@ -49,18 +81,17 @@ int check(const SceneOptions& options) {
   const Ref<Job> job = options.load();
   prepare_tree(*job);
 
-  Contents contents;
-  count(*job->scene, contents);
+  const Contents contents = Counter().count(*job->scene);
   const PixelArea& area = job->image->area();
   std::string size = fmt::format("{} x {} pixels", job->image->width, job->image->height);
   if (area.width() != job->image->width || area.height() != job->image->height)
     size += fmt::format(", of these x {} to {}, y {} to {}", area.x0, area.x1, area.y0, area.y1);
 
-  fmt::print("objects     {}\n", grouped(contents.objects));
-  if (contents.scenes > 1) fmt::print("scenes      {}\n", grouped(contents.scenes));
-  fmt::print("triangles   {}\n", grouped(contents.triangles));
+  fmt::print("objects     {}\n", amount_text(contents.objects));
+  if (contents.scenes.stored > 1) fmt::print("scenes      {}\n", amount_text(contents.scenes));
+  fmt::print("triangles   {}\n", amount_text(contents.triangles));
   const SceneTraits traits = scene_traits(*job->scene, *job->camera);
-  fmt::print("luminaires  {}\n", luminaires_text(traits));
+  fmt::print("luminaires  {}\n", luminaires_text(*job->scene, traits));
   fmt::print("image       {}\n", size);
   fmt::print("samples     {} per pixel\n", job->renderer->samples);
   fmt::print("renderer    {}, {}\n", job->renderer->class_info().name, job->renderer->unbiased() ? "unbiased" : "consistent");

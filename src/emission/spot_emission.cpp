@@ -27,7 +27,7 @@ class SpotEmission final : public AxialEmission {
     describe_amounts(d);
     d.member<&SpotEmission::axis>("axis", "1",
                                   "the middle of the cone, the way its light travels, in the object's own coordinates; of any "
-                                  "length. The transforms of scenes the object is nested in do not turn it")
+                                  "length")
         .member<&SpotEmission::inner_angle>("inner_angle", "deg", "from the axis to where the light begins to fall off",
                                             range(0, 180))
         .member<&SpotEmission::outer_angle>("outer_angle", "deg", "from the axis to where there is none any more",

@@ -1,6 +1,8 @@
 #pragma once
 // The power of luminaires, for choosing between them.
 
+#include <unordered_map>
+
 #include "etendue/light_sampler.h"
 
 namespace etendue {
@@ -21,12 +23,44 @@ inline double luminaire_power(const SceneObject& luminaire) {
   return watts;
 }
 
+/// Powers of luminaires that may stand in many places: a map is not looked at anew for each. What is asked for as an amount is
+/// the same in all sizes, what is told as a radiance goes with the area: of a luminaire in two sizes P ~ A^k tells which, and
+/// that holds for the others. Only for choosing among them, as a stretch may change more than the area.
+class PlacedPowers {
+ public:
+  double of(const SceneObject& luminaire) {
+    if (&luminaire.original() == &luminaire) return luminaire_power(luminaire);
+    Known& k = known_[&luminaire.original()];
+    const double area = double(luminaire.area());
+    const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-4 * b; };
+    if (k.count > 0 && same(area, k.area)) return k.watts;
+    if (k.count == 2) return k.watts * std::pow(area / k.area, k.exponent);
+    const double watts = luminaire_power(luminaire);
+    if (!(area > 0 && watts > 0)) return watts;
+    if (k.count++ == 0) {
+      k.area = area;
+      k.watts = watts;
+    } else {
+      k.exponent = std::clamp(std::log(watts / k.watts) / std::log(area / k.area), 0.0, 1.0);
+    }
+    return watts;
+  }
+
+ private:
+  struct Known {
+    int count = 0;
+    double area = 0, watts = 0, exponent = 0;
+  };
+  std::unordered_map<const SceneObject*, Known> known_;
+};
+
 /// The powers of a scene's luminaires. A power may be an estimate (of a map, by samples) that misses what little there is:
 /// nothing that emits may have none, so each gets a thousandth of the mean besides; all alike where no power is known.
 inline std::vector<double> luminaire_powers(std::span<const SceneObject* const> luminaires) {
   std::vector<double> powers;
   double total = 0;
-  for (const SceneObject* luminaire : luminaires) total += powers.emplace_back(luminaire_power(*luminaire));
+  PlacedPowers known;
+  for (const SceneObject* luminaire : luminaires) total += powers.emplace_back(known.of(*luminaire));
   const double least = total > 0 ? 1e-3 * total / double(powers.size()) : 1;
   for (double& p : powers) p += least;
   return powers;

@@ -12,7 +12,7 @@ class UniformLightSampler final : public LightSampler {
 
   void build(const Scene& scene) override {
     luminaires_.assign(scene.luminaires().begin(), scene.luminaires().end());
-    for (const SceneObject* luminaire : luminaires_) luminaire_power(*luminaire);  // refuses what is no power
+    luminaire_powers(luminaires_);  // refuses what is no power
   }
 
   LightChoice choose(const Point3&, const Normal3&, float u) const override { return choose(u); }

@@ -216,7 +216,23 @@ AnimatedTransform::Parts AnimatedTransform::decompose(const Transform& transform
   return parts;
 }
 
+AnimatedTransform AnimatedTransform::operator*(const AnimatedTransform& b) const {
+  if (!animated() && !b.animated()) return still() * b.still();
+  std::vector<float> times;
+  for (const AnimatedTransform* t : {this, &b})
+    if (t->animated())
+      for (const Key& key : t->keys_) times.push_back(key.time);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  AnimatedTransform product;
+  product.keys_.clear();
+  for (const float time : times) product.keys_.push_back({time, at(time) * b.at(time)});
+  product.factors_ = {*this, b};
+  return product;
+}
+
 Transform AnimatedTransform::at(float time) const {
+  if (!factors_.empty()) return factors_[0].at(time) * factors_[1].at(time);
   if (!animated() || parts_.empty() || time <= keys_.front().time) return keys_.front().transform;
   if (time >= keys_.back().time) return keys_.back().transform;
   size_t i = 0;
@@ -243,6 +259,7 @@ Transform AnimatedTransform::at(float time) const {
 // farther from the nearer sample than half the arc, of which the chord, a fiftieth longer, is a bound.
 Bounds3 AnimatedTransform::sweep(const Bounds3& box, float begin, float end) const {
   if (!animated()) return still()(box);
+  if (!factors_.empty()) return factors_[0].sweep(factors_[1].sweep(box, begin, end), begin, end);
   Bounds3 all;
   if (box.empty()) return all;
   std::vector<float> times{begin};

@@ -58,9 +58,6 @@ class DirectRenderer final : public Renderer {
           {"light that " + some_of(scattering) + " send on to other surfaces", "PathTracer, BidirectionalPathTracer"});
     if (strategy == Strategy::light && !traits.specular.empty())
       list.push_back({"luminaires that are seen in " + some_of(traits.specular), "strategy: both finds them"});
-    if (strategy == Strategy::light && !traits.nested_luminaires.empty())
-      list.push_back(
-          {"light of " + some_of(traits.nested_luminaires) + ", which stand in nested scenes", "strategy: both finds it"});
     if (strategy == Strategy::shader && traits.delta_luminaires())
       list.push_back({"light of " + some_of(delta_names(traits)) + ", which no ray meets", "strategy: both finds it"});
     miss_media(traits, list);

@@ -39,9 +39,6 @@ class LightTracer final : public Renderer {
     if (!traits.environments.empty())
       advice.push_back(
           {some_of(traits.environments) + " where the camera sees it directly", "PathTracer, BidirectionalPathTracer"});
-    if (!traits.nested_luminaires.empty())
-      advice.push_back(
-          {"light of " + some_of(traits.nested_luminaires) + " in nested scenes", "PathTracer, BidirectionalPathTracer"});
     if (!traits.emissive_media.empty())
       advice.push_back({"light of the media in " + some_of(traits.emissive_media), "PathTracer, BidirectionalPathTracer"});
     miss_subsurface(traits, advice);

@@ -37,7 +37,7 @@ class WhittedRenderer final : public Renderer {
   std::vector<Advice> misses(const SceneTraits& traits) const override {
     std::vector<Advice> list;
     if (!traits.smooth.empty()) {
-      for (const auto* luminaires : {&traits.areas, &traits.environments, &traits.nested_luminaires})
+      for (const auto* luminaires : {&traits.areas, &traits.environments})
         if (!luminaires->empty())
           list.push_back({"light of " + some_of(*luminaires) + " on " + some_of(traits.smooth),
                           "DirectRenderer, DistributionRenderer, PathTracer"});

@@ -69,6 +69,7 @@ class Reshaded final : public SceneObject {
   int attribute(int number, const SurfacePoint& p, float* values) const override {
     return object->attribute(number, p, values);
   }
+  const SceneObject& original() const override { return object->original(); }
 
  private:
   SurfaceSample own(SurfaceSample s) const {

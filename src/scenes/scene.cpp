@@ -6,20 +6,21 @@
 #include <unordered_set>
 
 #include "etendue/shader.h"
-#include "objects/geometry.h"
+#include "scenes/nested_luminaires.h"
 
 namespace etendue {
 namespace {
 
-/// Calls for every object of the scenes within a scene, at any depth, once each.
+/// Calls for every scene within a scene, at any depth, once each.
 template <class F>
 void for_nested(const Scene& scene, std::unordered_set<const Scene*>& seen, const F& call) {
-  for (const Ref<SceneObject>& object : scene.objects)
-    if (const Scene* inner = scene_within(*object); inner && seen.insert(inner).second) {
-      for (const Ref<SceneObject>& own : inner->objects)
-        if (!scene_within(*own)) call(*own);
-      for_nested(*inner, seen, call);
-    }
+  for (const Ref<SceneObject>& object : scene.objects) {
+    const auto* instance = dynamic_cast<const Instance*>(object.get());
+    Scene* inner = instance ? instance->scene.get() : dynamic_cast<Scene*>(object.get());
+    if (!inner || !seen.insert(inner).second) continue;
+    call(*inner);
+    for_nested(*inner, seen, call);
+  }
 }
 
 /// More boxes than this are searched by a tree.
@@ -35,8 +36,9 @@ const Scene* scene_within(const SceneObject& object) {
 void Scene::describe(Description<Scene>& d) {
   d.summary(
        "Objects, and a structure that finds what a ray meets. A scene is itself an object: scenes nest, and one that "
-       "stands in several places is stored once. A nested scene's own shader, emission, interior, sides and priority say "
-       "nothing.")
+       "stands in several places is stored once. Its luminaires are luminaires in each of these places; amounts of light "
+       "they are asked for (a power in watts) are those of each place, whatever its size. A nested scene's own shader, "
+       "emission, interior, sides and priority say nothing.")
       .member<&Scene::objects>("objects", "", "what is in it", Effect::rebuild);
 }
 
@@ -78,16 +80,20 @@ void Scene::prepare() {
   if (nesting_ > Hit::deepest_nesting)
     fail("objects", "scenes nest more than " + std::to_string(Hit::deepest_nesting) + " deep");
 
-  // Luminaires of nested scenes are found by hits alone: those scenes gave them places in their own lists before.
+  // Others stand for luminaires of nested scenes; those scenes gave them places in their own lists before.
   std::unordered_set<const Scene*> visited;
-  for_nested(*this, visited, [&](SceneObject& object) {
-    if (object.luminaire() && seen.contains(&object))
-      object.fail("", "a luminaire stands both in a scene and in one nested in it");
-    if (object.infinite()) object.fail("", "an object at infinity cannot stand in a nested scene");
-    if (object.luminaire() && object.delta())
-      object.fail("", "a luminaire without extent in a nested scene would never be found: put it into the outermost one");
-    object.luminaire_index = -1;
+  for_nested(*this, visited, [](Scene& inner) {
+    for (const Ref<SceneObject>& object : inner.objects) {
+      if (object->infinite() && !object->delta())
+        object->fail("", "an environment cannot stand in a nested scene: it is all around, and belongs into the outermost one");
+      object->luminaire_index = -1;
+    }
+    inner.luminaires_.clear();
+    inner.infinite_.clear();
+    inner.nested_.reset();
   });
+  const std::shared_ptr<NestedLuminaires> nested = NestedLuminaires::of(*this);
+  nested_ = nested;
 
   std::vector<const SceneObject*> finite;
   for (const Ref<SceneObject>& object : objects) {
@@ -127,8 +133,17 @@ void Scene::prepare() {
     build_interior_tree(boxes);
     interiors_ = {interior_tree_.front().box};
   }
+  const Point3 middle = bounds_.empty() ? Point3{} : centre();
   for (const Ref<SceneObject>& object : objects)
-    if (object->infinite()) object->enclose(bounds_.empty() ? Point3{} : centre(), radius());
+    if (object->infinite()) object->enclose(middle, radius());
+  if (nested) {
+    nested->enclose(middle, radius());
+    luminaires_.reserve(luminaires_.size() + nested->all().size());
+    for (const Ref<PlacedLuminaire>& luminaire : nested->all()) {
+      luminaire->luminaire_index = int(luminaires_.size());
+      luminaires_.push_back(luminaire.get());
+    }
+  }
   build(finite);
 }
 
@@ -189,8 +204,6 @@ bool Scene::occludes(const Ray& ray) const {
 
 void Scene::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& point) const { locate_nested(ray, hit, point); }
 
-// A structure may take rays into a nested scene by an inverse of its own, in single precision: where this one rounds one
-// row by its own terms, that one may by the largest of all (see EmbreeScene, which checks it).
 void Scene::locate_nested(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
   Ray local = ray;
   for (int i = hit.depth; i-- > 0;) {
@@ -203,11 +216,10 @@ void Scene::locate_nested(const Ray& ray, const Hit& hit, SurfacePoint& point) c
   for (int i = 0; i < hit.depth; ++i) {
     Transform scratch;
     const Transform& t = placed(hit.scenes[i]->transform, ray.time, scratch);
-    if (t.identity()) continue;
-    carry_out(t, point);
-    const Point3& p = point.position;
-    point.error += rounding_bound(8) * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
+    if (!t.identity()) carry_out_of_scene(t, point);
   }
+  if (nested_ && point.object->luminaire())
+    if (const PlacedLuminaire* luminaire = nested_->find(hit)) point.object = luminaire;
 }
 
 void Scene::tangents(SurfacePoint& point) const {

@@ -6,7 +6,8 @@
 
 namespace etendue {
 
-std::string object_name(const SceneObject& object) {
+std::string object_name(const SceneObject& met) {
+  const SceneObject& object = met.original();
   const std::string& name = object.class_info().name;
   return object.origin && !object.origin->name.empty() ? object.origin->name + " (" + name + ")" : name;
 }

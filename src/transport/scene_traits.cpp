@@ -2,6 +2,8 @@
 
 #include "etendue/scene_traits.h"
 
+#include <set>
+
 namespace etendue {
 namespace {
 
@@ -11,44 +13,62 @@ std::string label(const SceneObject& object) {
   return "the " + object.class_info().name + (object.origin ? " of line " + std::to_string(object.origin->location.line) : "");
 }
 
-void look(const Scene& scene, bool nested, SceneTraits& traits) {
-  for (const Ref<SceneObject>& object : scene.objects) {
-    if (const auto* inner = scene_within(*object)) {
-      look(*inner, true, traits);
-      continue;
-    }
-    const std::string name = label(*object);
-    const auto note = [&](std::vector<std::string>& list) { list.push_back(name); };
-    if (object->shader) {
-      const Lobes lobes = object->shader->possible_lobes();
-      if (lobes & (specular_reflection | specular_transmission)) note(traits.specular);
-      if (lobes & specular_transmission) note(traits.refracting);
-      if (lobes & smooth_lobes) note(traits.smooth);
-      if (lobes & glossy_lobes) note(traits.glossy);
-      if (lobes & pass_through) note(traits.pass_through);
-      if (object->shader->moves_exit()) note(traits.moved_exits);
-    }
-    if (object->unbounded()) note(traits.endless);
-    if (object->interior) {
-      note(traits.media);
-      if (object->interior->emits()) note(traits.emissive_media);
-    }
-    if (object->luminaire()) {
-      if (nested)
-        note(traits.nested_luminaires);
-      else if (object->delta())
-        note(object->infinite() ? traits.distant : traits.points);
-      else
-        note(object->infinite() ? traits.environments : traits.areas);
+/// Looks into each scene once with each shader that instances replace all of its own by, and notes each object once in a list.
+class Look {
+ public:
+  explicit Look(SceneTraits& traits) : traits_(traits) {}
+
+  /// `instead`: what all objects have for their own shaders; null: those.
+  void at(const Scene& scene, const Shader* instead) {
+    if (!seen_.insert({&scene, instead}).second) return;
+    for (const Ref<SceneObject>& object : scene.objects) {
+      if (const Scene* inner = scene_within(*object)) {
+        const bool replaces = inner != object.get() && object->shader;  // an instance's shader does, a nested scene's does not
+        at(*inner, instead ? instead : replaces ? object->shader.get() : nullptr);
+      } else {
+        at(*object, instead ? instead : object->shader.get());
+      }
     }
   }
-}
+
+ private:
+  void at(const SceneObject& object, const Shader* shader) {
+    const auto note = [&](std::vector<std::string>& list) {
+      if (noted_.insert({&list, &object}).second) list.push_back(label(object));
+    };
+    SceneTraits& t = traits_;
+    if (shader) {
+      const Lobes lobes = shader->possible_lobes();
+      if (lobes & (specular_reflection | specular_transmission)) note(t.specular);
+      if (lobes & specular_transmission) note(t.refracting);
+      if (lobes & smooth_lobes) note(t.smooth);
+      if (lobes & glossy_lobes) note(t.glossy);
+      if (lobes & pass_through) note(t.pass_through);
+      if (shader->moves_exit()) note(t.moved_exits);
+    }
+    if (object.unbounded()) note(t.endless);
+    if (object.interior) {
+      note(t.media);
+      if (object.interior->emits()) note(t.emissive_media);
+    }
+    if (object.luminaire()) {
+      if (object.delta())
+        note(object.infinite() ? t.distant : t.points);
+      else
+        note(object.infinite() ? t.environments : t.areas);
+    }
+  }
+
+  SceneTraits& traits_;
+  std::set<std::pair<const Scene*, const Shader*>> seen_;
+  std::set<std::pair<const void*, const SceneObject*>> noted_;  // in which list what is
+};
 
 }  // namespace
 
 SceneTraits scene_traits(const Scene& scene, const Camera& camera) {
   SceneTraits traits;
-  look(scene, false, traits);
+  Look(traits).at(scene, nullptr);
   // Rays of a lens with an extent begin at different places.
   const Ray a = camera.ray({0.25f, 0.25f}, {0.1f, 0.2f}, camera.shutter_open);
   const Ray b = camera.ray({0.25f, 0.25f}, {0.9f, 0.7f}, camera.shutter_open);

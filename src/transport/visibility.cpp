@@ -28,7 +28,7 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
       scene.locate(ray, hit, point);
       settle_coincident(scene, ray, hit, point, media);
     }
-    const SceneObject& object = *hit.object;
+    const SceneObject& object = around ? *point.object : *hit.object;
     if (!object.shader) return {};
     const bool hidden = around && hidden_by_priority(media, object);
     if (!hidden && !(object.shader->possible_lobes() & pass_through)) return {};
