@@ -9,8 +9,9 @@ namespace {
 const char* const floor_and_wall =
     "Rectangle { corner: [-3, -3, 0] m, edge_u: [6, 0, 0] m, edge_v: [0, 6, 0] m, shader: Lambertian { color: 0.6 } }\n"
     "Rectangle { corner: [-3, 3, 0] m, edge_u: [6, 0, 0] m, edge_v: [0, 0, 4] m, shader: Lambertian { color: 0.6 } }\n";
+// Below the lamps, so that it sees none of them.
 const char* const camera =
-    "PerspectiveCamera { from: [0, -5, 3] m, to: [0, 1, 0.8] m, up: [0, 0, 1], fov: 50, shutter_close: 1 s }";
+    "PerspectiveCamera { from: [0, 0, 0.35] m, to: [0, 1, 0] m, up: [0, 0, 1], fov: 50, shutter_close: 1 s }";
 
 /// A bulb, a plate with a pattern and a crystal: each with its own transform before others.
 std::vector<std::string> lamps(const std::string& before) {
@@ -62,7 +63,7 @@ TEST_P(NestedPictures, AreThoseWithoutNesting) {
   EXPECT_EQ(a.bad, 0u);
   EXPECT_NEAR(a.mean.y / b.mean.y, 1, 4 * std::hypot(a.error, b.error) / b.mean.y);
   EXPECT_NEAR(a.mean.x / b.mean.x, 1, 4 * std::hypot(a.error, b.error) / b.mean.y);
-  EXPECT_LT(std::max(a.error, b.error) / b.mean.y, 0.02);  // so the comparison says something
+  EXPECT_LT(std::max(a.error, b.error) / b.mean.y, 0.03);  // so the comparison says something
   EXPECT_NEAR(a.error / b.error, 1, 0.25);
 }
 
@@ -70,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(Renderers, NestedPictures,
                          ::testing::Values("PathTracer { max_depth: 4, samples: 64 }",
                                            "PathTracer { max_depth: 4, samples: 64, light_sampler: TreeLightSampler {} }",
                                            "BidirectionalPathTracer { max_depth: 4, samples: 32 }",
-                                           "LightTracer { max_depth: 4, samples: 256 }",
+                                           "LightTracer { max_depth: 4, samples: 128 }",
                                            "WhittedRenderer { max_depth: 4, samples: 16 }",
                                            "DirectRenderer { strategy: light, samples: 64 }"),
                          [](const auto& each) {
