@@ -11,7 +11,7 @@ namespace etendue {
 /// One PlacedLuminaire for each place in which a luminaire of a nested scene stands, and a table that finds it for a hit.
 class NestedLuminaires {
  public:
-  /// More than this would fill the memory: each takes some 400 bytes here, and as much again in a light sampler.
+  /// More than this would fill the memory: each takes some 370 bytes here, and 250 more in a light sampler.
   static constexpr size_t most = size_t(1) << 22;
 
   /// Those of a scene; null: there are none. Throws an Error when there are too many.
