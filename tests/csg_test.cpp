@@ -220,7 +220,6 @@ TEST(Csg, SurfacesHaveTheShaderOfTheirOperandUnlessTheSolidHasItsOwn) {
   EXPECT_NEAR(albedo(*each, normalize(Vector3{1, 1, 0})), 0.4f, 1e-3f);  // where the ball cut its edge
   EXPECT_NEAR(albedo(*each, {0, 0, -1}), 0.6f, 1e-3f);                   // the hollow
   Hit hit;
-  SurfacePoint p;
   const Ray down = ray({0, 0, 3}, {0, 0, -1});
   ASSERT_TRUE(each->intersect(down, hit));
   EXPECT_NEAR(hit.distance, 2.8f, 1e-5f);  // the bottom of the hollow

@@ -284,7 +284,6 @@ TEST(Environment, SurroundsTheScene) {
   EXPECT_TRUE(e->infinite());
   EXPECT_TRUE(e->bounds().empty());
   Random random(8);
-  Mean mean;
   for (int i = 0; i < 2000; ++i) {
     const SurfaceSample s = e->sample_visible({1, 2, 3}, random.pair(), 0);
     EXPECT_TRUE(s.infinite);

@@ -87,7 +87,8 @@ std::string check_scene(Trial& trial, const KnownScene& known) {
 }  // namespace
 
 void check_renderer(Trial& trial) {
-  if (typeid(trial.part<Renderer>()) == typeid(Renderer)) return;  // the interface itself renders nothing
+  const Renderer& part = trial.part<Renderer>();
+  if (typeid(part) == typeid(Renderer)) return;  // the interface itself renders nothing
   std::string missed;
   size_t tried = 0;
   for (const KnownScene& known : known_scenes) {

@@ -24,7 +24,7 @@ struct Step {
 /// Walks along a path; `whole` names it and the expression in messages.
 class Path {
  public:
-  Path(const std::string& text, const char* source) : text_(text), source_(source) {
+  Path(const std::string& text, const char* source) : source_(source) {
     size_t i = 0;
     for (;;) {
       Step step{{}, {}, at(i)};
@@ -52,7 +52,6 @@ class Path {
   std::vector<Step> steps;
 
  private:
-  const std::string& text_;
   const char* source_;
 };
 
