@@ -47,7 +47,7 @@ class Scene : public SceneObject {
   /// Luminaires at infinity that rays which hit nothing see; those without extent are not among them.
   std::span<const SceneObject* const> infinite_luminaires() const { return infinite_; }
   /// A sphere around all finite objects.
-  Point3 centre() const { return bounds_.centre(); }
+  Point3 centre() const { return bounds_.empty() ? Point3{} : bounds_.centre(); }
   float radius() const { return bounds_.empty() ? 1.0f : length(bounds_.diagonal()) / 2; }
   /// Whether any surface lets paths into objects, so that media and indices must be tracked.
   bool has_interiors() const { return has_interiors_; }

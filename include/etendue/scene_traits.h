@@ -24,11 +24,8 @@ struct SceneTraits {
   std::vector<std::string> emissive_media;  ///< objects with a volume that emits
   std::vector<std::string> moved_exits;     ///< surfaces that light which enters leaves elsewhere (subsurface scattering)
   std::vector<std::string> pass_through;    ///< surfaces that let light pass straight on
-  std::vector<std::string> endless;         ///< surfaces that go on for ever
   bool pinhole = true;                      ///< the camera's lens is a point (or its rays parallel): no path meets it
 
-  /// Light from infinity falls on the sphere around what has an end: paths that begin there miss what has none beyond it.
-  bool light_beyond() const { return !endless.empty() && !(distant.empty() && environments.empty()); }
   bool delta_luminaires() const { return !points.empty() || !distant.empty(); }
 };
 

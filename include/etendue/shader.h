@@ -47,7 +47,8 @@ struct ScatterSample {
   Spectrum weight;    ///< f |cos| / density for smooth lobes; the lobe's fraction over its probability for specular ones
   float density = 0;  ///< [1/sr] for smooth lobes (all asked lobes together); for specular ones a probability
   Lobe lobe = diffuse_reflection;
-  float eta = 1;            ///< index where the direction leads over index where the path came from; 1 for reflection
+  float eta = 1;  ///< the hero's index where the direction leads over that where the path came from; 1 for reflection. The
+                  ///< weight has the squared index of each wavelength already: this is for roulette and bookkeeping alone
   bool dispersive = false;  ///< the direction holds for the hero wavelength only: drop the others
   bool specular() const { return (lobe & specular_lobes) != 0; }
   bool transmitted() const { return (lobe & transmission_lobes) != 0; }
@@ -101,7 +102,7 @@ class Scatter {
     Spectrum value;     ///< f |cos| for smooth lobes, over all asked lobes; for specular ones the lobe's fraction
     float density = 0;  ///< [1/sr], over all asked lobes; for specular ones the probability of the choice
     Lobe lobe = diffuse_reflection;
-    float eta = 1;
+    float eta = 1;  ///< the hero's, as in ScatterSample
     bool dispersive = false;
   };
   // f [1/sr] without cosine, in the convention of importance: no squared-index factor. `which` holds the asked lobes that
@@ -115,8 +116,8 @@ class Scatter {
   /// False: absorbed. The density of a smooth sample counts every asked lobe that could have given the direction.
   virtual bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample&) const = 0;
   virtual Spectrum local_albedo(const Vector3& out, Lobes which) const = 0;
-  /// Index on the side of `in` over index on the side of `out`; 1 when light is not refracted.
-  virtual float relative_index(const Vector3& out, const Vector3& in) const;
+  /// Of smooth lobes: index on the side of `in` over index on the side of `out`, per wavelength; 1 when light is not refracted.
+  virtual Spectrum relative_index(const Vector3& out, const Vector3& in) const;
 
   Frame frame_;
   Normal3 normal_;

@@ -53,7 +53,7 @@ void check_adjoint(Trial& trial, const BoundShader& bound, const std::string& ch
         return scatter.evaluate(b, a, Transport::radiance, which) * (scatter.cosine(a) * std::abs(dot(ng, b)));
       };
       const Spectrum from_light = importance(pair.a, pair.b), from_camera = radiance(pair.a, pair.b);
-      trial.expect(agree(from_light, from_camera, 3e-3f, hero_alone(pair, bound, trial.part<Shader>()),
+      trial.expect(agree(from_light, from_camera, 3e-3f, pair.hero_alone,
                          [&] {
                            return rounding_of([&](const Vector3& v) { return importance(pair.a, v); }, pair.b) +
                                   rounding_of([&](const Vector3& v) { return radiance(v, pair.b); }, pair.a);

@@ -133,11 +133,10 @@ void Scene::prepare() {
     build_interior_tree(boxes);
     interiors_ = {interior_tree_.front().box};
   }
-  const Point3 middle = bounds_.empty() ? Point3{} : centre();
   for (const Ref<SceneObject>& object : objects)
-    if (object->infinite()) object->enclose(middle, radius());
+    if (object->infinite()) object->enclose(centre(), radius());
   if (nested) {
-    nested->enclose(middle, radius());
+    nested->enclose(centre(), radius());
     luminaires_.reserve(luminaires_.size() + nested->all().size());
     for (const Ref<PlacedLuminaire>& luminaire : nested->all()) {
       luminaire->luminaire_index = int(luminaires_.size());

@@ -59,9 +59,6 @@ class DielectricScatter final : public Scatter {
     if (which & specular_transmission) sum += Spectrum(1.0f) - reflected;
     return sum;
   }
-  float relative_index(const Vector3& out, const Vector3& in) const override {
-    return out.z * in.z < 0 ? towards(out, eta_[0]) : 1;
-  }
 
  private:
   /// Index behind the boundary over index in front, seen from `out`.

@@ -145,7 +145,7 @@ void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobe
     const Facets f = facets_at(std::abs(out_m), inside(out));
     const float jacobian = refraction_jacobian(out_m, in_m, eta);
     const Spectrum value = f.through * once_through_upper(outside, std::abs(out.z > 0 ? out_m : in_m)) *
-                           (front * l.facets.D(m) * std::abs(out_m) * jacobian * towards(out, l.eta[0]) / eta);
+                           (front * l.facets.D(m) * std::abs(out_m) * jacobian);
     if (disperses_)
       r.value.set(i, value[i]);
     else
@@ -155,8 +155,9 @@ void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobe
           plan.base * (1 - reflect_probability(f, which)) * l.facets.visible_density(out, m) * jacobian / float(choosing_);
   }
   if (clear_more_ > 0)
-    r.value +=
-        l.transmission_color * once_through_upper(outside, 1) * (l.clear * clear_more_ * clear_multiple_->value(out, in));
+    r.value += l.transmission_color * once_through_upper(outside, 1) *
+               (l.clear * clear_more_ * clear_multiple_->value(out, in)) *
+               (relative_index(out, in) / towards(out, l.eta[0]));  // as in RoughDielectric
 }
 
 // A sheet's rough transmission is taken for its reflection turned over: facets then lose nothing. (Two surfaces whose
@@ -224,7 +225,7 @@ bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u,
     const bool is_glossy = fuzz || !(diffuse > 0) || choice * (glossy + diffuse) < glossy;
     s.lobe = through ? (is_glossy ? glossy_transmission : diffuse_transmission)
                      : (is_glossy ? glossy_reflection : diffuse_reflection);
-    if (through) s.eta = relative_index(out, s.in);
+    if (through) s.eta = hero_index(out, s.in);
   }
   const ScatterValue both = combine(out, s.in, which, plan);
   s.value = both.value * std::abs(s.in.z);
@@ -267,7 +268,7 @@ bool PrincipledScatter::sample_base(const Vector3& out, float choice, Point2 u, 
       if (!(s.in.z * out.z < 0)) return false;  // another facet is in the way
     }
     s.lobe = base_transmission();
-    s.eta = relative_index(out, s.in);
+    s.eta = hero_index(out, s.in);
     if (!smooth_) return true;
     const Vector3& outside = out.z > 0 ? out : s.in;
     s.value = f.through * (l.thin_walled ? through_upper(out, s.in) : once_through_upper(outside, std::abs(outside.z)));

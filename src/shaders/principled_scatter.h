@@ -58,8 +58,9 @@ class PrincipledScatter final : public JointScatter {
   }
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample&) const override;
   Spectrum local_albedo(const Vector3& out, Lobes which) const override;
-  float relative_index(const Vector3& out, const Vector3& in) const override {
-    return out.z * in.z < 0 && !layers_.thin_walled ? towards(out, layers_.eta[0]) : 1;
+  Spectrum relative_index(const Vector3& out, const Vector3& in) const override {
+    if (out.z * in.z > 0 || layers_.thin_walled) return Spectrum(1.0f);
+    return out.z > 0 ? layers_.eta : Spectrum(1.0f) / layers_.eta;
   }
 
  private:
@@ -98,6 +99,7 @@ class PrincipledScatter final : public JointScatter {
 
   /// Index behind the boundary over index in front, seen from `out`.
   static float towards(const Vector3& out, float eta) { return out.z > 0 ? eta : 1 / eta; }
+  float hero_index(const Vector3& out, const Vector3& in) const { return relative_index(out, in)[0]; }
   /// Whether `out` lies within a body that refracts: behind its surface there is no matt body, fuzz or coat.
   bool inside(const Vector3& out) const { return out.z < 0 && layers_.clear > 0 && !layers_.thin_walled; }
   /// The fraction of the surface that looks from `out` as from the front.

@@ -21,8 +21,9 @@ namespace etendue {
 // hero's alone would let f / density of the others grow without bound where lobes are narrow. So each of the path's
 // wavelengths is as likely to choose the direction, and the density is the mean of theirs (the balance heuristic of Wilkie et
 // al. 2014, "Hero wavelength spectral sampling", at a single vertex): no weight exceeds 4 times that of a path of its own, and
-// no wavelength needs to be dropped. What `Scatter` makes of the index for radiance is the hero's, 1 / eta_hero^2 in place of
-// 1 / eta^2; f is multiplied by eta_hero / eta, which keeps both transports adjoint, and cancels over a way in and out.
+// no wavelength needs to be dropped. Light scattered more than once is known for the hero: that which gets through is
+// multiplied by eta / eta_hero, which keeps both transports adjoint at every wavelength; what it gains or loses by that is the
+// relative difference of the indices times the few hundredths of light that are scattered so.
 class RoughDielectric final : public JointScatter {
  public:
   /// eta: index below (z < 0) over that above. `multiple`: whether light scattered more than once is counted, where it is
@@ -50,7 +51,8 @@ class RoughDielectric final : public JointScatter {
     if (multiple_) {
       const float missing = multiple_refraction_.missing(out), through = through_probability(out, which);
       const float side = out.z * in.z > 0 ? 1 - through : through;
-      r.value += Spectrum(multiple_refraction_.value(out, in));
+      const float more = multiple_refraction_.value(out, in);
+      r.value += side_factor(out, in) * more;
       r.density = lerp(missing, r.density, side * std::abs(in.z) * inverse_pi);
     }
     return r;
@@ -81,7 +83,7 @@ class RoughDielectric final : public JointScatter {
     s.value = both.value * std::abs(s.in.z);
     s.density = both.density;
     s.lobe = above ? glossy_reflection : glossy_transmission;
-    s.eta = relative_index(out, s.in);
+    if (!above) s.eta = towards(out, eta_[0]);
     return s.density > 0;
   }
 
@@ -105,14 +107,20 @@ class RoughDielectric final : public JointScatter {
     if (which & glossy_transmission) sum += std::max(1 - (multiple_ ? 0 : missing) - reflected - back, 0.0f);
     return Spectrum(sum);
   }
-  float relative_index(const Vector3& out, const Vector3& in) const override {
-    return out.z * in.z < 0 ? towards(out, eta_[0]) : 1;
+  Spectrum relative_index(const Vector3& out, const Vector3& in) const override {
+    if (out.z * in.z > 0) return Spectrum(1.0f);
+    return out.z > 0 ? eta_ : Spectrum(1.0f) / eta_;
   }
 
  private:
   /// Index behind the boundary over index in front, seen from `out`.
   static float towards(const Vector3& out, float eta) { return out.z > 0 ? eta : 1 / eta; }
 
+  /// Of light scattered more than once: eta / eta_hero through the surface.
+  Spectrum side_factor(const Vector3& out, const Vector3& in) const {
+    if (!varies_ || out.z * in.z > 0) return Spectrum(1.0f);
+    return relative_index(out, in) / towards(out, eta_[0]);
+  }
   static float reflect_probability(float reflected, Lobes which) {
     if (!(which & glossy_transmission)) return 1;
     return (which & glossy_reflection) ? reflected : 0;
@@ -147,7 +155,7 @@ class RoughDielectric final : public JointScatter {
       const float out_m = dot(out, m), in_m = dot(in, m);
       if (!(out_m * out.z > 0 && in_m * in.z > 0)) continue;
       const float reflected = fresnel_dielectric(std::abs(out_m), eta), jacobian = refraction_jacobian(out_m, in_m, eta);
-      r.value.set(i, front * (1 - reflected) * distribution_.D(m) * std::abs(out_m) * jacobian * towards(out, eta_[0]) / eta);
+      r.value.set(i, front * (1 - reflected) * distribution_.D(m) * std::abs(out_m) * jacobian);
       if (i < choosing_)
         r.density +=
             (1 - reflect_probability(reflected, which)) * distribution_.visible_density(out, m) * jacobian / float(choosing_);

@@ -9,6 +9,8 @@
 // where light comes from, `in`: n_o is the index on the side of `out`, n_i that on the side of `in`, and with
 // eta = n_i / n_o the factor is 1 / eta^2. A path from a light carries power: none of it is gained or lost by the change
 // of spread, f integrates over `in` to 1 - F, and there is no factor. Local functions are in this second convention.
+// Indices differ between wavelengths, and so does the factor. A specular refraction has the direction of one wavelength: where
+// indices differ only the hero goes on, and its factor is all that counts.
 //
 // Shading normals (Veach 1997, section 5.3). Using f |in . ns| for radiance that arrives from `in` means a surface whose
 // true function is f |in . ns| / |in . ng|, a function of where light comes from. On a path from a light, light comes from
@@ -35,6 +37,8 @@ struct Pair {
   float importance_factor() const { return std::abs(out.z * in_geometric / (out_geometric * in.z)); }
 };
 
+Spectrum squared(const Spectrum& s) { return s * s; }
+
 bool asked(const Pair& pair, Lobes which) {
   return (which & smooth_lobes & (pair.reflection() ? reflection_lobes : transmission_lobes)) != 0;
 }
@@ -48,7 +52,7 @@ Spectrum Scatter::albedo(const Vector3& out, Lobes which) const {
   return combined_ ? combination().combined_albedo(out, which) : local_albedo(frame_.to_local(out), which);
 }
 
-float Scatter::relative_index(const Vector3&, const Vector3&) const { return 1; }
+Spectrum Scatter::relative_index(const Vector3&, const Vector3&) const { return Spectrum(1.0f); }
 
 Spectrum Scatter::evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
   which &= lobes_;
@@ -58,7 +62,7 @@ Spectrum Scatter::evaluate(const Vector3& out, const Vector3& in, Transport tran
   const Spectrum value = local_evaluate(pair.out, pair.in, which);
   if (transport == Transport::importance) return value * pair.importance_factor();
   if (pair.reflection()) return value;
-  return value / square(relative_index(pair.out, pair.in));
+  return value / squared(relative_index(pair.out, pair.in));
 }
 
 float Scatter::density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
@@ -75,12 +79,9 @@ ScatterValue Scatter::value_and_density(const Vector3& out, const Vector3& in, T
   const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
   if (!pair.sides_agree() || !asked(pair, which)) return {};
   const ScatterValue local = local_value_and_density(pair.out, pair.in, which);
-  float factor = 1;
-  if (transport == Transport::importance)
-    factor = pair.importance_factor();
-  else if (!pair.reflection())
-    factor = 1 / square(relative_index(pair.out, pair.in));
-  return {local.value * factor, local.density};
+  if (transport == Transport::importance) return {local.value * pair.importance_factor(), local.density};
+  if (pair.reflection()) return local;
+  return {local.value / squared(relative_index(pair.out, pair.in)), local.density};
 }
 
 std::optional<ScatterSample> Scatter::sample(const Vector3& out, float choice, Point2 u, Transport transport,
@@ -101,14 +102,14 @@ std::optional<ScatterSample> Scatter::sample(const Vector3& out, float choice, P
   pair.in_geometric = dot(normal_, direction);
   if (!pair.sides_agree() && local.lobe != pass_through) return std::nullopt;
 
-  float factor = 1 / local.density;
-  if (local.lobe == pass_through)
-    factor *= 1;
-  else if (transport == Transport::importance)
-    factor *= pair.importance_factor();
-  else if (!pair.reflection())
-    factor /= square(local.eta);
-  return ScatterSample{direction, local.value * factor, local.density, local.lobe, local.eta, local.dispersive};
+  Spectrum weight = local.value / local.density;
+  if (local.lobe != pass_through) {
+    if (transport == Transport::importance)
+      weight *= pair.importance_factor();
+    else if (!pair.reflection())
+      weight = weight / squared(local.lobe & specular_lobes ? Spectrum(local.eta) : relative_index(pair.out, pair.in));
+  }
+  return ScatterSample{direction, weight, local.density, local.lobe, local.eta, local.dispersive};
 }
 
 }  // namespace etendue

@@ -43,7 +43,7 @@ class ThinFilmScatter final : public Scatter {
       s.lobe = specular_reflection;
       return true;
     }
-    const float eta = relative_index(out, -out), cosine2 = 1 - (1 - out.z * out.z) / (eta * eta);
+    const float eta = towards(out), cosine2 = 1 - (1 - out.z * out.z) / (eta * eta);
     if (!(cosine2 > 0)) return false;  // total reflection of the hero, which alone says where the path would go
     s.in = {-out.x / eta, -out.y / eta, out.z > 0 ? -std::sqrt(cosine2) : std::sqrt(cosine2)};
     s.value = Spectrum(1.0f) - reflected;
@@ -61,13 +61,13 @@ class ThinFilmScatter final : public Scatter {
     if (which & specular_transmission) sum += Spectrum(1.0f) - reflected;
     return sum;
   }
-  float relative_index(const Vector3& out, const Vector3& in) const override {
-    if (!(out.z * in.z < 0)) return 1;
+
+ private:
+  /// The hero's index behind the film over that in front, seen from `out`.
+  float towards(const Vector3& out) const {
     const float eta = layers_.base[0] / layers_.outside[0];
     return out.z > 0 ? eta : 1 / eta;
   }
-
- private:
   Spectrum reflectance(const Vector3& out) const {
     const bool inside = layers_.through && out.z < 0;
     const float cosine = std::abs(out.z);

@@ -30,7 +30,7 @@ struct EmittedLight {
 class LightFront {
  public:
   explicit LightFront(const Scene& scene)
-      : centre_(is_finite(scene.centre()) ? scene.centre() : Point3{}),
+      : centre_(scene.centre()),
         radius_(scene.radius()),
         endless_(scene.unbounded()),
         within_(1 / (pi * square(radius_))) {
