@@ -46,7 +46,6 @@ class Look {
       if (lobes & pass_through) note(t.pass_through);
       if (shader->moves_exit()) note(t.moved_exits);
     }
-    if (object.unbounded()) note(t.endless);
     if (object.interior) {
       note(t.media);
       if (object.interior->emits()) note(t.emissive_media);
