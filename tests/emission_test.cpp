@@ -2,19 +2,16 @@
 
 #include "etendue/emission_shader.h"
 
-#include <OpenImageIO/imageio.h>
-#include <unistd.h>
-
-#include <filesystem>
-
 #include "component_test_support.h"
 #include "etendue/color.h"
 #include "etendue/object_map.h"
+#include "image_file.h"
 
 namespace etendue {
 namespace {
 
 using test::create;
+using test::ImageFile;
 
 /// The integral over 360 to 830 nm of a function of wavelengths, at the middle of 235 * size equal steps.
 double integrate_wavelengths(const std::function<Spectrum(const Wavelengths&)>& f) {
@@ -129,19 +126,6 @@ TEST(DiffuseEmission, RefusesAPowerOfBlack) {
 }
 
 // ---- environments ---------------------------------------------------------------------------------------------------
-
-/// An image file that lives as long as this.
-struct ImageFile {
-  std::string path;
-  ImageFile(const std::string& name, int width, int height, const std::vector<float>& rgb)
-      : path((std::filesystem::temp_directory_path() / ("etendue-" + std::to_string(getpid()) + "-" + name)).string()) {
-    const auto out = OIIO::ImageOutput::create(path);
-    if (!out || !out->open(path, OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT)) ||
-        !out->write_image(OIIO::TypeDesc::FLOAT, rgb.data()) || !out->close())
-      throw std::runtime_error("cannot write " + path);
-  }
-  ~ImageFile() { std::filesystem::remove(path); }
-};
 
 constexpr int width = 24, height = 12;
 

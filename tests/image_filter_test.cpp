@@ -1,12 +1,8 @@
 // ImageMap's filters: means over ellipses, on images of any size.
 
-#include <OpenImageIO/imageio.h>
-#include <unistd.h>
-
-#include <filesystem>
-
 #include "component_test_support.h"
 #include "etendue/object_map.h"
+#include "image_file.h"
 #include "maps/footprint.h"
 
 namespace etendue {
@@ -15,26 +11,16 @@ namespace {
 using test::create;
 
 /// A grey image of floats in a file that goes with it.
-struct GreyImage {
-  std::string path;
+struct GreyImage : test::ImageFile {
   int width, height;
   std::vector<float> texels;  // from the top
   template <class F>
-  GreyImage(const std::string& name, int w, int h, F value)
-      : path((std::filesystem::temp_directory_path() / ("etendue-filter-" + std::to_string(getpid()) + "-" + name + ".exr"))),
-        width(w),
-        height(h) {
+  GreyImage(const std::string& name, int w, int h, F value) : ImageFile(name + ".exr"), width(w), height(h) {
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) texels.push_back(value(x, y));
-    write({w, h, 1, OIIO::TypeDesc::FLOAT});
+    write({w, h, 1, NumberType::single});
   }
-  GreyImage(GreyImage&&) = delete;
-  ~GreyImage() { std::filesystem::remove(path); }
-  void write(const OIIO::ImageSpec& spec) const {
-    const auto out = OIIO::ImageOutput::create(path);
-    if (!out || !out->open(path, spec) || !out->write_image(OIIO::TypeDesc::FLOAT, texels.data()) || !out->close())
-      throw std::runtime_error("cannot write " + path);
-  }
+  void write(const ImageHeader& header) const { test::write_image(path, header, texels); }
   double mean() const {
     double sum = 0;
     for (const float t : texels) sum += double(t);
@@ -192,11 +178,10 @@ TEST(ImageFilter, TakesACircleWhereTangentsSpanNoPlane) {
 TEST(ImageFilter, KnowsPicturesThatAreSmallerThanTheirFrame) {
   // 80 x 90 pixels that begin at (30, 20) of a frame of 150 x 130, which begins at (-10, 5): white on black.
   const GreyImage image("frame", 80, 90, [](int, int) { return 1.0f; });
-  OIIO::ImageSpec spec(80, 90, 1, OIIO::TypeDesc::FLOAT);
-  spec.x = 20, spec.y = 25;
-  spec.full_x = -10, spec.full_y = 5;
-  spec.full_width = 150, spec.full_height = 130;
-  image.write(spec);
+  ImageHeader header(80, 90, 1, NumberType::single);
+  header.x = 20, header.y = 25;
+  header.whole = {-10, 5, 140, 135};
+  image.write(header);
   for (const char* filter : {"nearest", "bilinear", "trilinear", "anisotropic"}) {
     const Ref<ObjectMap> map = image.map(filter);
     for (int y = 0; y < 130; y += 3)

@@ -1,6 +1,5 @@
 // Maps that come from files: parts of images, images in tiles, anisotropic filtering, and attributes of meshes.
 
-#include <OpenImageIO/imageio.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include "component_test_support.h"
 #include "etendue/color.h"
 #include "etendue/object_map.h"
+#include "image_file.h"
 #include "maps/footprint.h"
 
 namespace etendue {
@@ -16,6 +16,7 @@ namespace {
 
 using test::create;
 using test::Setting;
+using test::write_image;
 
 /// A folder that goes with the test.
 struct Folder {
@@ -27,17 +28,6 @@ struct Folder {
   ~Folder() { std::filesystem::remove_all(path); }
   std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
-
-void write_image(const std::string& path, int width, int height, const std::vector<std::string>& channels, OIIO::TypeDesc type,
-                 const std::vector<float>& values) {
-  OIIO::ImageSpec spec(width, height, int(channels.size()), type);
-  spec.channelnames = channels;
-  for (size_t i = 0; i < channels.size(); ++i)
-    if (channels[i] == "A") spec.alpha_channel = int(i);
-  const auto out = OIIO::ImageOutput::create(path);
-  if (!out || !out->open(path, spec) || !out->write_image(OIIO::TypeDesc::FLOAT, values.data()) || !out->close())
-    throw std::runtime_error("cannot write " + path);
-}
 
 SurfacePoint at(float u, float v) {
   SurfacePoint p = test::surface_point({0, 0, 1});
@@ -57,9 +47,9 @@ std::string error_of(const std::string& name, const std::vector<Setting>& settin
 TEST(ImageMap, UdimFilesCoverUnitSquares) {
   const Folder folder("udim");
   for (const auto& [number, value] : {std::pair(1001, 0.1f), {1003, 0.3f}, {1011, 0.5f}})
-    write_image(folder / ("wood." + std::to_string(number) + ".exr"), 2, 2, {"Y"}, OIIO::TypeDesc::FLOAT,
+    write_image(folder / ("wood." + std::to_string(number) + ".exr"), {2, 2, 1, NumberType::single},
                 {value, value, value, value});
-  write_image(folder / "wood.10x1.exr", 1, 1, {"Y"}, OIIO::TypeDesc::FLOAT, {1});  // not one of them
+  write_image(folder / "wood.10x1.exr", {1, 1, 1, NumberType::single}, {1});  // not one of them
   for (const char* filter : {"nearest", "trilinear", "anisotropic"}) {
     const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", folder / "wood.<UDIM>.exr"}, {"filter", filter}});
     EXPECT_NEAR(map->scalar(at(0.5f, 0.5f)), 0.1f, 1e-6f);
@@ -82,9 +72,11 @@ TEST(ImageMap, UdimFilesCoverUnitSquares) {
 TEST(ImageMap, ChannelsByName) {
   const Folder folder("channels");
   const std::string file = folder / "layers.exr", bits = folder / "bits.png";
-  write_image(file, 1, 1, {"R", "G", "B", "A", "coat.B", "coat.G", "coat.R", "depth.Z"}, OIIO::TypeDesc::FLOAT,
-              {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 8});
-  write_image(bits, 1, 1, {"R", "G", "B", "A"}, OIIO::TypeDesc::UINT8, {0.2f, 0.2f, 0.2f, 0.6f});
+  std::vector<ImageHeader::Channel> channels;
+  for (const char* name : {"R", "G", "B", "A", "coat.B", "coat.G", "coat.R", "depth.Z"})
+    channels.push_back({name, NumberType::single});
+  write_image(file, {1, 1, channels}, {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 8});
+  write_image(bits, {1, 1, 4, NumberType::uint8}, {0.2f, 0.2f, 0.2f, 0.6f});
   const auto map = [](const std::string& path, const char* channel) {
     return create<ObjectMap>("ImageMap", {{"file", path}, {"channel", channel}});
   };
@@ -113,7 +105,7 @@ TEST(ImageMap, AnisotropicFilterAveragesOverTheEllipse) {
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) values.push_back(value((float(x) + 0.5f) / size, 1 - (float(y) + 0.5f) / size));
   const Folder folder("aniso");
-  write_image(folder / "waves.exr", size, size, {"Y"}, OIIO::TypeDesc::FLOAT, values);
+  write_image(folder / "waves.exr", {size, size, 1, NumberType::single}, values);
   const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", folder / "waves.exr"}, {"filter", "anisotropic"}});
   test::TestSquare square(2);
   square.reference();

@@ -2,33 +2,18 @@
 
 #include "etendue/object_map.h"
 
-#include <OpenImageIO/imageio.h>
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 
 #include "component_test_support.h"
 #include "etendue/color.h"
+#include "image_file.h"
 
 namespace etendue {
 namespace {
 
 using test::create;
-
-struct ImageFile {
-  std::string path;
-  explicit ImageFile(const std::string& name)
-      : path((std::filesystem::temp_directory_path() / ("etendue-map-" + std::to_string(getpid()) + "-" + name)).string()) {}
-  ImageFile(const std::string& name, int width, int height, int channels, OIIO::TypeDesc type, const std::vector<float>& values)
-      : ImageFile(name) {
-    const auto out = OIIO::ImageOutput::create(path);
-    if (!out || !out->open(path, OIIO::ImageSpec(width, height, channels, type)) ||
-        !out->write_image(OIIO::TypeDesc::FLOAT, values.data()) || !out->close())
-      throw std::runtime_error("cannot write " + path);
-  }
-  ~ImageFile() { std::filesystem::remove(path); }
-};
+using test::ImageFile;
 
 SurfacePoint at(float u, float v) {
   SurfacePoint p = test::surface_point({0, 0, 1});
@@ -75,7 +60,7 @@ TEST(CheckerMap, FlatSurfacesBetweenCubesDoNotFlicker) {
 const std::vector<float> four{0.1f, 0.2f, 0.3f, 0.4f};
 
 TEST(ImageMap, RowZeroIsAtTheTop) {
-  const ImageFile file("four.exr", 2, 2, 1, OIIO::TypeDesc::FLOAT, four);
+  const ImageFile file("four.exr", {2, 2, 1, NumberType::single}, four);
   const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", "nearest"}});
   EXPECT_NEAR(map->scalar(at(0.25f, 0.75f)), 0.1f, 1e-6f);
   EXPECT_NEAR(map->scalar(at(0.75f, 0.75f)), 0.2f, 1e-6f);
@@ -84,7 +69,7 @@ TEST(ImageMap, RowZeroIsAtTheTop) {
 }
 
 TEST(ImageMap, InterpolatesAndWraps) {
-  const ImageFile file("four.exr", 2, 2, 1, OIIO::TypeDesc::FLOAT, four);
+  const ImageFile file("four.exr", {2, 2, 1, NumberType::single}, four);
   const auto map = [&](const char* wrap, const char* filter = "bilinear") {
     return create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", filter}, {"wrap", wrap}});
   };
@@ -99,21 +84,21 @@ TEST(ImageMap, InterpolatesAndWraps) {
 }
 
 TEST(ImageMap, EightBitsAreSrgbAndDecodedBeforeFiltering) {
-  const ImageFile file("bits.png", 2, 1, 3, OIIO::TypeDesc::UINT8, {0, 0, 0, 1, 1, 1});
+  const ImageFile file("bits.png", {2, 1, 3, NumberType::uint8}, {0, 0, 0, 1, 1, 1});
   const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", "bilinear"}, {"wrap", "clamp"}});
   EXPECT_NEAR(map->scalar(at(0.5f, 0.5f)), 0.5f, 1e-3f);  // encoded, the mean would have been 0.214
-  const ImageFile grey("grey.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {0.5f, 0.5f, 0.5f});
+  const ImageFile grey("grey.png", {1, 1, 3, NumberType::uint8}, {0.5f, 0.5f, 0.5f});
   EXPECT_NEAR(create<ObjectMap>("ImageMap", {{"file", grey.path}})->scalar(at(0.5f, 0.5f)),
               decode_transfer("srgb", 128 / 255.0), 1e-4);
   EXPECT_NEAR(create<ObjectMap>("ImageMap", {{"file", grey.path}, {"transfer", "linear"}})->scalar(at(0.5f, 0.5f)), 128 / 255.0,
               1e-4);
-  const ImageFile deep("deep.png", 1, 1, 4, OIIO::TypeDesc::UINT16, {0.25f, 0.25f, 0.25f, 1});
+  const ImageFile deep("deep.png", {1, 1, 4, NumberType::uint16}, {0.25f, 0.25f, 0.25f, 1});
   EXPECT_NEAR(create<ObjectMap>("ImageMap", {{"file", deep.path}})->scalar(at(0.5f, 0.5f)), decode_transfer("srgb", 0.25),
               1e-4);
 }
 
 TEST(ImageMap, ColoursBecomeSpectra) {
-  const ImageFile file("red.exr", 1, 1, 3, OIIO::TypeDesc::FLOAT, {0.8f, 0.1f, 0.05f});
+  const ImageFile file("red.exr", {1, 1, 3, NumberType::single}, {0.8f, 0.1f, 0.05f});
   const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}});
   const Wavelengths w = test::wavelengths();
   const RgbSpace& space = rgb_space("srgb");
@@ -129,7 +114,7 @@ TEST(ImageMap, FiltersOverTheFootprint) {
   std::vector<float> values;
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) values.push_back(float((x + y) % 2));
-  const ImageFile file("fine.exr", 64, 64, 1, OIIO::TypeDesc::FLOAT, values);
+  const ImageFile file("fine.exr", {64, 64, 1, NumberType::single}, values);
   const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}}),
                        sharp = create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", "bilinear"}});
   test::TestSquare square(2);
@@ -152,11 +137,9 @@ TEST(ImageMap, LargeTiledAndUntiledFiles) {
   for (int y = 0; y < 150; ++y)
     for (int x = 0; x < 200; ++x) values.push_back(float(x) / 200 + float(y));
   for (const bool tiled : {false, true}) {
-    const ImageFile file(tiled ? "tiled.exr" : "lines.exr");
-    OIIO::ImageSpec spec(200, 150, 1, OIIO::TypeDesc::FLOAT);
-    if (tiled) spec.tile_width = spec.tile_height = 32;
-    const auto out = OIIO::ImageOutput::create(file.path);
-    ASSERT_TRUE(out && out->open(file.path, spec) && out->write_image(OIIO::TypeDesc::FLOAT, values.data()) && out->close());
+    ImageHeader header(200, 150, 1, NumberType::single);
+    if (tiled) header.tile_side = 32;
+    const ImageFile file(tiled ? "tiled.exr" : "lines.exr", header, values);
     const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", "nearest"}});
     for (const auto& [x, y] : {std::pair(0, 0), {199, 149}, {63, 64}, {100, 31}, {31, 127}})
       EXPECT_NEAR(map->scalar(at((float(x) + 0.5f) / 200, 1 - (float(y) + 0.5f) / 150)), float(x) / 200 + float(y), 1e-4f)
@@ -187,12 +170,12 @@ TEST(ImageMap, SaysWhatIsWrong) {
   std::vector<float> values;
   test::Random random(1);
   for (int i = 0; i < 200 * 200 * 3; ++i) values.push_back(random());
-  const ImageFile whole("cut.exr", 200, 200, 3, OIIO::TypeDesc::FLOAT, values);
+  const ImageFile whole("cut.exr", {200, 200, 3, NumberType::single}, values);
   std::filesystem::resize_file(whole.path, std::filesystem::file_size(whole.path) / 2);
   const std::string cut = error_of({{"file", whole.path}});
   EXPECT_NE(cut.find(whole.path), std::string::npos) << cut;
 
-  const ImageFile good("good.exr", 2, 2, 1, OIIO::TypeDesc::FLOAT, four);
+  const ImageFile good("good.exr", {2, 2, 1, NumberType::single}, four);
   EXPECT_NE(error_of({{"file", good.path}, {"color_space", "srgbb"}}).find("srgb"), std::string::npos);
   EXPECT_NE(error_of({{"file", good.path}, {"transfer", "gama2.2"}}).find("gamma2.2"), std::string::npos);
 }

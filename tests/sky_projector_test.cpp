@@ -1,20 +1,17 @@
 // The sky with its sun, and projected images.
 
-#include <OpenImageIO/imageio.h>
-#include <unistd.h>
-
-#include <filesystem>
-
 #include "component_test_support.h"
 #include "emission/sun_position.h"
 #include "etendue/color.h"
 #include "etendue/emission_shader.h"
 #include "etendue/transform.h"
+#include "image_file.h"
 
 namespace etendue {
 namespace {
 
 using test::create;
+using test::ImageFile;
 using List = std::vector<double>;
 constexpr double degree = M_PI / 180;
 
@@ -193,19 +190,6 @@ TEST(SkyEmission, TheSunStandsWhereItDoes) {
 }
 
 // ---- projector ------------------------------------------------------------------------------------------------------
-
-/// An image file of linear numbers that lives as long as this.
-struct ImageFile {
-  std::string path;
-  ImageFile(const std::string& name, int width, int height, const std::vector<float>& rgb)
-      : path((std::filesystem::temp_directory_path() / ("etendue-" + std::to_string(getpid()) + "-" + name)).string()) {
-    const auto out = OIIO::ImageOutput::create(path);
-    if (!out || !out->open(path, OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT)) ||
-        !out->write_image(OIIO::TypeDesc::FLOAT, rgb.data()) || !out->close())
-      throw std::runtime_error("cannot write " + path);
-  }
-  ~ImageFile() { std::filesystem::remove(path); }
-};
 
 /// A projector at (0, 0, 5) that looks along -z, with +y up: its right is +x.
 Ref<SceneObject> projecting_point() {

@@ -1,6 +1,5 @@
 #include "conform/fixtures.h"
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -8,6 +7,7 @@
 #include <fstream>
 
 #include "conform/rgl_fixture.h"
+#include "images/image_library.h"
 
 namespace etendue::conform {
 namespace {
@@ -18,31 +18,30 @@ void write_bytes(const std::string& path, const std::string& bytes) {
   if (!file.flush()) throw Error("cannot write '" + path + "'");
 }
 
-/// An image of `channels` floats a pixel, in the format its name says.
+/// An image in the format its name says.
 template <class F>
-void write_image(const std::string& path, int width, int height, OIIO::TypeDesc type, F&& pixel) {
+void write_image(const std::string& path, int width, int height, NumberType type, F&& pixel) {
   std::vector<float> data;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       for (const float value : pixel((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height)))
         data.push_back(value);
-  const auto out = OIIO::ImageOutput::create(path);
-  if (!out || !out->open(path, OIIO::ImageSpec(width, height, 3, type)) ||
-      !out->write_image(OIIO::TypeDesc::FLOAT, data.data()) || !out->close())
-    throw Error("cannot write '" + path + "': " + (out ? out->geterror() : OIIO::geterror()));
+  const std::string ending = std::filesystem::path(path).extension().string();
+  const std::vector<unsigned char> bytes = image_library().encode(ending, ImageHeader(width, height, 3, type), data);
+  write_bytes(path, std::string(bytes.begin(), bytes.end()));
 }
 
 using Rgb = std::array<float, 3>;
 
 /// Soft stripes and a dark corner.
 void write_texture(const std::string& path) {
-  write_image(path, 16, 8, OIIO::TypeDesc::UINT8,
+  write_image(path, 16, 8, NumberType::uint8,
               [](float u, float v) { return Rgb{0.5f + 0.4f * std::sin(12 * u), 0.15f + 0.7f * v, u * v}; });
 }
 
 /// Tangent-space normals of gentle waves, n = 2 c - 1.
 void write_normals(const std::string& path) {
-  write_image(path, 16, 16, OIIO::TypeDesc::UINT8, [](float u, float v) {
+  write_image(path, 16, 16, NumberType::uint8, [](float u, float v) {
     const Vector3 n = normalize(Vector3{0.3f * std::sin(2 * pi * u), 0.3f * std::cos(2 * pi * v), 1});
     return Rgb{(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2};
   });
@@ -50,7 +49,7 @@ void write_normals(const std::string& path) {
 
 /// A bright spot in a blue sky over a dark ground.
 void write_environment(const std::string& path) {
-  write_image(path, 32, 16, OIIO::TypeDesc::FLOAT, [](float u, float v) {
+  write_image(path, 32, 16, NumberType::single, [](float u, float v) {
     const float sun = std::exp(-200 * (square(u - 0.3f) + square(v - 0.25f)));
     return Rgb{(v < 0.5f ? 0.3f : 0.1f) + 20 * sun, (v < 0.5f ? 0.5f : 0.08f) + 18 * sun, (v < 0.5f ? 0.9f : 0.05f) + 14 * sun};
   });

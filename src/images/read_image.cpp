@@ -1,4 +1,3 @@
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -10,13 +9,14 @@
 #include "etendue/color.h"
 #include "etendue/image_tools.h"
 #include "etendue/output.h"
+#include "images/image_library.h"
 #include "images/numpy_array.h"
 
 namespace etendue {
 namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
-  throw Error(fmt::format("cannot read '{}': {}", path, reason.empty() ? "the image library gives no reason" : reason));
+  throw Error(fmt::format("cannot read '{}': {}", path, reason));
 }
 
 std::string lower_extension(const std::string& path) {
@@ -30,26 +30,13 @@ bool known_space(const std::string& name) {
   return name == "xyz" || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Texts of the file, without what only tells how it is packed.
-std::map<std::string, std::string> texts(const OIIO::ImageSpec& spec) {
-  std::map<std::string, std::string> found;
-  for (const OIIO::ParamValue& p : spec.extra_attribs) {
-    const std::string name = p.name().string();
-    if (p.type() == OIIO::TypeString && name.find(':') == std::string::npos && name != "compression" &&
-        name != "ResolutionUnit")
-      found[name] = p.get_string();
-  }
-  return found;
-}
-
-/// How the values are encoded: what the file says, else sRGB for whole numbers and linear for the others.
-std::string encoding(const OIIO::ImageSpec& spec, const std::map<std::string, std::string>& metadata) {
+/// How the values are encoded: what the file's texts say, else what the image library does.
+std::string encoding(const StoredImage& stored) {
   const std::vector<std::string> known = transfer_names();
-  const auto said = metadata.find("transfer");
-  if (said != metadata.end() && std::find(known.begin(), known.end(), said->second) != known.end()) return said->second;
-  const std::string space = spec.get_string_attribute("oiio:ColorSpace");
-  if (space == "linear" || space == "Linear" || space == "scene_linear") return "linear";
-  return spec.format.is_floating_point() ? "linear" : "srgb";
+  const auto said = stored.image.metadata.find("transfer");
+  if (said != stored.image.metadata.end() && std::find(known.begin(), known.end(), said->second) != known.end())
+    return said->second;
+  return stored.transfer;
 }
 
 void decode(Image& image, const std::string& transfer) {
@@ -86,31 +73,20 @@ std::string read_bytes(const std::string& path) {
   return std::move(bytes).str();
 }
 
-/// Whether a TGA file holds all its pixels, which the image library does not notice: after a header of 18 bytes (their
-/// meaning: Truevision TGA File Format Specification 2.0), a text and a palette come the pixels, plain or in packets of
-/// 1 to 128, of which those with the top bit set hold one pixel to be repeated.
-bool complete_targa(const std::string& file) {
-  const auto byte = [&](size_t i) { return size_t(static_cast<unsigned char>(file[i])); };
-  const auto word = [&](size_t i) { return byte(i) | byte(i + 1) << 8; };
-  if (file.size() < 18) return false;
-  const size_t pixels = word(12) * word(14), size = (byte(16) + 7) / 8;
-  size_t at = 18 + byte(0) + (byte(1) == 1 ? word(5) * ((byte(7) + 7) / 8) : 0);
-  if ((byte(2) & 8) == 0) return at + pixels * size <= file.size();
-  for (size_t done = 0; done < pixels;) {
-    if (at >= file.size()) return false;
-    const size_t packet = byte(at), count = (packet & 127) + 1;
-    at += 1 + (packet & 128 ? 1 : count) * size;
-    done += count;
-  }
-  return at <= file.size();
-}
-
 Image read_numpy(const std::string& path, std::uintmax_t size) {
   if (size / 8 > NumpyArray::most_numbers + 1024) refuse(path, "it is too large: at most 2^30 numbers are read");
   const std::string bytes = read_bytes(path);
   try {
     Image image = parse_numpy_array(bytes);
     return image.channels.size() == 1 ? spread_grey(image, 0) : image;
+  } catch (const Error& e) {
+    refuse(path, e.what());
+  }
+}
+
+StoredImage read_stored(const std::string& path) {
+  try {
+    return image_library().read(path);
   } catch (const Error& e) {
     refuse(path, e.what());
   }
@@ -129,29 +105,9 @@ Image read_image(const std::string& path) {
   if (!std::ifstream(path, std::ios::binary)) refuse(path, std::generic_category().message(errno));
   if (lower_extension(path) == ".npy") return read_numpy(path, code ? 0 : file_size);
 
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
-  if (!input) refuse(path, OIIO::geterror());
-  const OIIO::ImageSpec spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) refuse(path, "it holds no pixels");
-  // No format packs better than this; a damaged header must not make us ask for all the memory there is.
-  const double values = double(spec.width) * double(spec.height) * double(spec.nchannels);
-  if (!code && values > 1e6 && values / 65536 > double(file_size))
-    refuse(path, fmt::format("it claims {} x {} pixels, which its {} bytes cannot hold", spec.width, spec.height, file_size));
-
-  if (std::string_view(input->format_name()) == "targa" && !complete_targa(read_bytes(path))) refuse(path, "it ends too early");
-
-  Image image(spec.width, spec.height, spec.channelnames);
-  image.channels.resize(size_t(spec.nchannels));
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::DOUBLE, image.values.data())) refuse(path, input->geterror());
-  image.metadata = texts(spec);
-  const std::string transfer = encoding(spec, image.metadata);
-  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width || spec.height != spec.full_height) {
-    image.metadata["crop_x"] = std::to_string(spec.x - spec.full_x);
-    image.metadata["crop_y"] = std::to_string(spec.y - spec.full_y);
-    image.metadata["full_width"] = std::to_string(spec.full_width);
-    image.metadata["full_height"] = std::to_string(spec.full_height);
-  }
-
+  StoredImage stored = read_stored(path);
+  const std::string transfer = encoding(stored);
+  Image image = std::move(stored.image);
   const auto has = [&](const char* name) {
     return std::find(image.channels.begin(), image.channels.end(), name) != image.channels.end();
   };

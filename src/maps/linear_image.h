@@ -1,8 +1,6 @@
 #pragma once
 // Image files as linear numbers: what encodes them is undone before anything filters them.
 
-#include <OpenImageIO/imageio.h>
-
 #include <string>
 #include <vector>
 
@@ -24,10 +22,5 @@ struct LinearImage {
 };
 /// Throws Error naming the file and the reason.
 LinearImage read_linear_image(const std::string& path, const std::string& transfer);
-
-/// An image reader for OpenImageIO's caches, which gives a file's numbers decoded. It opens files by a key that tells the
-/// path, the transfer function, the channel and when the file was last changed.
-OIIO::ImageInput* make_linear_input();
-std::string linear_image_key(const std::string& path, const std::string& transfer, const std::string& channel = {});
 
 }  // namespace etendue

@@ -1,6 +1,5 @@
 #include "outputs/encoded_image.h"
 
-#include <OpenImageIO/filesystem.h>
 #include <fmt/format.h>
 
 #include <vector>
@@ -42,43 +41,31 @@ std::vector<T> quantized(const Image& image, const std::array<size_t, 3>& channe
 
 }  // namespace
 
-void add_metadata(OIIO::ImageSpec& spec, const Image& image) {
-  for (const auto& [name, value] : image.metadata) spec.attribute(name, value);
-}
-
-void write_encoded(const std::string& path, const std::string& extension, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                   const void* pixels) {
-  const auto refuse = [&](const std::string& reason) {
-    throw Error(fmt::format("cannot write '{}': {}", path, reason.empty() ? "the image library gives no reason" : reason));
-  };
-  const std::string name = "picture" + extension;  // never opened: the bytes go to memory
-  std::unique_ptr<OIIO::ImageOutput> encoder = OIIO::ImageOutput::create(name);
-  if (!encoder) refuse(OIIO::geterror());
-  if (!encoder->supports("ioproxy")) refuse(fmt::format("this image library cannot make {} files in memory", extension));
-  OIIO::Filesystem::IOVecOutput memory;
-  if (!encoder->set_ioproxy(&memory) || !encoder->open(name, spec) || !encoder->write_image(type, pixels) || !encoder->close())
-    refuse(encoder->geterror());
-  encoder.reset();
-  write_whole_file(path, memory.buffer().data(), memory.buffer().size());
+void write_encoded(const std::string& path, const std::string& extension, const ImageHeader& header,
+                   const PixelValues& pixels) {
+  std::vector<unsigned char> bytes;
+  try {
+    bytes = image_library().encode(extension, header, pixels);
+  } catch (const Error& e) {
+    throw Error(fmt::format("cannot write '{}': {}", path, e.what()));
+  }
+  write_whole_file(path, bytes.data(), bytes.size());
 }
 
 void write_display_image(const Image& image, const std::string& path, const std::string& extension, int bits, bool dither) {
   const std::array<size_t, 3> channels = rgb_channels(image, path);
-  const OIIO::TypeDesc type = bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
-  OIIO::ImageSpec spec(image.width, image.height, 3, type);
-  add_metadata(spec, image);
+  ImageHeader header(image.width, image.height, 3, bits > 8 ? NumberType::uint16 : NumberType::uint8);
+  header.texts = image.metadata;
   const auto known = [&](const char* key) {
     const auto found = image.metadata.find(key);
     return found == image.metadata.end() ? std::string() : found->second;
   };
-  if (known("transfer") == "linear")
-    spec.attribute("oiio:ColorSpace", "linear");
-  else if (known("transfer") == "srgb" && known("color_space") == "srgb")
-    spec.attribute("oiio:ColorSpace", "sRGB");
+  if (known("transfer") == "linear" || (known("transfer") == "srgb" && known("color_space") == "srgb"))
+    header.transfer = known("transfer");
   if (bits > 8)
-    write_encoded(path, extension, spec, type, quantized<std::uint16_t>(image, channels, dither).data());
+    write_encoded(path, extension, header, quantized<std::uint16_t>(image, channels, dither));
   else
-    write_encoded(path, extension, spec, type, quantized<std::uint8_t>(image, channels, dither).data());
+    write_encoded(path, extension, header, quantized<std::uint8_t>(image, channels, dither));
 }
 
 }  // namespace etendue

@@ -31,6 +31,7 @@ class ExrOutput final : public Output {
     } catch (const Error& e) {
       fail("color_space", e.what());
     }
+    require_image_library();
   }
   std::string extension() const override { return ".exr"; }
   bool for_display() const override { return false; }
@@ -41,31 +42,27 @@ class ExrOutput final : public Output {
     for (size_t c = 0; c < image.channels.size(); ++c)
       if (layers || image.channels[c].find('.') == std::string::npos) kept.push_back(c);
 
-    OIIO::ImageSpec spec(image.width, image.height, int(kept.size()), OIIO::TypeDesc::FLOAT);
-    spec.channelnames.clear();
+    std::vector<ImageHeader::Channel> channels;
     for (const size_t c : kept) {
-      spec.channelnames.push_back(image.channels[c]);
       // Halves hold whole numbers up to 2048 and lengths to three digits: layers keep their precision.
       const bool color = image.channels[c].find('.') == std::string::npos;
-      spec.channelformats.push_back(precision == Precision::half && color ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+      channels.push_back({image.channels[c], precision == Precision::half && color ? NumberType::half : NumberType::single});
     }
+    ImageHeader header(image.width, image.height, std::move(channels));
     const RgbSpace& space = rgb_space(color_space);
-    float chromaticities[8];
+    header.chromaticities.emplace();
     for (size_t i = 0; i < 3; ++i)
-      for (size_t j = 0; j < 2; ++j) chromaticities[2 * i + j] = float(space.primaries[i][j]);
-    for (size_t j = 0; j < 2; ++j) chromaticities[6 + j] = float(space.white[j]);
-    spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
-    spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "");  // else the library writes the time, and equal pictures differ
-    add_metadata(spec, image);
-    place(spec, image);
+      for (size_t j = 0; j < 2; ++j) (*header.chromaticities)[2 * i + j] = float(space.primaries[i][j]);
+    for (size_t j = 0; j < 2; ++j) (*header.chromaticities)[6 + j] = float(space.white[j]);
+    header.texts = image.metadata;
+    place(header, image);
 
     std::vector<float> values(size_t(image.width) * size_t(image.height) * kept.size());
     size_t over = 0, at = 0;
     for (size_t i = 0; i < image.values.size(); i += image.channels.size())
       for (size_t k = 0; k < kept.size(); ++k) {
         const double v = image.values[i + kept[k]];
-        const double limit = spec.channelformats[k] == OIIO::TypeDesc::HALF ? 65504 : double(std::numeric_limits<float>::max());
+        const double limit = header.channels[k].type == NumberType::half ? 65504 : double(std::numeric_limits<float>::max());
         // Infinite values, such as an unknown variance, are meant.
         const bool exceeds = std::isfinite(v) && std::abs(v) > limit;
         over += exceeds;
@@ -73,21 +70,20 @@ class ExrOutput final : public Output {
       }
     if (over > 0)
       warn("'" + path + "': " + std::to_string(over) + " values exceed what the chosen precision can hold and were limited");
-    write_encoded(path, extension(), spec, OIIO::TypeDesc::FLOAT, values.data());
+    write_encoded(path, extension(), header, values);
   }
 
  private:
   /// Where a cropped picture lies within the whole.
-  static void place(OIIO::ImageSpec& spec, const Image& image) {
+  static void place(ImageHeader& header, const Image& image) {
     const auto number = [&](const char* key, int otherwise) {
       const auto found = image.metadata.find(key);
       return found == image.metadata.end() ? otherwise : std::atoi(found->second.c_str());
     };
-    spec.x = number("crop_x", 0);
-    spec.y = number("crop_y", 0);
-    spec.full_width = number("full_width", image.width);
-    spec.full_height = number("full_height", image.height);
-    for (const char* key : {"crop_x", "crop_y", "full_width", "full_height"}) spec.erase_attribute(key);
+    header.x = number("crop_x", 0);
+    header.y = number("crop_y", 0);
+    header.whole = {0, 0, number("full_width", image.width), number("full_height", image.height)};
+    for (const char* key : {"crop_x", "crop_y", "full_width", "full_height"}) header.texts.erase(key);
   }
 };
 

@@ -13,6 +13,7 @@ class HdrOutput final : public Output {
         "edge; holds neither layers nor metadata.",
         "Ward 1991, Real pixels");
   }
+  void prepare() override { require_image_library(); }
   std::string extension() const override { return ".hdr"; }
   bool for_display() const override { return false; }
 
@@ -27,8 +28,7 @@ class HdrOutput final : public Output {
       const double v = image.values[i / 3 * stride + red + i % 3];
       values[i] = v > 0 ? float(std::min(v, limit)) : 0;  // not a number: 0
     }
-    write_encoded(path, extension(), OIIO::ImageSpec(image.width, image.height, 3, OIIO::TypeDesc::FLOAT),
-                  OIIO::TypeDesc::FLOAT, values.data());
+    write_encoded(path, extension(), ImageHeader(image.width, image.height, 3, NumberType::single), values);
   }
 };
 

@@ -16,6 +16,7 @@ class PngOutput final : public Output {
   }
   void prepare() override {
     if (bits != 8 && bits != 16) fail("bits", "must be 8 or 16");
+    require_image_library();
   }
   std::string extension() const override { return ".png"; }
   bool for_display() const override { return true; }

@@ -1,26 +1,22 @@
 #include "verify/report_pictures.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "images/image_library.h"
 
 namespace etendue::verify {
 namespace {
 
 std::string png_uri(int width, int height, const std::vector<unsigned char>& rgb) {
-  const std::string name = "map.png";  // never opened: the bytes go to memory
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("png:compressionLevel", 9);
-  std::unique_ptr<OIIO::ImageOutput> encoder = OIIO::ImageOutput::create(name);
-  OIIO::Filesystem::IOVecOutput memory;
-  if (!encoder || !encoder->set_ioproxy(&memory) || !encoder->open(name, spec) ||
-      !encoder->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !encoder->close())
-    throw Error("cannot make a PNG for the report: " + (encoder ? encoder->geterror() : OIIO::geterror()));
-  encoder.reset();
-  return "data:image/png;base64," + base64(memory.buffer());
+  ImageHeader header(width, height, 3, NumberType::uint8);
+  header.transfer = "srgb";
+  header.compression_level = 9;
+  try {
+    return "data:image/png;base64," + base64(image_library().encode(".png", header, rgb));
+  } catch (const Error& e) {
+    throw Error(std::string("cannot make a PNG for the report: ") + e.what());
+  }
 }
 
 unsigned char byte(double v) { return static_cast<unsigned char>(std::clamp(v, 0.0, 255.0) + 0.5); }

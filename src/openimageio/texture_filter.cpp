@@ -1,7 +1,11 @@
 // Lookups in images: texels, and means over ellipses.
 
-#include "maps/image_cache.h"
-#include "maps/image_texture.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "openimageio/cached_texture.h"
+#include "openimageio/image_cache.h"
 
 namespace etendue {
 
@@ -24,7 +28,7 @@ namespace etendue {
 /// as asking for one takes longer than many texels.
 class TexelReader {
  public:
-  TexelReader(const ImageTexture& texture, size_t level, Wrap wrap, float* sum)
+  TexelReader(const CachedTexture& texture, size_t level, Wrap wrap, float* sum)
       : texture_(texture), level_(texture.levels_[level]), wrap_(wrap), sum_(sum) {}
   ~TexelReader() {
     for (const Held& held : held_)
@@ -78,7 +82,7 @@ class TexelReader {
     x -= texture_.begin_x_;
     y -= texture_.begin_y_;
     if (unsigned(x) >= unsigned(texture_.pixels_x_) || unsigned(y) >= unsigned(texture_.pixels_y_)) return nullptr;
-    constexpr int side = ImageTexture::tile_side;
+    constexpr int side = CachedTexture::tile_side;
     Held& held = held_[(x / side) % 2 + 2 * ((y / side) % 2)];
     if (unsigned(x - held.x) >= unsigned(side) || unsigned(y - held.y) >= unsigned(side)) hold(held, x, y);
     return held.texels ? held.texels + place(x - held.x, y - held.y, held.width) : nullptr;
@@ -86,7 +90,7 @@ class TexelReader {
   struct Held {
     OIIO::ImageCache::Tile* tile = nullptr;
     const float* texels = nullptr;
-    int x = -ImageTexture::tile_side, y = 0, width = 0;
+    int x = -CachedTexture::tile_side, y = 0, width = 0;
   };
   void hold(Held& held, int x, int y) const {
     OIIO::ImageCache& cache = image_cache();
@@ -105,8 +109,8 @@ class TexelReader {
   }
   size_t place(int x, int y, int width) const { return (size_t(y) * size_t(width) + size_t(x)) * size_t(texture_.channels_); }
 
-  const ImageTexture& texture_;
-  const ImageTexture::Level& level_;
+  const CachedTexture& texture_;
+  const CachedTexture::Level& level_;
   Wrap wrap_;
   float* sum_;
   Held held_[4];
@@ -153,7 +157,7 @@ Point2 near(Point2 at, Wrap wrap) {
 
 }  // namespace
 
-void ImageTexture::nearest(Point2 at, Wrap wrap, float* out) const {
+void CachedTexture::nearest(Point2 at, Wrap wrap, float* out) const {
   std::fill_n(out, channels_, 0.0f);
   at = near(at, wrap);
   if (!(at.x == at.x)) return;
@@ -161,14 +165,14 @@ void ImageTexture::nearest(Point2 at, Wrap wrap, float* out) const {
   reader.add(int(std::floor(at.x * reader.width())), int(std::floor((1 - at.y) * reader.height())), 1);
 }
 
-void ImageTexture::bilinear(Point2 at, Wrap wrap, float* out) const { line(at, {}, 0, 0, wrap, out); }
+void CachedTexture::bilinear(Point2 at, Wrap wrap, float* out) const { line(at, {}, 0, 0, wrap, out); }
 
-void ImageTexture::trilinear(Point2 at, const UvFootprint& f, Wrap wrap, float* out) const {
+void CachedTexture::trilinear(Point2 at, const UvFootprint& f, Wrap wrap, float* out) const {
   const Ellipse e = ellipse_of(f, float(levels_[0].width), float(levels_[0].height));
   line(at, {}, 0, detail_of(e.longer), wrap, out);
 }
 
-void ImageTexture::anisotropic(Point2 at, const UvFootprint& f, Wrap wrap, float* out) const {
+void CachedTexture::anisotropic(Point2 at, const UvFootprint& f, Wrap wrap, float* out) const {
   const float width = float(levels_[0].width), height = float(levels_[0].height);
   const Ellipse e = ellipse_of(f, width, height);
   const float shorter = std::max(e.shorter, e.longer / maximum_anisotropy);
@@ -177,7 +181,7 @@ void ImageTexture::anisotropic(Point2 at, const UvFootprint& f, Wrap wrap, float
   line(at, half_line, length, detail_of(shorter), wrap, out);
 }
 
-void ImageTexture::line(Point2 at, Vector2 half_line, float length, float detail, Wrap wrap, float* out) const {
+void CachedTexture::line(Point2 at, Vector2 half_line, float length, float detail, Wrap wrap, float* out) const {
   std::fill_n(out, channels_, 0.0f);
   at = near(at, wrap);
   if (!(at.x == at.x)) return;

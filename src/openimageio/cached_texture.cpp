@@ -1,13 +1,15 @@
 // Reading images into levels of averages.
 
-#include "maps/image_texture.h"
+#include "openimageio/cached_texture.h"
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 
 #include "etendue/error.h"
-#include "maps/image_cache.h"
-#include "maps/linear_image.h"
+#include "openimageio/image_cache.h"
+#include "openimageio/linear_input.h"
+#include "openimageio/refuse.h"
 
 namespace etendue {
 namespace {
@@ -60,7 +62,7 @@ class Halving {
 OIIO::ImageCache& image_cache() {
   static OIIO::ImageCache* const cache = [] {
     OIIO::ImageCache* c = OIIO::ImageCache::create(false);
-    c->attribute("autotile", ImageTexture::tile_side);
+    c->attribute("autotile", CachedTexture::tile_side);
     c->attribute("accept_untiled", 1);
     c->attribute("accept_unmipped", 1);
     c->attribute("max_memory_MB", 2048.0f);
@@ -69,29 +71,28 @@ OIIO::ImageCache& image_cache() {
   return *cache;
 }
 
-std::shared_ptr<const ImageTexture> ImageTexture::open(const std::string& path, const std::string& transfer,
-                                                       const std::string& channel) {
+std::shared_ptr<const CachedTexture> CachedTexture::open(const std::string& path, const std::string& transfer,
+                                                         const std::string& channel) {
   static std::mutex mutex;
-  static auto& known = *new std::map<std::string, std::weak_ptr<const ImageTexture>>;
+  static auto& known = *new std::map<std::string, std::weak_ptr<const CachedTexture>>;
   const std::lock_guard lock(mutex);
   const std::string key = linear_image_key(path, transfer, channel);
-  if (std::shared_ptr<const ImageTexture> there = known[key].lock()) return there;
-  const auto texture = std::make_shared<ImageTexture>();
+  if (std::shared_ptr<const CachedTexture> there = known[key].lock()) return there;
+  const auto texture = std::make_shared<CachedTexture>();
   try {
     texture->read(key);
   } catch (const Error& e) {
     // OpenImageIO's messages name our key; the path is what the user knows.
     std::string reason = e.what();
     for (size_t at; (at = reason.find(key)) != std::string::npos;) reason.replace(at, key.size(), path);
-    while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' ')) reason.pop_back();
     image_cache().invalidate(OIIO::ustring(key));
-    throw Error("cannot read '" + path + "': " + (reason.empty() ? "it is no image" : reason));
+    refuse(std::move(reason));
   }
   known[key] = texture;
   return texture;
 }
 
-void ImageTexture::read(const std::string& key) {
+void CachedTexture::read(const std::string& key) {
   OIIO::ImageCache& cache = image_cache();
   const OIIO::ustring name(key);
   OIIO::ImageSpec spec;

@@ -1,0 +1,49 @@
+#pragma once
+// Textures whose texels stay in OpenImageIO's cache.
+
+#include <OpenImageIO/imagecache.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "maps/image_texture.h"
+
+namespace etendue {
+
+/// Its texels stay in OpenImageIO's cache, which reads them from the file again when memory is short; levels of averages, each
+/// half as wide and half as high as the one before, are kept.
+class CachedTexture final : public ImageTexture {
+ public:
+  /// See ImageTexture::open; errors tell the reason alone.
+  static std::shared_ptr<const CachedTexture> open(const std::string& path, const std::string& transfer,
+                                                   const std::string& channel);
+
+  int channels() const override { return channels_; }
+  void nearest(Point2 at, Wrap, float* out) const override;
+  void bilinear(Point2 at, Wrap, float* out) const override;
+  void trilinear(Point2 at, const UvFootprint&, Wrap, float* out) const override;
+  void anisotropic(Point2 at, const UvFootprint&, Wrap, float* out) const override;
+
+  static constexpr int tile_side = 64;  ///< of the cache's tiles
+
+ private:
+  friend class TexelReader;
+  struct Level {
+    int width = 0, height = 0;
+    std::vector<float> texels;  // from the top row to the lowest; none at level 0
+  };
+
+  void read(const std::string& key);
+  /// The mean along a line of `length` texels, from -half_line to half_line, of what level `detail` shows.
+  void line(Point2 at, Vector2 half_line, float length, float detail, Wrap, float* out) const;
+
+  OIIO::ImageCache::ImageHandle* handle_ = nullptr;
+  int channels_ = 3;
+  int left_ = 0, top_ = 0;           // of the display window, in the file's pixels
+  int begin_x_ = 0, begin_y_ = 0;    // of the pixels that are there, in the display window
+  int pixels_x_ = 0, pixels_y_ = 0;  // how many are there
+  std::vector<Level> levels_;
+};
+
+}  // namespace etendue

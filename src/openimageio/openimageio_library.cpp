@@ -1,0 +1,34 @@
+// The image library as the rest sees it.
+
+#include "images/image_library.h"
+#include "maps/linear_image.h"
+#include "openimageio/cached_texture.h"
+#include "openimageio/file_input.h"
+#include "openimageio/file_output.h"
+#include "openimageio/linear_input.h"
+
+namespace etendue {
+namespace {
+
+class OpenImageIoLibrary final : public ImageLibrary {
+ public:
+  OpenImageIoLibrary() { announce_image_library(*this, ETENDUE_VERSION); }
+  StoredImage read(const std::string& path) const override { return read_file(path); }
+  LinearImage read_linear(const std::string& path, const std::string& transfer) const override {
+    return read_linear_file(path, transfer);
+  }
+  void check_channel(const std::string& path, const std::string& channel) const override { check_file_channel(path, channel); }
+  std::shared_ptr<const ImageTexture> open_texture(const std::string& path, const std::string& transfer,
+                                                   const std::string& channel) const override {
+    return CachedTexture::open(path, transfer, channel);
+  }
+  std::vector<unsigned char> encode(const std::string& extension, const ImageHeader& header,
+                                    const PixelValues& pixels) const override {
+    return encode_file(extension, header, pixels);
+  }
+};
+
+const OpenImageIoLibrary library;
+
+}  // namespace
+}  // namespace etendue
