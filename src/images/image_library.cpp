@@ -27,8 +27,9 @@ std::string path_beside() {
 const ImageLibrary& load() {
   if (!announced) {
     const std::string path = path_beside();
-    // Never closed: textures, and their code, may live until the end.
-    if (!dlopen(path.empty() ? file_name : path.c_str(), RTLD_NOW | RTLD_LOCAL))
+    // Never closed: textures, and their code, may live until the end. To bind all functions of so many libraries at once would
+    // take a sixth longer.
+    if (!dlopen(path.empty() ? file_name : path.c_str(), RTLD_LAZY | RTLD_LOCAL))
       throw Error(fmt::format("the library for image files cannot be loaded: {}", dlerror()));
   }
   if (!announced) throw Error(fmt::format("'{}' is not of this version of Étendue", file_name));
