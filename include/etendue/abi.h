@@ -1,5 +1,8 @@
 #pragma once
-// What a plugin was built against, as a text that both sides compare before anything else is done.
+// What a plugin was built against, as a text that both sides compare before anything else is done. GCC and Clang lay out
+// classes and pass arguments alike; that they use the same standard library is what has to be said.
+
+#include <string>
 
 #include "etendue/spectrum.h"
 
@@ -9,16 +12,17 @@
 namespace etendue::detail {
 
 /// Raised whenever a public header changes what plugins see.
-#define ETENDUE_INTERFACE_VERSION 1
+#define ETENDUE_INTERFACE_VERSION 2
 
 inline constexpr int abi_wavelengths = spectrum_size;
 static_assert(spectrum_size == 4 || spectrum_size == 8 || spectrum_size == 16);
 inline constexpr const char* abi_text =
-    spectrum_size == 4
-        ? "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++ ABI " ETENDUE_TEXT(__GXX_ABI_VERSION) ", 4 wavelengths"
-    : spectrum_size == 8
-        ? "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++ ABI " ETENDUE_TEXT(__GXX_ABI_VERSION) ", 8 wavelengths"
-        : "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++ ABI " ETENDUE_TEXT(__GXX_ABI_VERSION) ", 16 wavelengths";
+    spectrum_size == 4 ? "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++11 strings " ETENDUE_TEXT(
+                             _GLIBCXX_USE_CXX11_ABI) ", 4 wavelengths"
+    : spectrum_size == 8 ? "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++11 strings " ETENDUE_TEXT(
+                               _GLIBCXX_USE_CXX11_ABI) ", 8 wavelengths"
+                         : "interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION) ", C++11 strings " ETENDUE_TEXT(
+                               _GLIBCXX_USE_CXX11_ABI) ", 16 wavelengths";
 
 }  // namespace etendue::detail
 

@@ -1,5 +1,6 @@
 // ImageTile: the per-thread side of the film. Everything here runs once per sample.
 
+#include <cstring>
 #include <limits>
 
 #include "etendue/image_buffer.h"
@@ -10,8 +11,14 @@ namespace {
 
 using BadKind = BadSample::Kind;
 
-// X Y Z weight, added at once; unaligned, as vectors of doubles are.
-using Sums [[gnu::may_alias]] = double __attribute__((vector_size(32), aligned(8)));
+// X Y Z weight, added at once.
+using Sums = double __attribute__((vector_size(32)));
+inline void add(double* sum, const Sums& more) {
+  Sums s;
+  std::memcpy(&s, sum, sizeof s);
+  s += more;
+  std::memcpy(sum, &s, sizeof s);
+}
 
 /// Values below zero by no more than this part of the largest are rounding.
 constexpr float negative_tolerance = 1e-5f;
@@ -129,7 +136,7 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
   const Sums one{color.x, color.y, color.z, 1};
   if (buffer_->box_) {
     double* sum = &sums_[4 * (size_t(py - extent_.y0) * size_t(extent_.width()) + size_t(px - extent_.x0))];
-    *reinterpret_cast<Sums*>(sum) += double(weight) * one;
+    add(sum, double(weight) * one);
     return;
   }
   constexpr int size = ImageBuffer::table_size;
@@ -139,8 +146,7 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
     const float* row = &buffer_->filter_table_[size_t(down.cells[size_t(j)]) * size];
     double* sum =
         &sums_[4 * (size_t(down.first + j - extent_.y0) * size_t(extent_.width()) + size_t(across.first - extent_.x0))];
-    for (int i = 0; i < across.count; ++i, sum += 4)
-      *reinterpret_cast<Sums*>(sum) += double(row[across.cells[size_t(i)]] * weight) * one;
+    for (int i = 0; i < across.count; ++i, sum += 4) add(sum, double(row[across.cells[size_t(i)]] * weight) * one);
   }
 }
 

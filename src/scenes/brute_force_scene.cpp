@@ -78,11 +78,12 @@ struct WideRay {
 
 inline Floats absolute(const Floats& x) { return std::bit_cast<Floats>(std::bit_cast<Ints>(x) & 0x7fffffff); }
 inline Floats larger(const Floats& a, const Floats& b) { return a > b ? a : b; }
+inline Floats smaller(const Floats& a, const Floats& b) { return a < b ? a : b; }
+constexpr Floats most_slack = Floats{} + 1e-4f;  // edge on, a triangle would seem to be met from well beside it
 
 // As in objects/triangle_test.h, for all lanes, with triangles a little wider than they are: by what u and v may be off, so
-// that no ray slips between two that share an edge. C, C x D, the edge e and their products round to within
-// 8 eps |C| |D| |e|, which division by N.D makes an error of u or v; |C| is taken by its largest coordinate, whose 3 and the
-// edges' lengths by axis go into `slack`.
+// that no ray slips between two that share an edge. The coordinates of C, C x D and the edges round by half a unit in the last
+// place each, which makes an error of about 2 eps |C| |D| |e| of the numerators, with |C| its largest coordinate.
 /// Returns which are hit with t in (0, limit).
 inline Ints test(const Block& b, const WideRay& r, const Floats& limit, Floats& t, Floats& u, Floats& v) {
   const Floats cx = b.vx - r.ox, cy = b.vy - r.oy, cz = b.vz - r.oz;
@@ -91,7 +92,8 @@ inline Ints test(const Block& b, const WideRay& r, const Floats& limit, Floats& 
   t = (b.nx * cx + b.ny * cy + b.nz * cz) * inverse;
   u = (rx * b.bx + ry * b.by + rz * b.bz) * inverse;
   v = -(rx * b.ax + ry * b.ay + rz * b.az) * inverse;
-  const Floats off = b.slack * r.length * larger(larger(absolute(cx), absolute(cy)), absolute(cz)) * absolute(inverse);
+  const Floats off =
+      smaller(b.slack * r.length * larger(larger(absolute(cx), absolute(cy)), absolute(cz)) * absolute(inverse), most_slack);
   return (u >= -off) & (v >= -off) & (u + v <= 1 + off) & (t > 0) & (t < limit);
 }
 
@@ -259,7 +261,7 @@ class BruteForceScene final : public Scene {
     b.ny[lane] = n.y;
     b.nz[lane] = n.z;
     const auto size = [](const Vector3& e) { return std::abs(e.x) + std::abs(e.y) + std::abs(e.z); };
-    b.slack[lane] = 3 * rounding_bound(8) * (size(e1) + size(e2));
+    b.slack[lane] = rounding_bound(4) * std::max(size(e1), size(e2));
   }
 
   std::vector<Block> blocks_;
