@@ -167,12 +167,14 @@ class Metaballs final : public ImplicitObject {
     for (size_t k = 0; k < 3; ++k) {
       edge[k] = double(box.high[int(k)]) - double(box.low[int(k)]);
       low_[k] = double(box.low[int(k)]);
+      if (!(edge[k] < 1e30)) fail("", "the balls reach beyond what can be counted with");
     }
     double wanted = std::cbrt(edge[0] * edge[1] * edge[2] / (64 + 8 * double(balls_.size())));  // edge of a cell
     for (double entries = infinity; entries > most_entries; wanted *= 1.5) {
       for (size_t k = 0; k < 3; ++k) {
-        count_[k] = int(std::clamp(std::ceil(edge[k] / wanted), 1.0, most_cells));
-        scale_[k] = count_[k] / edge[k];
+        const double number = std::ceil(edge[k] / wanted);
+        count_[k] = number > 1 ? int(std::min(number, most_cells)) : 1;  // 1 where it is no number
+        scale_[k] = edge[k] > 0 ? count_[k] / edge[k] : 0;
       }
       entries = 0;
       for (const Ball& ball : balls_) {
