@@ -65,25 +65,19 @@ struct alignas(64) Block {
 /// The ray in all lanes.
 struct WideRay {
   Floats ox, oy, oz, dx, dy, dz;
-  float length;
   explicit WideRay(const Ray& r)
       : ox(Floats{} + r.origin.x),
         oy(Floats{} + r.origin.y),
         oz(Floats{} + r.origin.z),
         dx(Floats{} + r.direction.x),
         dy(Floats{} + r.direction.y),
-        dz(Floats{} + r.direction.z),
-        length(std::abs(r.direction.x) + std::abs(r.direction.y) + std::abs(r.direction.z)) {}
+        dz(Floats{} + r.direction.z) {}
 };
-
-inline Floats absolute(const Floats& x) { return std::bit_cast<Floats>(std::bit_cast<Ints>(x) & 0x7fffffff); }
-inline Floats larger(const Floats& a, const Floats& b) { return a > b ? a : b; }
-inline Floats smaller(const Floats& a, const Floats& b) { return a < b ? a : b; }
-constexpr Floats most_slack = Floats{} + 1e-4f;  // edge on, a triangle would seem to be met from well beside it
 
 // As in objects/triangle_test.h, for all lanes, with triangles a little wider than they are: by what u and v may be off, so
 // that no ray slips between two that share an edge. The coordinates of C, C x D and the edges round by half a unit in the last
-// place each, which makes an error of about 2 eps |C| |D| |e| of the numerators, with |C| its largest coordinate.
+// place each, which makes an error of about 2 eps |C| |D| |e| / (N.D) of u or v: bounded where |C| is no more than the scene's
+// diameter and the cosine no less than an eighth.
 /// Returns which are hit with t in (0, limit).
 inline Ints test(const Block& b, const WideRay& r, const Floats& limit, Floats& t, Floats& u, Floats& v) {
   const Floats cx = b.vx - r.ox, cy = b.vy - r.oy, cz = b.vz - r.oz;
@@ -92,9 +86,7 @@ inline Ints test(const Block& b, const WideRay& r, const Floats& limit, Floats& 
   t = (b.nx * cx + b.ny * cy + b.nz * cz) * inverse;
   u = (rx * b.bx + ry * b.by + rz * b.bz) * inverse;
   v = -(rx * b.ax + ry * b.ay + rz * b.az) * inverse;
-  const Floats off =
-      smaller(b.slack * r.length * larger(larger(absolute(cx), absolute(cy)), absolute(cz)) * absolute(inverse), most_slack);
-  return (u >= -off) & (v >= -off) & (u + v <= 1 + off) & (t > 0) & (t < limit);
+  return (u >= -b.slack) & (v >= -b.slack) & (u + v <= 1 + b.slack) & (t > 0) & (t < limit);
 }
 
 }  // namespace
@@ -207,7 +199,7 @@ class BruteForceScene final : public Scene {
       }
       for (size_t i = 0; i < view->triangles.size(); ++i) {
         const auto& t = view->triangles[i];
-        add(object, std::uint32_t(i), view->positions[t[0]], view->positions[t[1]], view->positions[t[2]]);
+        add(object, std::uint32_t(i), view->positions[t[0]], view->positions[t[1]], view->positions[t[2]], 2 * radius());
       }
     }
   }
@@ -242,7 +234,8 @@ class BruteForceScene final : public Scene {
     }
   };
 
-  void add(const SceneObject* object, std::uint32_t primitive, const Point3& p, const Point3& q, const Point3& r) {
+  void add(const SceneObject* object, std::uint32_t primitive, const Point3& p, const Point3& q, const Point3& r,
+           float diameter) {
     const size_t lane = slots_.size() % lanes;
     if (lane == 0) blocks_.emplace_back();
     slots_.push_back({object, primitive});
@@ -260,8 +253,8 @@ class BruteForceScene final : public Scene {
     b.nx[lane] = n.x;
     b.ny[lane] = n.y;
     b.nz[lane] = n.z;
-    const auto size = [](const Vector3& e) { return std::abs(e.x) + std::abs(e.y) + std::abs(e.z); };
-    b.slack[lane] = rounding_bound(4) * std::max(size(e1), size(e2));
+    constexpr float most = 1e-4f;  // of slivers
+    b.slack[lane] = std::min(rounding_bound(16) * diameter * std::max(length(e1), length(e2)) / length(n), most);
   }
 
   std::vector<Block> blocks_;
