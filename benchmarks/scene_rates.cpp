@@ -20,8 +20,7 @@ namespace {
 using namespace etendue;
 
 constexpr const char* worlds[] = {"cornell_box", "sphere_mesh_1e5", "terrain_1e6", "spheres_1e3"};
-constexpr const char* structures[] = {"BruteForceScene", "EmbreeScene", "robust EmbreeScene",
-                                      "BvhScene",        "OctreeScene", "GridScene"};
+constexpr const char* structures[] = {"BruteForceScene", "EmbreeScene", "BvhScene", "OctreeScene", "GridScene"};
 constexpr const char* queries[] = {"nearest coherent", "nearest random", "any coherent", "any random"};
 
 template <class T>
@@ -83,9 +82,7 @@ struct Bench {
   std::vector<Ray> coherent, random;
 
   Bench(const std::string& world, const std::string& structure) {
-    const bool robust = structure == "robust EmbreeScene";
-    scene = make_part<Scene>(robust ? "EmbreeScene" : structure);
-    if (structure == "EmbreeScene" || robust) set(*scene, "robust", Value(robust));
+    scene = make_part<Scene>(structure);
     scene->objects = objects_of(world);
     prepare_tree(*scene);
     const auto begin = std::chrono::steady_clock::now();
