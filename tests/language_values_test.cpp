@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "etendue/color.h"
+#include "etendue/object_map.h"
 #include "language_test_support.h"
 
 namespace etendue::language_test {
@@ -245,6 +246,20 @@ TEST(Language, LiteralsStandForComponents) {
 }
 
 // ---- speed ----------------------------------------------------------------------------------------------------------
+
+TEST(Language, NumbersWithUnitsStandForMapsOfTheMembersUnit) {
+  const auto thickness = [](const std::string& text) {
+    const Ref<Component> film = parse_component("ThinFilm { thickness: " + text + " }");
+    prepare_tree(*film);
+    const Value map = get(*film, "thickness");
+    return ref_cast<ObjectMap>(*map.as<Ref<Component>>())->scalar({});
+  };
+  EXPECT_EQ(thickness("400"), 400);  // nm, as the member says
+  EXPECT_NEAR(thickness("400 nm"), 400, 1e-3);
+  EXPECT_NEAR(thickness("0.4 um"), 400, 1e-3);
+  EXPECT_THROW(thickness("3 deg"), Errors);
+  EXPECT_THROW(parse_component("Lambertian { color: 3 m }"), Errors);
+}
 
 TEST(Language, LoadsLargeListsFast) {
   std::string text = "LanguagePart {\n points: [\n";

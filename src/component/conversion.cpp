@@ -129,7 +129,12 @@ Ref<Component> to_component(const Value& v, const Member& m) {
   for (const ClassInfo* candidate : registry.subclasses(*wanted)) {
     if (candidate->literal.empty()) continue;
     Ref<Component> made = registry.create(candidate->name);
-    candidate->find(candidate->literal)->store(*made, *candidate->find(candidate->literal), v);
+    const Member& literal = *candidate->find(candidate->literal);
+    // A map of thicknesses in nm may be 0.4 um everywhere.
+    if (const auto* n = v.as<Number>(); n && n->dimension != Dimension::none)
+      literal.store(*made, literal, Value(Number{in_member_unit(n->value, n->dimension, m, v.location)}, v.location));
+    else
+      literal.store(*made, literal, v);
     return made;
   }
   mismatch(with_article(wanted->name), v);

@@ -6,8 +6,8 @@ namespace etendue {
 
 void ObjectMap::describe(Description<ObjectMap>& d) {
   d.summary(
-      "A number or a colour at each point of a surface (a texture). Where a map is expected, a plain number or colour may "
-      "stand.");
+      "A number or a colour at each point of a surface (a texture). Where a map is expected, a number, in a unit of what "
+      "is asked for, or a colour may stand.");
 }
 
 static const Register<ObjectMap> registered;
