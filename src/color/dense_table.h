@@ -20,25 +20,7 @@ class DenseTable {
 
   Spectrum evaluate(const Wavelengths& wavelengths) const {
     detail::Lanes a{}, b{};
-    if constexpr (spectrum_size == 4) {
-      // An entry and its neighbour are one load.
-      using Pair = float __attribute__((vector_size(8)));
-      const auto pair = [&](int i) {
-        Pair p;
-        std::memcpy(&p, &values_[size_t(wavelengths.table_index(i))], sizeof p);
-        return p;
-      };
-      const auto low = __builtin_shufflevector(pair(0), pair(1), 0, 1, 2, 3);
-      const auto high = __builtin_shufflevector(pair(2), pair(3), 0, 1, 2, 3);
-      a = __builtin_shufflevector(low, high, 0, 2, 4, 6);
-      b = __builtin_shufflevector(low, high, 1, 3, 5, 7);
-    } else {
-      for (int i = 0; i < spectrum_size; ++i) {
-        const float* entry = &values_[size_t(wavelengths.table_index(i))];
-        a[i] = entry[0];
-        b[i] = entry[1];
-      }
-    }
+    entries(wavelengths, a, b);
     return Spectrum(a + wavelengths.table_fractions() * (b - a));
   }
   /// 0 outside 360-830 nm.
@@ -52,6 +34,30 @@ class DenseTable {
   float entry(int i) const { return values_[size_t(i)]; }
 
  private:
+  /// The entries before and behind each wavelength. (A template, so that what is for another number of lanes is not compiled.)
+  template <class Lanes>
+  void entries(const Wavelengths& wavelengths, Lanes& a, Lanes& b) const {
+    if constexpr (sizeof(Lanes) == 4 * sizeof(float)) {
+      // An entry and its neighbour are one load.
+      using Pair = float __attribute__((vector_size(8)));
+      const auto pair = [&](int i) {
+        Pair p;
+        std::memcpy(&p, &values_[size_t(wavelengths.table_index(i))], sizeof p);
+        return p;
+      };
+      const Lanes low = __builtin_shufflevector(pair(0), pair(1), 0, 1, 2, 3);
+      const Lanes high = __builtin_shufflevector(pair(2), pair(3), 0, 1, 2, 3);
+      a = __builtin_shufflevector(low, high, 0, 2, 4, 6);
+      b = __builtin_shufflevector(low, high, 1, 3, 5, 7);
+    } else {
+      for (int i = 0; i < spectrum_size; ++i) {
+        const float* entry = &values_[size_t(wavelengths.table_index(i))];
+        a[i] = entry[0];
+        b[i] = entry[1];
+      }
+    }
+  }
+
   std::array<float, tables::size> values_{};
 };
 
