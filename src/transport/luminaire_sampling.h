@@ -30,10 +30,7 @@ struct EmittedLight {
 class LightFront {
  public:
   explicit LightFront(const Scene& scene)
-      : centre_(scene.centre()),
-        radius_(scene.radius()),
-        endless_(scene.unbounded()),
-        within_(1 / (pi * square(radius_))) {
+      : centre_(scene.centre()), radius_(scene.radius()), endless_(scene.unbounded()), within_(1 / (pi * square(radius_))) {
     if (endless_) within_ /= 2;
   }
 
