@@ -223,7 +223,8 @@ class Metaballs final : public ImplicitObject {
 
   /// The cell at a coordinate along an axis, or the nearest.
   int cell_at(double x, size_t k) const {
-    return int(std::clamp(std::floor((x - low_[k]) * scale_[k]), 0.0, double(count_[k] - 1)));
+    const double cell = std::floor((x - low_[k]) * scale_[k]);
+    return cell > 0 ? int(std::min(cell, double(count_[k] - 1))) : 0;  // 0 where it is no number: the box has no extent
   }
 
   /// Cells a box touches, and those that touch it but for rounding.
