@@ -124,22 +124,34 @@ TriangleObject::Plane TriangleObject::plane_of(const Point3& p0, const Vector3& 
 }
 
 void TriangleObject::fill(std::uint32_t primitive, float u, float v, float time, SurfacePoint& p) const {
+  if (!motion_.moves()) [[likely]]
+    fill_at<false>(primitive, u, v, time, p);
+  else
+    fill_at<true>(primitive, u, v, time, p);
+}
+
+template <bool moving>
+inline void TriangleObject::fill_at(std::uint32_t primitive, float u, float v, float time, SurfacePoint& p) const {
   const auto& t = mesh_.triangles[primitive];
-  const Moment now = moment(time);
-  const Corners corners = stored_corners(primitive, now);
+  const Moment now = moving ? moment(time) : Moment{};
+  const Corners corners =
+      moving ? stored_corners(primitive, now) : Corners{{mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]}};
   const Point3& p0 = corners.p[0];
   const Vector3 e1 = corners.p[1] - p0, e2 = corners.p[2] - p0;
   const Plane plane = planes_.empty() ? plane_of(p0, e1, e2) : planes_[primitive];
   p.normal = plane.normal;
   p.error = plane.error;
-  if (motion_.moves()) p.error += motion_error(primitive, now, p.normal);
+  if (moving) p.error += motion_error(primitive, now, p.normal);
   p.position = p0 + (u * e1 + v * e2);
 
   const float w = 1 - u - v;
   if (mesh_.normals.empty()) {
     p.shading_normal = p.normal;
   } else {
-    const Vector3 n0 = stored_normal(t[0], now), n1 = stored_normal(t[1], now), n2 = stored_normal(t[2], now);
+    const auto normal = [&](std::uint32_t corner) {
+      return moving ? stored_normal(corner, now) : Vector3(mesh_.normals[corner]);
+    };
+    const Vector3 n0 = normal(t[0]), n1 = normal(t[1]), n2 = normal(t[2]);
     const Vector3 s = w * n0 + u * n1 + v * n2;
     const float ss = dot(s, s);
     const bool known = ss > 1e-12f && dot(n0, n0) > 0 && dot(n1, n1) > 0 && dot(n2, n2) > 0;

@@ -85,6 +85,8 @@ class TriangleObject : public SceneObject, public NumberedParts {
   /// A triangle's corners in the coordinates of the containing scene.
   Corners corners(std::uint32_t primitive, float time) const;
   void fill(std::uint32_t primitive, float u, float v, float time, SurfacePoint&) const;
+  template <bool moving>
+  void fill_at(std::uint32_t primitive, float u, float v, float time, SurfacePoint&) const;
   /// Chooses a triangle by its area in the stored coordinates; `x` becomes a fresh number in [0, 1).
   std::uint32_t choose(float& x, float other) const;
   /// Of a motion the mean over its keys.

@@ -203,7 +203,8 @@ class PathTracer final : public Renderer {
         }
 
         const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : Transport::radiance;
-        next = scatter->sample(out, lobe_choice, scatter_direction, transport);
+        // Made where it stays: assigned it would be copied, which waits until its parts have reached memory.
+        ::new (&next) std::optional<ScatterSample>(scatter->sample(out, lobe_choice, scatter_direction, transport));
         if (!next || moved || last || !enters_body(point, *next)) break;
 
         // Light that enters a body which scatters it leaves elsewhere: the path goes on from there. The way inside counts as

@@ -78,9 +78,9 @@ ScatterValue Scatter::value_and_density(const Vector3& out, const Vector3& in, T
   if (combined_) return combination().combined_value_and_density(out, in, transport, which);
   const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
   if (!pair.sides_agree() || !asked(pair, which)) return {};
+  if (transport == Transport::radiance && pair.reflection()) return local_value_and_density(pair.out, pair.in, which);
   const ScatterValue local = local_value_and_density(pair.out, pair.in, which);
   if (transport == Transport::importance) return {local.value * pair.importance_factor(), local.density};
-  if (pair.reflection()) return local;
   return {local.value / squared(relative_index(pair.out, pair.in)), local.density};
 }
 
