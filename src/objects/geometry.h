@@ -96,10 +96,11 @@ inline void complete_by_area(SurfaceSample& s, const Point3& from, float area_de
     s.density = 0;
     return;
   }
+  // cosine / d^2 of the angle with the normal, with nothing in it that waits for the square root.
+  const float across = std::abs(dot(s.point.normal, to));
   s.distance = std::sqrt(d2);
   s.direction = to / s.distance;
-  const float cosine = std::abs(dot(s.point.normal, s.direction));
-  s.density = cosine > 0 ? area_density * d2 / cosine : 0;
+  s.density = across > 0 ? area_density * (d2 / across) * s.distance : 0;
 }
 
 /// Direction and distance of a point chosen with a density [1/sr].

@@ -146,7 +146,9 @@ class Rectangle final : public SceneObject {
     Point3 corner;
     Vector3 edge_u, edge_v, scaled_normal, unit_u, unit_v;
     Normal3 normal;
+    Vector3 half_diagonal;
     float length_u = 1, length_v = 1, area = 1, error = 0;
+    float far_squared = 0;  // further from the middle all of it is too far away to be sampled by solid angle
     bool perpendicular = true;
 
     Point3 corner_at(int i) const {
@@ -156,6 +158,8 @@ class Rectangle final : public SceneObject {
     /// the normal (for perpendicular edges).
     bool near(const Point3& from, Vector3& origin) const {
       const Vector3 c = corner - from;
+      // From most places it is far, which the distance of its middle shows with less to compute.
+      if (length_squared(c + half_diagonal) > far_squared) return false;
       origin = {dot(c, unit_u), dot(c, unit_v), dot(c, normal)};
       const float x = clamp(0, origin.x, origin.x + length_u), y = clamp(0, origin.y, origin.y + length_v);
       return area > worthwhile_solid_angle * (x * x + y * y + origin.z * origin.z);
@@ -183,6 +187,9 @@ class Rectangle final : public SceneObject {
     w.area = length(w.scaled_normal);
     const float side = t.flips() ? -1.0f : 1.0f;  // a mirror keeps the front where the normal is carried to
     w.normal = Normal3((side / w.area) * w.scaled_normal);
+    w.half_diagonal = 0.5f * (w.edge_u + w.edge_v);
+    const float reach = std::max(length(w.half_diagonal), length(w.edge_u - w.half_diagonal));
+    w.far_squared = square(std::sqrt(w.area / worthwhile_solid_angle) + 1.001f * reach);
     w.perpendicular = std::abs(dot(w.unit_u, w.unit_v)) < 1e-5f;
     // As for triangles (triangle_object.cpp), at the corner where it is largest; the edges may lean against the plane
     // by their rounding, and so do the corners.
@@ -202,9 +209,12 @@ class Rectangle final : public SceneObject {
 
   template <class Part>  // a Hit or a SurfacePoint
   static void set_part(Point2 uv, Part& to) {
-    to.primitive = uv.x >= uv.y ? 0 : 1;
-    to.u = uv.x >= uv.y ? uv.x - uv.y : uv.x;
-    to.v = uv.x >= uv.y ? uv.y : uv.y - uv.x;
+    // Without a branch: it would be guessed wrongly every second time.
+    const float lower = std::min(uv.x, uv.y), rest = std::abs(uv.x - uv.y);
+    const bool second = uv.x < uv.y;
+    to.primitive = second;
+    to.u = second ? lower : rest;
+    to.v = second ? rest : lower;
   }
 
   void fill(const World& w, Point2 uv, float time, SurfacePoint& p) const {

@@ -119,9 +119,10 @@ class PathTracer final : public Renderer {
       // The last vertex's shadow ray and the ray on from it need nothing of each other: the processor traces both at once.
       const bool lit = awaits_light && !(clear && scene.any(direct.shadow));
       const bool found = goes_on && scene.nearest(ray, hit);
-      if (lit) {
-        arrive(depth, direct.light);
-        record_direct(sample.record, direct.light, depth, direct.weight);
+      if (awaits_light) {  // whether it comes cannot be guessed, so nothing hangs on it
+        const Spectrum came = lit ? direct.light : Spectrum();
+        arrive(depth, came);
+        if (sample.record && lit) record_direct(sample.record, direct.light, depth, direct.weight);
       }
       awaits_light = false;
       if (!goes_on) break;

@@ -17,17 +17,16 @@ class BruteForceScene final : public Scene {
   }
 
   bool nearest(const Ray& ray, Hit& hit) const override {
-    bool found = !triangles_.empty() && triangles_.nearest(ray, hit);
-    if (!others_.empty()) {
-      Ray rest = ray;
-      if (found) rest.maximum = hit.distance;
-      const Inverse inverse(ray);
-      for (const Other& other : others_)
-        if (inverse.meets(other.bounds, rest.maximum) && other.object->intersect(rest, hit)) {
-          rest.maximum = hit.distance;
-          found = true;
-        }
-    }
+    if (others_.empty()) return triangles_.nearest(ray, hit);
+    bool found = triangles_.nearest(ray, hit);
+    Ray rest = ray;
+    if (found) rest.maximum = hit.distance;
+    const Inverse inverse(ray);
+    for (const Other& other : others_)
+      if (inverse.meets(other.bounds, rest.maximum) && other.object->intersect(rest, hit)) {
+        rest.maximum = hit.distance;
+        found = true;
+      }
     return found;
   }
 
@@ -39,12 +38,11 @@ class BruteForceScene final : public Scene {
   }
 
   bool any(const Ray& ray) const override {
-    if (!triangles_.empty() && triangles_.any(ray)) return true;
-    if (!others_.empty()) {
-      const Inverse inverse(ray);
-      for (const Other& other : others_)
-        if (inverse.meets(other.bounds, ray.maximum) && other.object->occludes(ray)) return true;
-    }
+    if (others_.empty()) return triangles_.any(ray);
+    if (triangles_.any(ray)) return true;
+    const Inverse inverse(ray);
+    for (const Other& other : others_)
+      if (inverse.meets(other.bounds, ray.maximum) && other.object->occludes(ray)) return true;
     return false;
   }
 

@@ -16,6 +16,9 @@ using Floats = float __attribute__((vector_size(lanes * sizeof(float))));
 /// Lane i of a comparison is bit i.
 using LaneBits = unsigned;
 
+/// The same number in all lanes. (Floats{} + x would add, or minus zero would change.)
+inline Floats spread(float x) { return Floats{x, x, x, x, x, x, x, x}; }
+
 #if defined(__AVX__)
 
 inline __m256 raw(Floats a) { return std::bit_cast<__m256>(a); }

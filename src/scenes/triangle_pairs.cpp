@@ -7,27 +7,34 @@
 namespace etendue {
 namespace {
 
-using Ints = std::int32_t __attribute__((vector_size(lanes * sizeof(std::int32_t))));
-
-inline bool any_of(const Ints& mask) {
+// What a comparison gives for all lanes.
+#if defined(__AVX512VL__)
+using Mask = __mmask8;
+inline Mask below(const Floats& a, const Floats& b) { return _mm256_cmp_ps_mask(raw(a), raw(b), _CMP_LT_OQ); }
+inline Mask and_at_most(Mask m, const Floats& a, const Floats& b) {
+  return _mm256_mask_cmp_ps_mask(m, raw(a), raw(b), _CMP_LE_OQ);
+}
+inline Floats choose(Mask m, const Floats& yes, const Floats& no) {
+  return lanes_of(_mm256_mask_blend_ps(m, raw(no), raw(yes)));
+}
+inline bool any_of(Mask m) { return m != 0; }
+inline bool in(Mask m, size_t lane) { return (m >> lane & 1) != 0; }
+#else
+using Mask = std::int32_t __attribute__((vector_size(lanes * sizeof(std::int32_t))));
+inline Mask below(const Floats& a, const Floats& b) { return a < b; }
+inline Mask and_at_most(const Mask& m, const Floats& a, const Floats& b) { return m & (a <= b); }
+inline Floats choose(const Mask& m, const Floats& yes, const Floats& no) { return m ? yes : no; }
+inline bool in(const Mask& m, size_t lane) { return m[lane] != 0; }
+inline bool any_of(const Mask& m) {
 #if defined(__AVX__)
-  return _mm256_movemask_ps(std::bit_cast<__m256>(mask)) != 0;
+  return _mm256_movemask_ps(std::bit_cast<__m256>(m)) != 0;
 #else
   std::int32_t all = 0;
-  for (int i = 0; i < lanes; ++i) all |= mask[i];
+  for (int i = 0; i < lanes; ++i) all |= m[i];
   return all != 0;
 #endif
 }
-
-/// 1/x to about 2e-7: a division of all lanes would take as long as the rest of the test.
-inline Floats reciprocal(const Floats& x) {
-#if defined(__AVX512VL__)
-  const Floats y = lanes_of(_mm256_rcp14_ps(raw(x)));
-  return y * (2 - x * y);  // one step of Newton's method
-#else
-  return 1 / x;
 #endif
-}
 
 /// The lane of the smallest value, the first of several.
 inline int lowest_lane(const Floats& x) {
@@ -49,36 +56,39 @@ inline int lowest_lane(const Floats& x) {
 struct WideRay {
   Floats ox, oy, oz, dx, dy, dz;
   explicit WideRay(const Ray& r)
-      : ox(Floats{} + r.origin.x),
-        oy(Floats{} + r.origin.y),
-        oz(Floats{} + r.origin.z),
-        dx(Floats{} + r.direction.x),
-        dy(Floats{} + r.direction.y),
-        dz(Floats{} + r.direction.z) {}
+      : ox(spread(r.origin.x)),
+        oy(spread(r.origin.y)),
+        oz(spread(r.origin.z)),
+        dx(spread(r.direction.x)),
+        dy(spread(r.direction.y)),
+        dz(spread(r.direction.z)) {}
 };
 
-// Moeller & Trumbore 1997, with the triangle's normal, as in objects/triangle_test.h. A point of the plane is A + u a + v b with
-//     t = N.C / N.D,  u = b.R / N.D,  v = -a.R / N.D,   C = A - O,  R = C x D.
-// Where u is negative, beyond the line AC, it is A + x b + y c with (b x c = k N, and the same formulas)
-//     x = c.R / (k N.D),  y = -b.R / (k N.D) = -u / k.
-// Triangles are taken a little wider than they are: by what the weights may be off, so that no ray slips between two that share
-// an edge. The coordinates of C, R and the edges round by half a unit in the last place each, which makes an error of about
-// 2 eps |C| |D| |e| / (N.D) of a weight: bounded where |C| is no more than the scene's diameter and the cosine no less than an
-// eighth. Two triangles of a pair are told apart by one sign and need nothing between them.
-/// Returns which are hit with t in (0, limit); x and y are the weights of B and C, or of C and D where `first` is false.
-inline Ints test(const TrianglePairs::Block& s, const WideRay& r, const Floats& limit, Floats& t, Floats& x, Floats& y,
-                 Ints& first) {
+/// Where rays meet the planes: at t, at A + u a + v b, and at A + x b + y c with y = -u / k.
+struct Met {
+  Floats t, u, v, x;
+};
+
+// The ray meets the plane at t = N.C / N.D with C = A - O, at Q = t D - C from A. With g_a and g_b the vectors of the plane for
+// which g_a.a = g_b.b = 1 and g_a.b = g_b.a = 0, that is A + u a + v b for u = g_a.Q and v = g_b.Q. It is also A + x b + y c
+// with x = h.Q (h.b = 1, h.c = 0) and y = -u / k, since a is -k c and something along b. The quadrilateral is convex: inside it
+// u and y may have any sign, v and x not, and neither u + v nor x + y exceeds 1. (Moeller & Trumbore 1997 solve for the same
+// with less stored and more to do; here what counts is how long one ray takes, which the next segment of its path waits for.)
+//
+// The shape is taken a little wider than it is: by what the weights may be off, so that no ray slips between two that share an
+// edge. The coordinates of C and Q and those of the vectors g round by half a unit in the last place each, which makes an error
+// of about 2 eps |C| |g| / cos of a weight: bounded where |C| is no more than the scene's diameter and the cosine no less than
+// an eighth. The two triangles of a pair have nothing between them.
+/// Returns which are hit with t > 0.
+inline Mask test(const TrianglePairs::Block& s, const WideRay& r, Met& m) {
   const Floats cx = s.vx - r.ox, cy = s.vy - r.oy, cz = s.vz - r.oz;
-  const Floats rx = cy * r.dz - cz * r.dy, ry = cz * r.dx - cx * r.dz, rz = cx * r.dy - cy * r.dx;
-  const Floats inverse = reciprocal(s.nx * r.dx + s.ny * r.dy + s.nz * r.dz);
-  t = (s.nx * cx + s.ny * cy + s.nz * cz) * inverse;
-  const Floats u = (rx * s.bx + ry * s.by + rz * s.bz) * inverse;
-  first = u >= s.side;
-  const Floats v = -(rx * s.ax + ry * s.ay + rz * s.az) * inverse, beyond = (rx * s.cx + ry * s.cy + rz * s.cz) * inverse;
-  x = first ? u : beyond;
-  y = first ? v : u * s.turn;
-  const Floats outer = first ? y : x;  // the other is known to be positive, or as good as that
-  return (outer >= s.lowest) & (x + y <= s.most) & (t > 0) & (t < limit);
+  m.t = (s.nx * cx + s.ny * cy + s.nz * cz) / (s.nx * r.dx + s.ny * r.dy + s.nz * r.dz);
+  const Floats qx = m.t * r.dx - cx, qy = m.t * r.dy - cy, qz = m.t * r.dz - cz;
+  m.u = s.ax * qx + s.ay * qy + s.az * qz;
+  m.v = s.bx * qx + s.by * qy + s.bz * qz;
+  m.x = s.cx * qx + s.cy * qy + s.cz * qz;
+  const Floats least = smaller(m.v, m.x), greatest = larger(m.u + m.v, m.x + m.u * s.turn);
+  return and_at_most(and_at_most(below(Floats{}, m.t), s.lowest, least), greatest, s.most);
 }
 
 /// Which of `corners` is at p; -1: none.
@@ -94,18 +104,24 @@ struct Double3 {
 Double3 difference(const Point3& a, const Point3& b) {
   return {double(a.x) - double(b.x), double(a.y) - double(b.y), double(a.z) - double(b.z)};
 }
-Double3 cross(const Double3& a, const Double3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+Double3 cross(const Double3& a, const Double3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 double dot(const Double3& a, const Double3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Double3 scaled(const Double3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 double length(const Double3& a) { return std::sqrt(dot(a, a)); }
 
-/// Whether (A, B, C) and (A, C, D) may be tested as a pair. What they are off a common plane must count for nothing beside the
-/// rounding of a point's coordinates, which a ray that leaves the surface allows for.
-bool in_one_plane(const std::array<Point3, 4>& p) {
+/// Whether (A, B, C) and (A, C, D) may be tested as a pair: they make a convex quadrilateral. What they are off a common plane
+/// must count for nothing beside the rounding of a point's coordinates, which a ray that leaves the surface allows for.
+bool make_a_pair(const std::array<Point3, 4>& p) {
   const Double3 a = difference(p[1], p[0]), b = difference(p[2], p[0]), c = difference(p[3], p[0]);
   const Double3 n = cross(a, b), m = cross(b, c);
   if (!(dot(n, m) > 0)) return false;
+  const Double3 edge = difference(p[2], p[1]), other = difference(p[3], p[2]);
+  if (!(dot(cross(edge, other), n) > 0 && dot(cross(a, c), n) > 0)) return false;  // not convex
   double furthest = 0;
-  for (const Point3& q : p) furthest = std::max({furthest, std::abs(double(q.x)), std::abs(double(q.y)), std::abs(double(q.z))});
+  for (const Point3& q : p)
+    furthest = std::max({furthest, std::abs(double(q.x)), std::abs(double(q.y)), std::abs(double(q.z))});
   const double allowed = 0x1p-28 * furthest;
   return std::abs(dot(n, c)) <= allowed * length(n) && std::abs(dot(m, a)) <= allowed * length(m);
 }
@@ -139,7 +155,7 @@ void TrianglePairs::add(const SceneObject& object, const TriangleView& view, flo
         if (its_a < 0 || its_c < 0 || its_a == its_c) continue;
         const int its_d = 3 - its_a - its_c;
         const std::array corners{mine[size_t(a)], mine[size_t(b)], mine[size_t(c)], its[size_t(its_d)]};
-        if (!in_one_plane(corners)) continue;
+        if (!make_a_pair(corners)) continue;
         // Which weight a corner of theirs has: 0 for A, then 1 and 2.
         const auto mine_is = [&](int corner) { return std::uint8_t(corner == a ? 0 : corner == b ? 1 : 2); };
         const auto its_is = [&](int corner) { return std::uint8_t(corner == its_a ? 0 : corner == its_c ? 1 : 2); };
@@ -156,7 +172,8 @@ void TrianglePairs::add_lane(const SceneObject& object, const std::array<Point3,
                              const std::array<Part, 2>& parts, float diameter) {
   const size_t lane = slots_.size() % lanes;
   if (lane == 0) blocks_.emplace_back();
-  slots_.push_back({&object, parts});
+  const bool straight = parts[0].second == 1 && parts[0].third == 2 && parts[1].second == 1 && parts[1].third == 2;
+  slots_.push_back({&object, parts, !pair, straight});
   Block& s = blocks_.back();
   const Double3 a = difference(p[1], p[0]), b = difference(p[2], p[0]), c = difference(p[3], p[0]), n = cross(a, b);
   const double area = length(n), second = length(cross(b, c)), k = pair ? second / area : 1;
@@ -166,81 +183,91 @@ void TrianglePairs::add_lane(const SceneObject& object, const std::array<Point3,
     z[lane] = float(v.z);
   };
   put(s.vx, s.vy, s.vz, {p[0].x, p[0].y, p[0].z});
-  put(s.ax, s.ay, s.az, a);
-  put(s.bx, s.by, s.bz, b);
-  put(s.cx, s.cy, s.cz, {c.x / k, c.y / k, c.z / k});
+  const Double3 g_a = scaled(cross(b, n), 1 / dot(n, n)), g_b = scaled(cross(n, a), 1 / dot(n, n));
+  // h = c x m / m.m with m = b x c = k n, and nothing for one alone.
+  const Double3 h = pair ? scaled(cross(c, n), 1 / (k * dot(n, n))) : Double3{};
+  put(s.ax, s.ay, s.az, g_a);
+  put(s.bx, s.by, s.bz, g_b);
+  put(s.cx, s.cy, s.cz, h);
   put(s.nx, s.ny, s.nz, n);
   constexpr double greatest = 1e-4;  // of slivers
-  const double edge = std::max(std::max(length(a), length(b)) / area, pair ? std::max(length(b), length(c)) / second : 0);
-  const float slack = float(std::min(double(rounding_bound(16)) * diameter * edge, greatest));
+  const double steepest = std::max({length(g_a), length(g_b), length(h), length(g_a) / k});
+  const float slack = float(std::min(double(rounding_bound(16)) * diameter * steepest, greatest));
   s.lowest[lane] = -slack;
   s.most[lane] = 1 + slack;
-  // One alone has nothing beyond AC but its slack: y becomes far too large there.
-  s.side[lane] = pair ? 0 : -slack;
-  s.turn[lane] = pair ? float(-1 / k) : -1e30f;
+  // One alone ends at AC, where u = 0: there x + y exceeds what it may, once u is below its slack.
+  s.turn[lane] = pair ? float(-1 / k) : -(1 + slack) / std::max(slack, 1e-12f);
 }
 
-inline void TrianglePairs::set(Hit& hit, size_t block, size_t lane, int part, float t, float x, float y) const {
+inline void TrianglePairs::set(Hit& hit, size_t block, size_t lane, float t, float u, float v, float x) const {
   const Slot& slot = slots_[block * lanes + lane];
-  const Part& triangle = slot.parts[size_t(part)];
-  const float weights[3] = {1 - x - y, x, y};
+  // Which of two triangles is met cannot be guessed: no branch hangs on it.
+  const float beyond = u * blocks_[block].turn[lane];
+  const bool first = (u >= 0) | slot.alone;
+  const float w = first ? u : x, y = first ? v : beyond;
+  const Part& triangle = slot.parts[size_t(!first)];
   hit.distance = t;
   hit.object = slot.object;
   hit.primitive = triangle.primitive;
-  hit.u = weights[triangle.second];
-  hit.v = weights[triangle.third];
+  hit.u = w;
+  hit.v = y;
   hit.depth = 0;
+  if (!slot.straight) [[unlikely]] {
+    const float weights[3] = {1 - w - y, w, y};
+    hit.u = weights[triangle.second];
+    hit.v = weights[triangle.third];
+  }
 }
 
 bool TrianglePairs::nearest(const Ray& ray, Hit& hit) const {
   const WideRay wide(ray);
-  Floats best = Floats{} + ray.maximum, best_x{}, best_y{};
-  Ints where = Ints{} - 1;
-  std::int32_t number = 0;  // twice the block's, and one more for the second triangle
+  Floats best = spread(ray.maximum), best_u{}, best_v{}, best_x{}, where = spread(std::bit_cast<float>(-1));
+  std::int32_t number = 0;  // of the block, kept as the bits of a float
   for (const Block& block : blocks_) {
-    Floats t, x, y;
-    Ints first;
-    const Ints mask = test(block, wide, best, t, x, y, first);
-    best = mask ? t : best;
-    best_x = mask ? x : best_x;
-    best_y = mask ? y : best_y;
-    where = mask ? (Ints{} + (number + 1)) + first : where;  // true is -1
-    number += 2;
+    Met m;
+    // What one block waits for of the one before it is one minimum.
+    const Floats reach = choose(test(block, wide, m), m.t, spread(infinity));
+    const Mask closer = below(reach, best);
+    best = smaller(reach, best);
+    best_u = choose(closer, m.u, best_u);
+    best_v = choose(closer, m.v, best_v);
+    best_x = choose(closer, m.x, best_x);
+    where = choose(closer, spread(std::bit_cast<float>(number++)), where);
   }
   const int lane = lowest_lane(best);
-  const std::int32_t found = where[lane];
+  const auto found = std::bit_cast<std::int32_t>(where[lane]);
   if (found < 0) return false;
-  set(hit, size_t(found) / 2, size_t(lane), found % 2, best[lane], best_x[lane], best_y[lane]);
+  set(hit, size_t(found), size_t(lane), best[lane], best_u[lane], best_v[lane], best_x[lane]);
   return true;
 }
 
 bool TrianglePairs::any(const Ray& ray) const {
   const WideRay wide(ray);
-  const Floats limit = Floats{} + ray.maximum;
-  // A few blocks at a time without a branch, which would be guessed wrongly too often.
+  const Floats limit = spread(ray.maximum);
+  // A few blocks at a time, and all where they are few, without a branch, which would be guessed wrongly too often.
   constexpr size_t group = 8;
-  for (size_t i = 0; i < blocks_.size(); i += group) {
-    Ints hit{};
-    for (size_t k = i; k < std::min(i + group, blocks_.size()); ++k) {
-      Floats t, x, y;
-      Ints first;
-      hit |= test(blocks_[k], wide, limit, t, x, y, first);
+  for (size_t i = 0;; i += group) {
+    Mask hit{};
+    const size_t end = std::min(i + group, blocks_.size());
+    for (size_t k = i; k < end; ++k) {
+      Met m;
+      const Mask met = test(blocks_[k], wide, m);
+      hit |= met & below(m.t, limit);
     }
-    if (any_of(hit)) return true;
+    if (end == blocks_.size() || any_of(hit)) return any_of(hit);
   }
-  return false;
 }
 
 void TrianglePairs::all(const Ray& ray, HitList& list) const {
   const WideRay wide(ray);
   for (size_t i = 0; i < blocks_.size(); ++i) {
-    Floats t, x, y;
-    Ints first;
-    const Ints mask = test(blocks_[i], wide, Floats{} + ray.maximum, t, x, y, first);
+    Met m;
+    Mask mask = test(blocks_[i], wide, m);
+    mask &= below(m.t, spread(ray.maximum));
     for (size_t lane = 0; lane < size_t(lanes) && any_of(mask); ++lane) {
-      if (!mask[lane]) continue;
+      if (!in(mask, lane)) continue;
       Hit hit;
-      set(hit, i, lane, first[lane] ? 0 : 1, t[lane], x[lane], y[lane]);
+      set(hit, i, lane, m.t[lane], m.u[lane], m.v[lane], m.x[lane]);
       list.add(hit);
     }
   }
