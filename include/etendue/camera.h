@@ -47,6 +47,8 @@ class Camera : public Component {
   /// The ray that brings light to a film point through a lens point given by `lens` (two uniform numbers). Its weight
   /// is 1: a pixel's value is the mean radiance of its rays. The ray's cone covers a pixel.
   virtual Ray ray(Point2 film, Point2 lens, float time) const = 0;
+  /// Whether `ray` looks at its lens point; cameras that do not may say so, which saves drawing two numbers.
+  virtual bool has_lens() const { return true; }
   /// The film point a ray from the scene ends at, if it meets lens and film; the ray is given as one the camera could
   /// have sent (from the lens outward).
   virtual std::optional<Point2> film_point(const Ray&) const = 0;

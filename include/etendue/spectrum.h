@@ -26,7 +26,7 @@ using IntLanes = std::int32_t __attribute__((vector_size(spectrum_size * sizeof(
 class Spectrum {
  public:
   constexpr Spectrum() : v_{} {}
-  constexpr Spectrum(float all) : v_(detail::Lanes{} + all) {}  // NOLINT: a number is a flat spectrum
+  constexpr Spectrum(float all) : v_(all - detail::Lanes{}) {}  // NOLINT: a number is a flat spectrum
   explicit constexpr Spectrum(detail::Lanes v) : v_(v) {}
 
   float operator[](int i) const { return v_[i]; }
@@ -130,6 +130,17 @@ class Wavelengths {
   Wavelengths() = default;
   Wavelengths(const std::array<float, spectrum_size>& lambda, const std::array<float, spectrum_size>& density) {
     for (int i = 0; i < spectrum_size; ++i) place(i, lambda[size_t(i)], density[size_t(i)]);
+  }
+
+  /// The same, given as vectors.
+  Wavelengths(const detail::Lanes& lambda, const detail::Lanes& density) : lambda_(lambda), density_(density) {
+    constexpr float length = wavelength_high - wavelength_low;
+    detail::Lanes x = lambda - wavelength_low;
+    x = x > 0 ? x : detail::Lanes{};  // zero for what is not a number
+    x = x < length ? x : length - detail::Lanes{};
+    const detail::IntLanes k = __builtin_convertvector(x, detail::IntLanes), last = int(length) - 1 - detail::IntLanes{};
+    index_ = k < last ? k : last;
+    fraction_ = x - __builtin_convertvector(index_, detail::Lanes);
   }
 
   float operator[](int i) const { return lambda_[i]; }

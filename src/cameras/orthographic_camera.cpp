@@ -42,6 +42,8 @@ class OrthographicCamera final : public Camera {
     return r;
   }
 
+  bool has_lens() const override { return false; }
+
   std::optional<Point2> film_point(const Ray& r) const override {
     const Pose pose = placement_.at(r.time);
     // Only the camera's own rays have exactly its direction.

@@ -69,6 +69,8 @@ class PerspectiveCamera final : public Camera {
     return r;
   }
 
+  bool has_lens() const override { return lens_radius > 0; }
+
   std::optional<Point2> film_point(const Ray& r) const override {
     const Seen seen = look(r);
     return seen.on_film ? std::optional(seen.film) : std::nullopt;

@@ -71,12 +71,13 @@ void Renderer::pass(const RenderContext& context, Pass& pass) const {
     tile.begin(context.image, area);
     static thread_local std::vector<Splat> splats;
     static thread_local std::vector<Spectrum> lengths;
+    lengths.clear();
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x)
         for (std::uint32_t n = division.first(item); n < division.last(item); ++n) {
           Features features;
           splats.clear();
-          lengths.assign(path_lengths, Spectrum());
+          if (path_lengths > 0) lengths.assign(path_lengths, Spectrum());
           const Request request{wants_features ? &features : nullptr, nullptr, lengths, &splats};
           const CameraSample s = camera_sample(context, x, y, n, arena, request);
           tile.count_path();
@@ -96,9 +97,10 @@ Renderer::CameraSample Renderer::camera_sample(const RenderContext& context, int
   CameraSample s{{float(x) + within.x, float(y) + within.y},
                  {},
                  context.wavelengths.sample(key, sampler->number(key, wavelength_dimension))};
-  const Point2 lens = sampler->pair(key, lens_dimension);
   const Camera& camera = context.camera;
-  const float time = camera.shutter_time(sampler->number(key, time_dimension));
+  const Point2 lens = camera.has_lens() ? sampler->pair(key, lens_dimension) : Point2{};
+  const bool still = !(camera.shutter_close > camera.shutter_open);
+  const float time = still ? camera.shutter_open : camera.shutter_time(sampler->number(key, time_dimension));
   random.jump(path_dimension);
 
   SampleContext sample{s.wavelengths, random, arena, request.features, record, request.lengths, request.splats};

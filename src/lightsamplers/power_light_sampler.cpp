@@ -18,11 +18,14 @@ class PowerLightSampler final : public LightSampler {
             range(0, 1));
   }
 
-  void build(const Scene& scene) override { table_.build(scene.luminaires(), luminaire_powers(scene.luminaires())); }
+  void build(const Scene& scene) override {
+    table_.build(scene.luminaires(), luminaire_powers(scene.luminaires()));
+    only_ = choose(0);
+  }
 
   // P = uniform / n + (1 - uniform) P_power.
   LightChoice choose(const Point3&, const Normal3&, float u) const override {
-    if (count() < 2) return choose(u);
+    if (count() < 2) return only_;
     const SceneObject* luminaire = nullptr;
     if (u < uniform) {
       const size_t i = size_t(u / uniform * float(count()));
@@ -46,6 +49,7 @@ class PowerLightSampler final : public LightSampler {
   float mixed(float by_power) const { return uniform / float(count()) + (1 - uniform) * by_power; }
 
   PowerTable table_;
+  LightChoice only_;  // of one luminaire
 };
 
 const Register<PowerLightSampler> registered;

@@ -138,9 +138,15 @@ inline void TriangleObject::fill_at(std::uint32_t primitive, float u, float v, f
       moving ? stored_corners(primitive, now) : Corners{{mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]}};
   const Point3& p0 = corners.p[0];
   const Vector3 e1 = corners.p[1] - p0, e2 = corners.p[2] - p0;
-  const Plane plane = planes_.empty() ? plane_of(p0, e1, e2) : planes_[primitive];
-  p.normal = plane.normal;
-  p.error = plane.error;
+  if (!planes_.empty()) {
+    const Plane& plane = planes_[primitive];
+    p.normal = plane.normal;
+    p.error = plane.error;
+  } else {
+    const Plane plane = plane_of(p0, e1, e2);
+    p.normal = plane.normal;
+    p.error = plane.error;
+  }
   if (moving) p.error += motion_error(primitive, now, p.normal);
   p.position = p0 + (u * e1 + v * e2);
 

@@ -26,7 +26,7 @@ struct BlockHit {
     met = inside(weights);
     if (!met) return;
     t = plane_distance(ray, block);
-    met &= less(Floats{}, t) & less(t, Floats{} + limit);
+    met &= less(Floats{}, t) & less(t, spread(limit));
   }
   void fill(int lane, Hit& hit) const {
     const float scale = 1 / (weights.a[lane] + weights.b[lane] + weights.c[lane]);

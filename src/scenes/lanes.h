@@ -16,8 +16,8 @@ using Floats = float __attribute__((vector_size(lanes * sizeof(float))));
 /// Lane i of a comparison is bit i.
 using LaneBits = unsigned;
 
-/// The same number in all lanes. (Floats{} + x would add, or minus zero would change.)
-inline Floats spread(float x) { return Floats{x, x, x, x, x, x, x, x}; }
+/// The same number in all lanes. (To subtract zero changes nothing, and compilers leave it out; to add it changes minus zero.)
+inline Floats spread(float x) { return x - Floats{}; }
 
 #if defined(__AVX__)
 

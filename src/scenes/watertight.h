@@ -30,14 +30,14 @@ struct ShearedRay {
     z = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
     x = z == 2 ? 0 : z + 1;
     y = x == 2 ? 0 : x + 1;
-    ox = Number{} + Scalar(ray.origin[x]);
-    oy = Number{} + Scalar(ray.origin[y]);
-    oz = Number{} + Scalar(ray.origin[z]);
-    dx = Number{} + Scalar(ray.direction[x]);
-    dy = Number{} + Scalar(ray.direction[y]);
-    dz = Number{} + Scalar(ray.direction[z]);
+    ox = Scalar(ray.origin[x]) - Number{};
+    oy = Scalar(ray.origin[y]) - Number{};
+    oz = Scalar(ray.origin[z]) - Number{};
+    dx = Scalar(ray.direction[x]) - Number{};
+    dy = Scalar(ray.direction[y]) - Number{};
+    dz = Scalar(ray.direction[z]) - Number{};
     const Scalar inverse = 1 / Scalar(ray.direction[z]);
-    inverse_z = Number{} + inverse;
+    inverse_z = inverse - Number{};
     shear_x = dx * inverse;
     shear_y = dy * inverse;
   }

@@ -50,15 +50,15 @@ class BoxTest {
     for (int k = 0; k < 3; ++k) {
       const float inverse = 1 / ray.direction[k];
       near_side_[k] = 2 * k + std::signbit(inverse);
-      origin_[k] = Floats{} + ray.origin[k];
-      near_[k] = Floats{} + inverse * (1 - margin);
-      far_[k] = Floats{} + inverse * (1 + margin);
+      origin_[k] = spread(ray.origin[k]);
+      near_[k] = spread(inverse * (1 - margin));
+      far_[k] = spread(inverse * (1 + margin));
     }
   }
 
   /// Which children are met before `limit`, and at which t their boxes are entered.
   LaneBits operator()(const WideNode& node, float limit, Floats& entry) const {
-    Floats in{}, out = Floats{} + limit;
+    Floats in{}, out = spread(limit);
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
       in = larger((node.sides[near_side_[k]] - origin_[k]) * near_[k], in);

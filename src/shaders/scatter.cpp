@@ -100,7 +100,8 @@ std::optional<ScatterSample> Scatter::sample(const Vector3& out, float choice, P
   pair.in = local.in;
   const Vector3 direction = frame_.to_world(local.in);
   pair.in_geometric = dot(normal_, direction);
-  if (!pair.sides_agree() && local.lobe != pass_through) return std::nullopt;
+  // Those of `out` agree, or nothing but passing through was asked.
+  if (!(pair.in_geometric * pair.in.z > 0) && local.lobe != pass_through) return std::nullopt;
 
   Spectrum weight = local.value / local.density;
   if (local.lobe != pass_through) {

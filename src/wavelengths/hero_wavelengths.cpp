@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "etendue/wavelength_sampler.h"
 
@@ -42,8 +43,13 @@ class HeroWavelengths final : public WavelengthSampler {
                                                    : b + std::atanh(t0 + u * (t1 - t0)) / a;
     };
     for (int i = 0; i < cells; ++i) {
-      const double from = inverse(double(i) / cells), to = inverse(double(i + 1) / cells);
-      cells_[size_t(i)] = {float(from), float(to - from), float(1 / (cells * (to - from)))};
+      const double begin = inverse(double(i) / cells), end = inverse(double(i + 1) / cells);
+      Column& column = columns_[size_t(i % distance)];
+      for (const int k : {i / distance, i / distance + spectrum_size}) {
+        column.low[k] = float(begin);
+        column.width[k] = float(end - begin);
+        column.density[k] = float(1 / (cells * (end - begin)));
+      }
     }
   }
 
@@ -53,21 +59,26 @@ class HeroWavelengths final : public WavelengthSampler {
     const float position = clamp(u, 0, one_minus_epsilon) * float(cells);
     const int cell = int(position);
     const float fraction = position - float(cell);
-    Wavelengths result;
-    for (int i = 0; i < spectrum_size; ++i) {
-      const Cell& c = cells_[size_t((cell + i * (cells / spectrum_size)) % cells)];
-      result.place(i, std::min(c.low + fraction * c.width, high), c.density);
-    }
-    return result;
+    const Column& column = columns_[size_t(cell % distance)];
+    const int first = cell / distance;
+    const detail::Lanes lambda = from(column.low, first) + fraction * from(column.width, first);
+    const detail::Lanes longest = high - detail::Lanes{};
+    return {lambda < longest ? lambda : longest, from(column.density, first)};
   }
 
  private:
-  static constexpr int cells = 1024;
-  struct Cell {
-    float low, width;  // nm
-    float density;     // 1/nm
+  static constexpr int cells = 1024, distance = cells / spectrum_size;
+  /// The cells whose wavelengths go together, in order and once more: from any of them on, the others follow in turn.
+  struct Column {
+    float low[2 * spectrum_size], width[2 * spectrum_size];  // nm
+    float density[2 * spectrum_size];                        // 1/nm
   };
-  std::array<Cell, size_t(cells)> cells_{};
+  static detail::Lanes from(const float* values, int first) {
+    detail::Lanes lanes;
+    std::memcpy(&lanes, values + first, sizeof lanes);
+    return lanes;
+  }
+  std::array<Column, size_t(distance)> columns_{};
 };
 
 static const Register<HeroWavelengths> registered;
