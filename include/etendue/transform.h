@@ -86,7 +86,7 @@ class AnimatedTransform {
   /// First b, then this. Each goes on between its own keys as it does alone; the product's are at the times of both.
   AnimatedTransform operator*(const AnimatedTransform& b) const;
 
-  bool animated() const { return keys_.size() > 1; }
+  bool animated() const { return keys_.end() > keys_.begin() + 1; }  // size() would divide
   /// The transform of the first key: the only one when not animated.
   const Transform& still() const { return keys_.front().transform; }
   Transform at(float time) const;

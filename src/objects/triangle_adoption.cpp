@@ -39,6 +39,12 @@ void TriangleObject::adopt(std::shared_ptr<const MeshData> mesh, MeshMotion moti
     mesh_.normals = motion_.normals;
   }
   if (!transform.animated() && !transform.still().identity()) bake(transform.still());
+  static constexpr Point2 plain_uvs[3] = {{0, 0}, {1, 0}, {0, 1}};
+  static constexpr std::array<std::uint32_t, 3> plain_corners = {0, 1, 2};
+  const bool mapped = !mesh_.uvs.empty();
+  uvs_ = mapped ? mesh_.uvs.data() : plain_uvs;
+  uv_corners_ = mapped ? mesh_.triangles.data() : &plain_corners;
+  uv_mask_ = mapped ? ~0u : 0;
   area_ = 0;
   stored_bounds_ = {};
   for (size_t i = 0; i < mesh_.triangles.size(); ++i) {

@@ -164,12 +164,9 @@ inline void TriangleObject::fill_at(std::uint32_t primitive, float u, float v, f
     p.shading_normal = known ? Normal3((1 / std::sqrt(ss)) * s) : p.normal;
     if (dot(p.shading_normal, p.normal) < 0) p.shading_normal = -p.shading_normal;
   }
-  if (mesh_.uvs.empty()) {
-    p.uv = {u, v};
-  } else {
-    const Point2 &a0 = mesh_.uvs[t[0]], &a1 = mesh_.uvs[t[1]], &a2 = mesh_.uvs[t[2]];
-    p.uv = {w * a0.x + u * a1.x + v * a2.x, w * a0.y + u * a1.y + v * a2.y};
-  }
+  const auto& corner = uv_corners_[primitive & uv_mask_];
+  const Point2 &a0 = uvs_[corner[0]], &a1 = uvs_[corner[1]], &a2 = uvs_[corner[2]];
+  p.uv = {w * a0.x + u * a1.x + v * a2.x, w * a0.y + u * a1.y + v * a2.y};
   p.dpdu = {};
   p.dpdv = {};
   p.time = time;

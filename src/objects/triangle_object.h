@@ -114,6 +114,11 @@ class TriangleObject : public SceneObject, public NumberedParts {
     std::span<const Normal3> normals;
     std::span<const Point2> uvs;
   } mesh_;
+  // Where the uvs of a triangle are, those of (u, v) themselves when there are none: which objects have uvs and which do not,
+  // a branch could not guess.
+  const Point2* uvs_ = nullptr;
+  const std::array<std::uint32_t, 3>* uv_corners_ = nullptr;
+  std::uint32_t uv_mask_ = 0;
   std::shared_ptr<const MeshData> data_;  // as they were adopted
   MeshData changed_;                      // what a still transform made of them
   MeshMotion motion_;
