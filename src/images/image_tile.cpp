@@ -57,7 +57,7 @@ bool regular(const Spectrum& s) {
 }
 
 /// The colour of a sample; false with the kind when it is bad.
-bool to_color(const Spectrum& value, const Wavelengths& wavelengths, Xyz& color, BadKind& kind) {
+[[gnu::always_inline]] inline bool to_color(const Spectrum& value, const Wavelengths& wavelengths, Xyz& color, BadKind& kind) {
   if (regular(value)) [[likely]] {
     color = to_xyz(value, wavelengths);
   } else {

@@ -156,7 +156,7 @@ class Rectangle final : public SceneObject {
     }
     /// Whether sampling by solid angle may pay. `origin` becomes the corner as seen from the point, along the edges and
     /// the normal (for perpendicular edges).
-    bool near(const Point3& from, Vector3& origin) const {
+    [[gnu::always_inline]] inline bool near(const Point3& from, Vector3& origin) const {
       const Vector3 c = corner - from;
       // From most places it is far, which the distance of its middle shows with less to compute.
       if (length_squared(c + half_diagonal) > far_squared) return false;
@@ -217,7 +217,7 @@ class Rectangle final : public SceneObject {
     to.v = second ? rest : lower;
   }
 
-  void fill(const World& w, Point2 uv, float time, SurfacePoint& p) const {
+  [[gnu::always_inline]] inline void fill(const World& w, Point2 uv, float time, SurfacePoint& p) const {
     p.position = w.corner + (uv.x * w.edge_u + uv.y * w.edge_v);
     p.error = w.error;
     p.normal = w.normal;
@@ -232,7 +232,7 @@ class Rectangle final : public SceneObject {
     else
       fill_object_coordinates(transform.at(time), p);
   }
-  void fill_part(const World& w, Point2 uv, float time, SurfacePoint& p) const {
+  [[gnu::always_inline]] inline void fill_part(const World& w, Point2 uv, float time, SurfacePoint& p) const {
     fill(w, uv, time, p);
     set_part(uv, p);
   }

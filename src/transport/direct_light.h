@@ -24,10 +24,12 @@ struct DirectLight {
 /// `scattering(in)` returns s [1/sr] and that density; 0 as density: that strategy is not used, w = 1. `choice` picks the
 /// luminaire, `u` the point on it; `leave(sample, ray)` makes the ray from the point to the sampled one.
 /// All but V is computed here; false: nothing can come, and `direct` is not to be looked at.
+// Inlined whatever its size: a twentieth of the time of simple scenes.
 template <class Scattering, class Leave>
-bool propose_light(const LightSampler& lights, const Point3& from, const Normal3& normal, float time,
-                   const Wavelengths& wavelengths, float choice, Point2 u, Heuristic heuristic, DirectLight& direct,
-                   const Scattering& scattering, const Leave& leave) {
+[[gnu::always_inline]] inline bool propose_light(const LightSampler& lights, const Point3& from, const Normal3& normal,
+                                                 float time, const Wavelengths& wavelengths, float choice, Point2 u,
+                                                 Heuristic heuristic, DirectLight& direct, const Scattering& scattering,
+                                                 const Leave& leave) {
   const LightChoice light = lights.choose(from, normal, choice);
   if (!light.luminaire) return false;
   const SurfaceSample s = light.luminaire->sample_visible(from, u, time);
@@ -46,19 +48,20 @@ bool propose_light(const LightSampler& lights, const Point3& from, const Normal3
 
 /// On a surface; `out` is the direction the path came from. `shader_sampling` says whether directions are also sampled by
 /// the shader.
-inline bool propose_direct_light(const LightSampler& lights, const SurfacePoint& point, const Scatter& scatter,
-                                 const Vector3& out, const Wavelengths& wavelengths, float choice, Point2 u,
-                                 Heuristic heuristic, DirectLight& direct, bool shader_sampling = true) {
+[[gnu::always_inline]] inline bool propose_direct_light(const LightSampler& lights, const SurfacePoint& point,
+                                                        const Scatter& scatter, const Vector3& out,
+                                                        const Wavelengths& wavelengths, float choice, Point2 u,
+                                                        Heuristic heuristic, DirectLight& direct, bool shader_sampling = true) {
   return propose_light(
       lights, point.position, point.normal, point.time, wavelengths, choice, u, heuristic, direct,
-      [&](const Vector3& in) {
+      [&](const Vector3& in) __attribute__((always_inline)) {
         // Of all lobes, as the path will be continued by: the density is that of choosing this direction among them.
         ScatterValue f = scatter.value_and_density(out, in, Transport::radiance);
         f.value *= scatter.cosine(in);
         if (!shader_sampling) f.density = 0;
         return f;
       },
-      [&](const SurfaceSample& s, Ray& ray) {
+      [&](const SurfaceSample& s, Ray& ray) __attribute__((always_inline)) {
         if (s.infinite)
           point.leave(s.direction, ray);
         else
