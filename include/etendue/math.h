@@ -7,6 +7,10 @@
 #include <cstdint>
 #include <limits>
 
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
 namespace etendue {
 
 inline constexpr float pi = 3.14159265358979323846f;
@@ -24,6 +28,20 @@ constexpr float clamp(float x, float low, float high) { return x < low ? low : (
 
 /// sqrt(max(x, 0)): for quantities that are negative only by rounding.
 inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
+
+/// 1/sqrt(x) to about two units in the last place. The processor's estimate and a step of Newton's method take little more than
+/// half the time of a root and a division one after the other.
+inline float inverse_sqrt(float x) {
+#if defined(__AVX512F__)
+  if (!(x > 1e-30f && x < 1e30f)) [[unlikely]]  // zero and others that the estimate's square is not a number for
+    return 1 / std::sqrt(x);
+  const __m128 wide = _mm_set_ss(x);
+  const float y = _mm_cvtss_f32(_mm_rsqrt14_ss(wide, wide));
+  return y * (1.5f - (0.5f * x) * (y * y));
+#else
+  return 1 / std::sqrt(x);
+#endif
+}
 
 inline float safe_acos(float x) { return std::acos(clamp(x, -1, 1)); }
 

@@ -88,9 +88,9 @@ struct SurfacePoint {
   /// Lets a ray end just before a point: on its side of that surface, beyond the error.
   static void end_at(const SurfacePoint& p, Ray& ray) {
     const Vector3 d = p.exit(ray.origin - p.position) - ray.origin;
-    const float reach = length(d);
-    ray.direction = d / reach;
-    ray.maximum = reach * almost_there;
+    const float squared = length_squared(d), inverse = inverse_sqrt(squared);
+    ray.direction = inverse * d;
+    ray.maximum = squared * inverse * almost_there;
   }
   /// What part of the way to a point is free of it for sure: intersections are exact to a few units in the last place of
   /// the distance.

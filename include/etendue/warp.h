@@ -25,7 +25,9 @@ inline Point2 disc(Point2 u) {
 /// A unit direction with z >= 0, with density cos(theta)/pi [1/sr].
 inline Vector3 cosine_hemisphere(Point2 u) {
   const Point2 d = disc(u);
-  return {d.x, d.y, safe_sqrt(1 - d.x * d.x - d.y * d.y)};
+  // The point's distance from the centre is known before the point is.
+  const float r = std::max(std::abs(2 * u.x - 1), std::abs(2 * u.y - 1));
+  return {d.x, d.y, safe_sqrt((1 - r) * (1 + r))};
 }
 inline float cosine_hemisphere_density(float cosine) { return std::max(cosine, 0.0f) * inverse_pi; }
 

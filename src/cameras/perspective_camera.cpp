@@ -62,7 +62,7 @@ class PerspectiveCamera final : public Camera {
       r.origin = r.origin + pose.to_world(offset);
       direction = direction - offset / focus_;
     }
-    const float inverse_length = 1 / length(direction);
+    const float inverse_length = inverse_sqrt(length_squared(direction));
     r.direction = pose.to_world(inverse_length * direction);
     r.time = time;
     r.spread = pixel_ * inverse_length;

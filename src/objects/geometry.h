@@ -98,8 +98,9 @@ inline void complete_by_area(SurfaceSample& s, const Point3& from, float area_de
   }
   // cosine / d^2 of the angle with the normal, with nothing in it that waits for the square root.
   const float across = std::abs(dot(s.point.normal, to));
-  s.distance = std::sqrt(d2);
-  s.direction = to / s.distance;
+  const float inverse = inverse_sqrt(d2);
+  s.distance = d2 * inverse;
+  s.direction = inverse * to;
   s.density = across > 0 ? area_density * (d2 / across) * s.distance : 0;
 }
 

@@ -134,10 +134,11 @@ template <bool moving>
 inline void TriangleObject::fill_at(std::uint32_t primitive, float u, float v, float time, SurfacePoint& p) const {
   const auto& t = mesh_.triangles[primitive];
   const Moment now = moving ? moment(time) : Moment{};
-  const Corners corners =
-      moving ? stored_corners(primitive, now) : Corners{{mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]}};
-  const Point3& p0 = corners.p[0];
-  const Vector3 e1 = corners.p[1] - p0, e2 = corners.p[2] - p0;
+  Corners corners;
+  if (moving) corners = stored_corners(primitive, now);
+  const Point3& p0 = moving ? corners.p[0] : mesh_.positions[t[0]];
+  const Vector3 e1 = (moving ? corners.p[1] : mesh_.positions[t[1]]) - p0;
+  const Vector3 e2 = (moving ? corners.p[2] : mesh_.positions[t[2]]) - p0;
   if (!planes_.empty()) {
     const Plane& plane = planes_[primitive];
     p.normal = plane.normal;
