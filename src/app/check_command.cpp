@@ -56,7 +56,7 @@ class Counter {
 
 std::string amount_text(const Amount& amount) {
   constexpr double most = 1e15;
-  const std::string stored = grouped(std::uint64_t(amount.stored));
+  std::string stored = grouped(std::uint64_t(amount.stored));
   if (amount.placed == amount.stored) return stored;
   return stored + ", " + (amount.placed < most ? grouped(std::uint64_t(amount.placed)) : fmt::format("{:.1e}", amount.placed)) +
          " in all places where nested scenes stand";
