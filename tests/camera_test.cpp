@@ -52,6 +52,14 @@ TEST(Camera, FilmPointOfARayIsWhereItCameFrom) {
     }
 }
 
+TEST(Camera, SaysWhetherItsRaysLookAtTheLensPoint) {
+  for (const Case& c : cameras()) {
+    EXPECT_EQ(c.camera->has_lens(), c.lens) << c.name;
+    const Ray a = c.camera->ray({20, 30}, {0.1f, 0.2f}, 0), b = c.camera->ray({20, 30}, {0.9f, 0.6f}, 0);
+    EXPECT_EQ(a.origin == b.origin && a.direction == b.direction, !c.lens) << c.name;
+  }
+}
+
 TEST(Camera, RaysThatMissAreEmpty) {
   for (const Case& c : cameras()) {
     Ray ray = c.camera->ray({width / 2.0f, height / 2.0f}, {0.5f, 0.5f}, 0);
