@@ -171,12 +171,15 @@ TEST_F(Measured, RglAgreesWithMitsuba) {
     SurfacePoint p = test::surface_point({0, 0, 1});
     p.dpdu = {1, 0, 0};
     p.dpdv = {0, 1, 0};
-    const Scatter* scatter = shader->bind(p, test::wavelengths(), arena);
+    Wavelengths four;
+    for (int k = 0; k < spectrum_size; ++k) four.place(k, 450 + 117.5f * float(k % 4), 0.002f);
+    const Scatter* scatter = shader->bind(p, four, arena);
     for (int i = 0; i < 4; ++i) {
       const Vector3 out = normalize(pairs[i][0]), in = normalize(pairs[i][1]);
       const ScatterValue v = scatter->value_and_density(out, in);
       for (int k = 0; k < spectrum_size; ++k)
-        EXPECT_NEAR(v.value[k] * in.z, expected[anisotropic][i][k], 3e-4f * expected[anisotropic][i][k]) << i << " " << k;
+        EXPECT_NEAR(v.value[k] * in.z, expected[anisotropic][i][k % 4], 3e-4f * expected[anisotropic][i][k % 4])
+            << i << " " << k;
       EXPECT_NEAR(v.density, expected[anisotropic][i][4], 3e-4f * expected[anisotropic][i][4]) << i;
     }
   }
@@ -192,7 +195,7 @@ TEST_F(Measured, RglInRgbHasTheColour) {
   const Ref<Shader> shader = rgl(tables, true);
   const SurfacePoint p = test::surface_point({0, 0, 1});
   const Spectrum f = shader->bind(p, test::wavelengths(), arena)->evaluate({0, 0, 1}, {0.6f, 0, 0.8f});
-  EXPECT_LT(f[0], 0.4f * f[2]);  // blue, red
+  EXPECT_LT(f[0], 0.4f * f[spectrum_size / 2]);  // blue, red
 }
 
 TEST_F(Measured, MerlReproducesItsModel) {

@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, VerifyScenes,
                                            VerifyScene{"caustic_through_glass", 512}, VerifyScene{"door_ajar", 256},
                                            VerifyScene{"mis_plates", 256}, VerifyScene{"fog_with_spot", 512},
                                            VerifyScene{"nested_dielectrics", 512}, VerifyScene{"sphere_and_environment", 256},
-                                           VerifyScene{"every_rough_shader", 256}, VerifyScene{"every_mirror_shader", 256},
+                                           VerifyScene{"every_rough_shader", 256}, VerifyScene{"every_mirror_shader", 512},
                                            VerifyScene{"every_emission", 256}, VerifyScene{"every_sky", 256},
                                            VerifyScene{"nested_lamps", 192}),
                          [](const auto& each) { return std::string(each.param.name); });

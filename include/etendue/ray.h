@@ -80,13 +80,13 @@ struct SurfacePoint {
     towards(p, ray);
     return ray;
   }
-  void towards(const SurfacePoint& p, Ray& ray) const {
+  [[gnu::always_inline]] inline void towards(const SurfacePoint& p, Ray& ray) const {
     ray.origin = exit(p.position - position);
     end_at(p, ray);
     ray.time = time;
   }
   /// Lets a ray end just before a point: on its side of that surface, beyond the error.
-  static void end_at(const SurfacePoint& p, Ray& ray) {
+  [[gnu::always_inline]] static inline void end_at(const SurfacePoint& p, Ray& ray) {
     const Vector3 d = p.exit(ray.origin - p.position) - ray.origin;
     const float squared = length_squared(d), inverse = inverse_sqrt(squared);
     ray.direction = inverse * d;

@@ -11,7 +11,7 @@
 namespace etendue {
 
 /// Wavelengths per path; docs/decisions tells how the number was chosen.
-inline constexpr int spectrum_size = 4;
+inline constexpr int spectrum_size = 8;
 
 /// The range of visible light all spectral data covers [nm].
 inline constexpr float wavelength_low = 360, wavelength_high = 830;
@@ -166,6 +166,8 @@ class Wavelengths {
   float table_fraction(int i) const { return fraction_[i]; }
   const detail::IntLanes& table_indices() const { return index_; }
   const detail::Lanes& table_fractions() const { return fraction_; }
+  /// All of them [1/nm].
+  const detail::Lanes& densities() const { return density_; }
 
   void place(int i, float lambda, float density) {
     lambda_[i] = lambda;

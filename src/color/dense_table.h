@@ -34,21 +34,20 @@ class DenseTable {
   float entry(int i) const { return values_[size_t(i)]; }
 
  private:
+  using Four = float __attribute__((vector_size(16)));
+  using Eight = float __attribute__((vector_size(32)));
+
   /// The entries before and behind each wavelength. (A template, so that what is for another number of lanes is not compiled.)
   template <class Lanes>
   void entries(const Wavelengths& wavelengths, Lanes& a, Lanes& b) const {
-    if constexpr (sizeof(Lanes) == 4 * sizeof(float)) {
-      // An entry and its neighbour are one load.
-      using Pair = float __attribute__((vector_size(8)));
-      const auto pair = [&](int i) {
-        Pair p;
-        std::memcpy(&p, &values_[size_t(wavelengths.table_index(i))], sizeof p);
-        return p;
-      };
-      const Lanes low = __builtin_shufflevector(pair(0), pair(1), 0, 1, 2, 3);
-      const Lanes high = __builtin_shufflevector(pair(2), pair(3), 0, 1, 2, 3);
-      a = __builtin_shufflevector(low, high, 0, 2, 4, 6);
-      b = __builtin_shufflevector(low, high, 1, 3, 5, 7);
+    if constexpr (sizeof(Lanes) == sizeof(Four)) {
+      four_entries(wavelengths, 0, a, b);
+    } else if constexpr (sizeof(Lanes) == sizeof(Eight)) {
+      Four a0, b0, a1, b1;
+      four_entries(wavelengths, 0, a0, b0);
+      four_entries(wavelengths, 4, a1, b1);
+      a = __builtin_shufflevector(a0, a1, 0, 1, 2, 3, 4, 5, 6, 7);
+      b = __builtin_shufflevector(b0, b1, 0, 1, 2, 3, 4, 5, 6, 7);
     } else {
       for (int i = 0; i < spectrum_size; ++i) {
         const float* entry = &values_[size_t(wavelengths.table_index(i))];
@@ -56,6 +55,19 @@ class DenseTable {
         b[i] = entry[1];
       }
     }
+  }
+  void four_entries(const Wavelengths& wavelengths, int first, Four& a, Four& b) const {
+    // An entry and its neighbour are one load.
+    using Pair = float __attribute__((vector_size(8)));
+    const auto pair = [&](int i) {
+      Pair p;
+      std::memcpy(&p, &values_[size_t(wavelengths.table_index(first + i))], sizeof p);
+      return p;
+    };
+    const Four low = __builtin_shufflevector(pair(0), pair(1), 0, 1, 2, 3);
+    const Four high = __builtin_shufflevector(pair(2), pair(3), 0, 1, 2, 3);
+    a = __builtin_shufflevector(low, high, 0, 2, 4, 6);
+    b = __builtin_shufflevector(low, high, 1, 3, 5, 7);
   }
 
   std::array<float, tables::size> values_{};

@@ -9,15 +9,15 @@ Xyz to_xyz(const Spectrum& spectrum, const Wavelengths& wavelengths) {
   // X = 1/size sum_i S_i xbar(lambda_i) / (p_i integral of ybar); rows hold xbar, ybar, zbar over that integral.
   using Row = float __attribute__((vector_size(16)));
   Row sum{};
+  const detail::Lanes& densities = wavelengths.densities();
+  // A wavelength that was never placed counts for nothing.
+  const detail::Lanes weights = densities > 0 ? spectrum.lanes() / densities : detail::Lanes{};
   for (int i = 0; i < spectrum_size; ++i) {
-    const float density = wavelengths.density(i);
-    // A wavelength that was never placed counts for nothing.
-    const float weight = density > 0 ? spectrum[i] / density : 0;
     const tables::ObserverRow* row = &tables::observer_rows[size_t(wavelengths.table_index(i))];
     Row a, b;
     __builtin_memcpy(&a, row, sizeof a);
     __builtin_memcpy(&b, row + 1, sizeof b);
-    sum += (a + wavelengths.table_fraction(i) * (b - a)) * weight;
+    sum += (a + wavelengths.table_fraction(i) * (b - a)) * weights[i];
   }
   constexpr double scale = 1.0 / spectrum_size;
   return {scale * double(sum[0]), scale * double(sum[1]), scale * double(sum[2])};
