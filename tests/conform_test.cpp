@@ -78,6 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"WrongDirectionsEmission", "sampled directions follow the density"},
                       Fault{"WrongAreaSquare", "the area is that which lines find"},
                       Fault{"WrongVisibleSquare", "points sampled to be seen have densities of the solid angle seen"},
+                      Fault{"SecretLensCamera", "without a lens rays do not depend on the lens point"},
                       Fault{"UnboundedMap", "reflectances are in [0, 1]"},
                       Fault{"DimRenderer", "the value of a furnace is the known one"},
                       Fault{"ForgetfulFilter", "preparing leaves the members as they were written"}),

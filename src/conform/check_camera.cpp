@@ -45,6 +45,11 @@ class CameraTrial {
     trial.expect(is_finite(ray.origin) && std::abs(length(ray.direction) - 1) < 1e-4f && ray.time == time_ && ray.width >= 0 &&
                      ray.spread >= 0 && ray.width + ray.spread < infinity,
                  "rays are finite, of unit length and at the time asked for", where);
+    if (!camera_.has_lens()) {
+      const Ray other = camera_.ray(f, trial.pair(), time_);
+      trial.expect(other.origin == ray.origin && other.direction == ray.direction,
+                   "without a lens rays do not depend on the lens point", where);
+    }
     const auto back = camera_.film_point(ray);
     trial.expect(back && std::abs(back->x - f.x) < 0.02f && std::abs(back->y - f.y) < 0.02f,
                  "a ray's film point is where it came from",

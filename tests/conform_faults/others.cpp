@@ -1,5 +1,6 @@
-// Emission, objects, maps, filters and media that are wrong in one way each: what `etendue conform` must find.
+// Emission, objects, maps, filters, media and cameras that are wrong in one way each: what `etendue conform` must find.
 
+#include "etendue/camera.h"
 #include "etendue/filter.h"
 #include "etendue/object_map.h"
 #include "etendue/scene_object.h"
@@ -189,6 +190,29 @@ class WrongPhaseVolume final : public VolumeShader {
   float scattering = 1;
 };
 const Register<WrongPhaseVolume> phase;
+
+// ---- cameras -----------------------------------------------------------------------------------------------------------
+
+class SecretLensCamera final : public Camera {
+ public:
+  static void describe(Description<SecretLensCamera>& d) {
+    d.summary("Parallel rays from points beside where they should begin, by the lens point that it says it does not look at.");
+  }
+  void set_film(int, int) override {}
+  Ray ray(Point2 film, Point2 lens, float time) const override {
+    Ray r;
+    r.origin = {film.x + lens.x, film.y + lens.y, 0};
+    r.direction = {0, 0, 1};
+    r.time = time;
+    return r;
+  }
+  bool has_lens() const override { return false; }
+  std::optional<Point2> film_point(const Ray& r) const override { return Point2{r.origin.x, r.origin.y}; }
+  std::optional<LensSample> sample_lens(const Point3&, float, Point2) const override { return std::nullopt; }
+  float importance(const Ray&) const override { return 1; }
+  CameraDensity density(const Ray&) const override { return {1, 1}; }
+};
+const Register<SecretLensCamera> secret_lens;
 
 // ---- any component -----------------------------------------------------------------------------------------------------
 
