@@ -14,7 +14,7 @@ class DenseTable {
   DenseTable() = default;
   /// From a function of the wavelength [nm].
   template <class F>
-  explicit DenseTable(F&& f) {
+  explicit DenseTable(const F& f) {
     for (int i = 0; i < tables::size; ++i) values_[size_t(i)] = float(f(double(wavelength_low) + i));
   }
 
