@@ -37,7 +37,7 @@ struct Box {
 void nearest(benchmark::State& state, const char* structure) {
   const Box box(structure);
   size_t i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     Hit hit;
     benchmark::DoNotOptimize(box.job->scene->nearest(box.rays[i++ % box.rays.size()], hit));
   }
@@ -48,7 +48,7 @@ BENCHMARK_CAPTURE(nearest, brute_force, "BruteForceScene");
 void any(benchmark::State& state, const char* structure) {
   const Box box(structure);
   size_t i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     Ray ray = box.rays[i++ % box.rays.size()];
     ray.maximum = 0.3f;
     benchmark::DoNotOptimize(box.job->scene->any(ray));
@@ -60,7 +60,7 @@ BENCHMARK_CAPTURE(any, brute_force, "BruteForceScene");
 void pair(benchmark::State& state, const char* name) {
   const Ref<Sampler> sampler = ref_cast<Sampler>(Registry::instance().create(name));
   SampleStream stream(*sampler, SampleKey(1, 2, 3, 4));
-  for (auto _ : state) benchmark::DoNotOptimize(stream.next_pair());
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(stream.next_pair());
 }
 BENCHMARK_CAPTURE(pair, independent, "IndependentSampler");
 BENCHMARK_CAPTURE(pair, sobol, "SobolSampler");
@@ -72,7 +72,7 @@ Wavelengths some_wavelengths(const char* name = "HeroWavelengths") {
 void wavelengths(benchmark::State& state, const char* name) {
   const Ref<WavelengthSampler> sampler = ref_cast<WavelengthSampler>(Registry::instance().create(name));
   float u = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(sampler->sample(SampleKey(), u));
     u = u < 0.9f ? u + 0.001f : 0;
   }
@@ -82,13 +82,13 @@ BENCHMARK_CAPTURE(wavelengths, grid, "GridWavelengths");
 
 void spectrum_to_xyz(benchmark::State& state) {
   const Wavelengths w = some_wavelengths();
-  for (auto _ : state) benchmark::DoNotOptimize(to_xyz(Spectrum(0.5f), w));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(to_xyz(Spectrum(0.5f), w));
 }
 BENCHMARK(spectrum_to_xyz);
 
 void evaluate(benchmark::State& state, const Color& color) {
   const Wavelengths w = some_wavelengths();
-  for (auto _ : state) benchmark::DoNotOptimize(color->evaluate(w, ColorUse::reflectance));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(color->evaluate(w, ColorUse::reflectance));
 }
 BENCHMARK_CAPTURE(evaluate, table, table_spectrum({400, 500, 700}, {0.1f, 0.5f, 0.3f}));
 BENCHMARK_CAPTURE(evaluate, rgb, rgb_color("srgb", 0.5, 0.2, 0.1));
@@ -100,7 +100,7 @@ void path(benchmark::State& state, const char* structure) {
   const RenderContext context{*box.job->scene, *box.job->camera, *box.job->image, *box.job->wavelengths, 0};
   Arena arena;
   std::uint32_t n = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(box.job->renderer->camera_sample(context, int(n * 37 % 256), int(n * 101 % 256), n, arena));
     ++n;
   }

@@ -150,7 +150,7 @@ void scene(benchmark::State& state, size_t world, size_t structure, size_t query
   const float reach = query < 2 ? infinity : bench.scene->radius() * (query % 2 ? 0.3f : 1.6f);
   size_t i = 0;
   const double begin = thread_time();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     Ray ray = rays[i++ % rays.size()];
     ray.maximum = reach;
     Hit hit;

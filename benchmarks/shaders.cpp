@@ -121,7 +121,7 @@ template <class F>
 void repeat(benchmark::State& state, const ClassInfo& info, size_t operation, F&& f) {
   size_t i = 0;
   const double begin = thread_time();
-  for (auto _ : state) f(i++ % Bench::count);
+  for ([[maybe_unused]] auto _ : state) f(i++ % Bench::count);
   if (state.iterations() < 100) return;  // too short to tell
   auto& shortest = table.times.try_emplace(info.name, std::array{never, never, never, never}).first->second[operation];
   shortest = std::min(shortest, (thread_time() - begin) / double(state.iterations()));

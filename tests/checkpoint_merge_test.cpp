@@ -111,7 +111,7 @@ TEST_F(CheckpointTest, another_render_is_not_continued) {
 }
 
 TEST_F(CheckpointTest, files_count_by_their_contents) {
-  const std::string csv = folder.write("grey.csv", "wavelength,value\n300,0.5\n900,0.5\n");
+  folder.write("grey.csv", "wavelength,value\n300,0.5\n900,0.5\n");
   const std::string ply = folder.write("a.ply",
                                        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
                                        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"

@@ -12,7 +12,7 @@ namespace {
 
 const Wavelengths wavelengths({450, 530, 600, 650}, {1 / 470.0f, 1 / 470.0f, 1 / 470.0f, 1 / 470.0f});
 
-Ref<ImageBuffer> make_buffer(int width, int height, Ref<Filter> filter = nullptr) {
+Ref<ImageBuffer> make_buffer(int width, int height, const Ref<Filter>& filter = nullptr) {
   auto buffer = make<ImageBuffer>();
   buffer->width = width;
   buffer->height = height;

@@ -299,7 +299,7 @@ TEST(LayeredShader, DispersesEachWavelengthItsOwnWay) {
   });
   const Wavelengths w = test::wavelengths();
   for (int i = 0; i < spectrum_size; ++i) {
-    const float n = float(index->at(w[i], ColorUse::coefficient));
+    const float n = index->at(w[i], ColorUse::coefficient);
     const double inner = 1 - (1 - double(mean_fresnel_dielectric(n))) / double(n * n);
     const double t = double((1 - fresnel_dielectric(out.z, n)) * (1 - fresnel_dielectric(in.z, n)));
     EXPECT_MEAN(value[i], 0.5 / M_PI * t / (double(n * n) * (1 - 0.5 * inner)));

@@ -129,7 +129,7 @@ TEST(Formula, ErrorsSayTheirPlace) {
                         Case{"a b", 3, "b"}, Case{"3 m", 3, "units"}, Case{"[1, 2]", 1, "numbers"},
                         Case{"a + 1e60", 5, "large"}, Case{"", 1, ""}}) {
     try {
-      Formula(c.text, {"a", "b", "blue"});
+      static_cast<void>(Formula(c.text, {"a", "b", "blue"}));
       ADD_FAILURE() << c.text;
     } catch (const Error& e) {
       EXPECT_EQ(e.location.column, c.column) << c.text << ": " << e.what();

@@ -317,7 +317,7 @@ TEST(Motion, ABlurredPictureIsTheMeanOfStillOnes) {
     const Image image = job->picture();
     std::vector<double> sums(16);
     for (int y = 0; y < 16; ++y)
-      for (int x = 0; x < 16; ++x) sums[size_t(y / 4 * 4 + x / 4)] += double(image.at(x, y, 1)) / 16;
+      for (int x = 0; x < 16; ++x) sums[size_t(y / 4 * 4 + x / 4)] += image.at(x, y, 1) / 16;
     return sums;
   };
   const std::vector<double> blurred = tiles(moving_scene(0, 1, 1024), 1000);

@@ -64,6 +64,7 @@ class Process {
     const std::string in_folder = working_folder.empty() ? folder.path() : working_folder;
     id_ = fork();
     if (id_ == 0) {
+      if (out < 0 || err < 0) _exit(125);
       dup2(out, STDOUT_FILENO);
       dup2(err, STDERR_FILENO);
       if (chdir(in_folder.c_str()) != 0) _exit(125);

@@ -117,7 +117,7 @@ class CameraTrial {
     const Point2 f{width * (0.3f + 0.4f * trial.uniform()), height * (0.3f + 0.4f * trial.uniform())};
     const Point2 lens{0.5f, 0.5f};
     const Ray axis = camera_.ray(f, lens, time_),
-              other = camera_.ray({f.x + (f.x < width / 2 ? 0.25f : -0.25f) * width, f.y}, lens, time_);
+              other = camera_.ray({f.x + (2 * f.x < width ? 0.25f : -0.25f) * width, f.y}, lens, time_);
     const float away = 1 + 4 * trial.uniform(), radius = 0.6f * distance(axis(away), other(away));
     const Point3 centre = axis(away);
     const Frame frame(Normal3(-axis.direction));

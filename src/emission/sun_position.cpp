@@ -31,8 +31,9 @@ UniversalTime parse_time(const std::string& text) {
   const auto number = [&](size_t digits, char after) {
     int value = 0;
     if (rest.size() < digits) throw bad("is no time");
-    const auto [stop, error] = std::from_chars(rest.data(), rest.data() + digits, value);
-    if (error != std::errc() || stop != rest.data() + digits || rest.front() == '-') throw bad("is no time");
+    const char *const first = rest.data(), *const last = first + digits;
+    const auto [stop, error] = std::from_chars(first, last, value);
+    if (error != std::errc() || stop != last || rest.front() == '-') throw bad("is no time");
     rest.remove_prefix(digits);
     if (after) {
       if (rest.empty() || rest.front() != after) throw bad("is no time");

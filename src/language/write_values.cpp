@@ -34,6 +34,7 @@ std::string Writer::unit_suffix(Dimension dimension, const Member* member, doubl
     unit = nullptr;
     for (const Unit& u : units())
       if (u.dimension == dimension && u.factor == 1) unit = &u;
+    if (!unit) return {};
   }
   factor = unit->factor;
   return " " + std::string(unit->name);

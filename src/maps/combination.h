@@ -8,7 +8,7 @@ namespace etendue {
 /// Each value, or 0 where it is infinite or no number.
 inline Spectrum finite_or_zero(const Spectrum& s) {
   const detail::Lanes v = s.lanes(), zero{};
-  return Spectrum((v - v) == zero ? v : zero);
+  return Spectrum((v - v) == zero ? v : zero);  // NOLINT(misc-redundant-expression): an infinity less itself is not 0
 }
 
 /// a / b, and 0 where b is 0.

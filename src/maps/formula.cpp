@@ -135,7 +135,7 @@ class FormulaCompiler {
   }
 
   void call(const language::Node& node) {
-    for (std::uint8_t i = Formula::first_function; i < std::size(operations); ++i) {
+    for (size_t i = Formula::first_function; i < std::size(operations); ++i) {
       if (node.text != operations[i].name) continue;
       const size_t wanted = size_t(operations[i].arguments);
       if (node.children.size() != wanted)
@@ -143,7 +143,7 @@ class FormulaCompiler {
                         std::to_string(node.children.size()),
                     node.at);
       for (const language::Node& argument : node.children) expression(argument);
-      return operation(i);
+      return operation(std::uint8_t(i));
     }
     throw Error("there is no function '" + node.text + "'" + suggestion(node.text, Formula::function_names()), node.at);
   }

@@ -129,7 +129,7 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
       offsets.push_back(stride);
       stride += size_of(property.type);
     }
-    if (body.left() / stride < count) body.truncated();
+    if (stride == 0 || body.left() / stride < count) body.truncated();
     const auto plain = [&](int i) { return !body.swap() && e.properties[size_t(i)].type == Type::float32; };
     if (y == x + 1 && z == x + 2 && stride == 12 && plain(x) && plain(y) && plain(z)) {
       std::memcpy(p, body.at(), 12 * count);
@@ -228,7 +228,8 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   for (const Element& e : header.elements) {
     if (e.properties.empty() || e.count == 0) continue;
     // Nothing is reserved for a count that the rest of the file cannot hold (the last number of a text needs no space).
-    if (e.count > (body.left() + 1) / e.least_size(header.text))
+    const size_t least = e.least_size(header.text);
+    if (least == 0 || e.count > (body.left() + 1) / least)
       throw Error("the header claims " + std::to_string(e.count) + " of element " + shown(e.name) +
                   ", more than the file holds");
     if (e.name == "vertex") {

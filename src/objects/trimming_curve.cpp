@@ -75,7 +75,7 @@ void TrimmingCurve::flatten(double tolerance, std::vector<std::array<double, 2>>
     net.push_back(bezier::control({double(points[i].x), double(points[i].y), 0}, weights.empty() ? 1 : double(weights[i])));
   bool first = true;
   for (const nurbs::Span& span : nurbs::spans(knots_, degree)) {
-    Control piece[bezier::highest_degree + 1];
+    Control piece[bezier::highest_degree + 1] = {};
     nurbs::bezier_values(knots_, degree, span, net.data(), 1, piece);
     if (std::exchange(first, false)) {
       const Vector begin = bezier::position(piece[0]);

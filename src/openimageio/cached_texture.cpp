@@ -127,12 +127,11 @@ void CachedTexture::read(const std::string& key) {
                  strip.data() + size_t(i - y) * row + size_t(first - begin_x_) * size_t(channels_));
   }
   while (levels_.back().width > 1 || levels_.back().height > 1) {
-    if (const Level& l = levels_.back(); levels_.size() > 1) {
-      half = Halving(l.width, l.height, channels_);
-      for (int y = 0; y < l.height; ++y)
-        half.add(y, 0, l.width, l.texels.data() + size_t(y) * size_t(l.width) * size_t(channels_));
-    }
     levels_.push_back({half.width, half.height, std::move(half.texels)});
+    const Level& l = levels_.back();
+    half = Halving(l.width, l.height, channels_);
+    for (int y = 0; y < l.height; ++y)
+      half.add(y, 0, l.width, l.texels.data() + size_t(y) * size_t(l.width) * size_t(channels_));
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 class Decoder {
  public:
   Decoder() = default;
-  Decoder(const std::string& transfer, OIIO::TypeDesc format) : transfer_(transfer) {
+  Decoder(const std::string& transfer, const OIIO::TypeDesc& format) : transfer_(transfer) {
     const bool integer = !format.is_floating_point();
     if (transfer_ == automatic_transfer) transfer_ = integer ? "srgb" : "linear";
     if (transfer_ == "linear" || !integer) return;
@@ -52,7 +52,7 @@ std::vector<int> find_channels(const OIIO::ImageSpec& spec, const std::string& c
     return -1;
   };
   if (const int one = place(channel); one >= 0) return {one};
-  const std::vector<int> layer{place(channel + ".R"), place(channel + ".G"), place(channel + ".B")};
+  std::vector<int> layer{place(channel + ".R"), place(channel + ".G"), place(channel + ".B")};
   if (std::find(layer.begin(), layer.end(), -1) == layer.end()) return layer;
   if (const int one = place(channel + ".Y"); one >= 0) return {one};
   return {};

@@ -44,7 +44,7 @@ class NestedLuminaires::Finder {
 };
 
 std::shared_ptr<NestedLuminaires> NestedLuminaires::of(const Scene& scene) {
-  const auto found = std::make_shared<NestedLuminaires>();
+  auto found = std::make_shared<NestedLuminaires>();
   Finder finder(*found);
   const Contents& c = finder.contents(scene);
   const double count = c.count - double(c.lights.size());

@@ -248,7 +248,7 @@ class Builder {
         left.add(items_[i++]);
         continue;
       }
-      while (i < --j && !first(items_[j])) right.add(items_[j]);
+      for (--j; i < j && !first(items_[j]); --j) right.add(items_[j]);
       right.add(items_[i]);
       if (i < j) {
         std::swap(items_[i], items_[j]);

@@ -53,8 +53,8 @@ class CoveredScatter final : public ScatterCombination {
   CoveredScatter(const SurfacePoint& p, const SheenScatter& sheen, const SheenLobe& lobe, float weight, const Scatter& base,
                  bool stochastic)
       : ScatterCombination(p, Lobes(sheen.lobes() | base.lobes())),
-        sheen_(&sheen),
-        base_(&base),
+        sheen_(sheen),
+        base_(base),
         lobe_(lobe),
         weight_(weight),
         stochastic_(stochastic) {
@@ -64,8 +64,8 @@ class CoveredScatter final : public ScatterCombination {
   ScatterValue combined_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
                                           Lobes which) const override {
     const float probability = sheen_probability(out, which);
-    const ScatterValue a = sheen_->value_and_density(out, in, transport, which);
-    const ScatterValue b = base_->value_and_density(out, in, transport, which);
+    const ScatterValue a = sheen_.value_and_density(out, in, transport, which);
+    const ScatterValue b = base_.value_and_density(out, in, transport, which);
     return {a.value + b.value * through(out, in), lerp(probability, b.density, a.density)};
   }
 
@@ -73,7 +73,7 @@ class CoveredScatter final : public ScatterCombination {
                                                Lobes which) const override {
     const float sheen = sheen_probability(out, which);
     const bool fibres = choice < sheen;
-    const Scatter& chosen = fibres ? static_cast<const Scatter&>(*sheen_) : *base_;
+    const Scatter& chosen = fibres ? static_cast<const Scatter&>(sheen_) : base_;
     std::optional<ScatterSample> s = chosen.sample(out, left_of_choice(choice, sheen), u, transport, which);
     if (!s) return s;
     const float probability = fibres ? sheen : 1 - sheen, t = through(out, s->direction);
@@ -83,7 +83,7 @@ class CoveredScatter final : public ScatterCombination {
       s->density *= probability;
       return s;
     }
-    const Scatter& other = fibres ? *base_ : static_cast<const Scatter&>(*sheen_);
+    const Scatter& other = fibres ? base_ : static_cast<const Scatter&>(sheen_);
     const ScatterValue v = other.value_and_density(out, s->direction, transport, which);
     const float density = probability * s->density + (1 - probability) * v.density;
     if (stochastic_)  // the base's density is not that of its samples: each sample stands for its own part
@@ -95,7 +95,7 @@ class CoveredScatter final : public ScatterCombination {
   }
 
   Spectrum combined_albedo(const Vector3& out, Lobes which) const override {
-    return sheen_->albedo(out, which) + base_->albedo(out, which) * passed(out);
+    return sheen_.albedo(out, which) + base_.albedo(out, which) * passed(out);
   }
 
  private:
@@ -103,12 +103,12 @@ class CoveredScatter final : public ScatterCombination {
   float passed(const Vector3& v) const { return 1 - weight_ * lobe_.albedo(frame_.to_local(v)); }
   float through(const Vector3& out, const Vector3& in) const { return std::min(passed(out), passed(in)); }
   float sheen_probability(const Vector3& out, Lobes which) const {
-    const float a = promise(sheen_, 1, out, which), b = promise(base_, passed(out), out, which);
+    const float a = promise(&sheen_, 1, out, which), b = promise(&base_, passed(out), out, which);
     return a + b > 0 ? a / (a + b) : 0;
   }
 
-  const SheenScatter* sheen_;
-  const Scatter* base_;
+  const SheenScatter& sheen_;
+  const Scatter& base_;
   SheenLobe lobe_;
   float weight_;
   bool stochastic_;
