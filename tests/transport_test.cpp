@@ -108,6 +108,29 @@ TEST(Transport, DepthIsMeasuredFromTheCameraThroughBoundaries) {
   }
 }
 
+// Hair is not reciprocal, and light that goes through a round hair passes its wall on one way only: walks from lamps carry the
+// adjoint. One lamp is behind, so that most of what is seen went through, and one in a hair.
+TEST(Transport, HairFromBothEnds) {
+  const std::string behind = "Sphere { center: [1.2, 1.6, 0.9], radius: 0.5, emission: DiffuseEmission { radiance: 10 } }\n";
+  const std::string within = "Sphere { center: [0.3, -0.4, 0], radius: 0.12, emission: DiffuseEmission { radiance: 10 } }\n";
+  const std::string wall = "Rectangle { corner: [-3, -3, 2], edge_u: [6, 0, 0], edge_v: [0, 6, 0], shader: Lambertian {} }\n";
+  const std::string hair =
+      "radius: [0.25], shader: HairShader { pigment: absorption, absorption: 0.1, longitudinal_roughness: 0.5, "
+      "azimuthal_roughness: 0.5, tilt: 8 } }\n";
+  const std::string one = "Curve { points: [[-2, -0.3, 0], [1, -0.3, 0]], " + hair;
+  const std::string two =
+      "Curve { points: [[-2, -0.3, 0], [1, -0.3, 0], [-2, -0.3, 0.2], [1, -0.3, 0.2]], counts: [2, 2], " + hair;
+  for (const std::string form : {"tube", "ribbon"}) {
+    const std::string strands =
+        "Curve { points: [[-2, -0.3, 0], [1, -0.3, 0], [-2, -0.3, 0.2], [1, -0.3, 0.2], [0.2, -2, -0.5], [0, 2, -0.5]], "
+        "counts: [2, 2, 2], form: " +
+        form + ", normals: [[0.3, 0.4, -1]], " + hair;
+    agree({path, both, light}, 256, camera, behind + strands + wall, 0.02);
+  }
+  agree({path, both, light}, 256, camera, within + one, 0.05);
+  agree({path, both}, 512, camera, within + two, 0.05);
+}
+
 TEST(Transport, WhatCannotBeFoundIsRefused) {
   const auto refused = [](const std::string& objects) {
     try {

@@ -40,6 +40,8 @@ inline constexpr Lobes smooth_lobes = diffuse_lobes | glossy_lobes;
 /// What the path carries from `in` to `out`: radiance when it was begun at the camera, importance when at a light.
 /// The two differ where light is refracted and where shading normals are used (Veach 1997, chapter 5).
 enum class Transport : std::uint8_t { radiance, importance };
+/// What the same path carries when it is walked the other way.
+inline Transport adjoint(Transport t) { return t == Transport::radiance ? Transport::importance : Transport::radiance; }
 
 /// A direction chosen by a Scatter. All vectors point away from the surface and have unit length.
 struct ScatterSample {
@@ -123,6 +125,9 @@ class Scatter {
   Normal3 normal_;
   Lobes lobes_;
   bool has_choice_ = true;
+  /// False of a model whose f depends on which direction is `out`. Then local_evaluate has where light leaves to as `out`, for
+  /// importance too; local_sample and local_density still have where the path came from.
+  bool reciprocal_ = true;
 
  private:
   friend class ScatterCombination;
@@ -131,6 +136,8 @@ class Scatter {
     return p.object && p.object->sides != Sides::both ? reflection_lobes : all_lobes;
   }
 
+  /// f of importance, but for shading normals.
+  Spectrum local_importance(const Vector3& out, const Vector3& in, Lobes which) const;
   const class ScatterCombination& combination() const;
 
   bool combined_ = false;
@@ -186,7 +193,8 @@ class Shader : public Component {
   virtual bool transmits() const { return (possible_lobes() & transmission_lobes) != 0; }
   /// Whether nothing is absorbed: as much light leaves as arrives, whatever the direction.
   virtual bool lossless() const { return false; }
-  /// Whether f(out, in) = f(in, out), with the squared indices across refraction. Models that are not say why.
+  /// Whether f(out, in) = f(in, out), with the squared indices across refraction. Models that are not say why; their Scatter
+  /// makes importance the adjoint of radiance all the same.
   virtual bool reciprocal() const { return true; }
   /// Whether `evaluate` of the Scatter is an unbiased estimate, which depends on the bits of its arguments, and `density`
   /// that of something near what `sample` does: weights that compare densities stay right, and nothing else is asked of it.

@@ -147,10 +147,10 @@ void check_specular(Trial& trial, const BoundShader& bound) {
 }  // namespace
 
 void check_shader_reversal(Trial& trial, const BoundShader& plain, const BoundShader& tilted) {
-  if (!trial.part<Shader>().reciprocal()) return;
-  check_reciprocity(trial, plain);
   check_adjoint(trial, plain, "importance is the adjoint of radiance");
   check_adjoint(trial, tilted, "importance is the adjoint of radiance under shading normals");
+  if (!trial.part<Shader>().reciprocal()) return;
+  check_reciprocity(trial, plain);
   check_specular(trial, plain);
 }
 

@@ -141,6 +141,18 @@ bool rests_on_estimates(const Component& shader) {
   return false;
 }
 
+/// Of shaders that are not reciprocal: directions are drawn as for radiance, and weighed with the adjoint.
+void check_adjoint_samples(Trial& trial, const BoundShader& bound, const Vector3& out) {
+  const Lobes which = bound.scatter()->lobes() & smooth_lobes;
+  const Measured m = check_density(trial, bound, out, which, Transport::importance, "samples of importance follow the density");
+  const Mean& mean = m.drawn.all;
+  const double margin = Trial::significant_errors * mean.error() + 10 * mean.largest() / m.drawn.count + 3e-3;
+  trial.expect(std::abs(mean.mean() - m.flux) < margin, "samples of importance carry what evaluation says", [&] {
+    return fmt::format("{}: the mean weight is {:.5f} ± {:.5f}, f cos integrates to {:.5f}", where(bound, out, which),
+                       mean.mean(), mean.error(), m.flux);
+  });
+}
+
 constexpr double angles[] = {0, 25, 50, 75, 86, 89.5, 95, 120, 155};
 
 }  // namespace
@@ -158,6 +170,8 @@ void check_shader_sampling(Trial& trial, const BoundShader& plain, const BoundSh
         check_direction(trial, plain, plain.at_angle(behind ? angle : 180 - angle, azimuth()), which);
     }
   }
+  if (!trial.part<Shader>().reciprocal() && !plain.turned() && plain.scatter()->has(smooth_lobes))
+    for (const double angle : {20.0, 65.0, 140.0}) check_adjoint_samples(trial, plain, plain.at_angle(angle, azimuth()));
   // Under a tilted normal some directions are cut off: what is drawn there is absorbed.
   for (const double angle : {30.0, 70.0, 130.0})
     check_density(trial, tilted, tilted.at_angle(angle, azimuth()), tilted.scatter()->lobes(), Transport::radiance,

@@ -243,7 +243,7 @@ class BidirectionalPathTracer final : public Renderer {
     if (light.black()) return;
     MediumStack scratch;
     const Spectrum visible = visible_fraction(s.scene(), lens_ray(y, *lens), media_towards(y, lens->direction, scratch),
-                                              s.light_wavelengths, s.at.arena);
+                                              s.light_wavelengths, s.at.arena, Transport::importance);
     if (visible.black()) return;
     light *= visible;
     float weight = 1;

@@ -93,7 +93,7 @@ class LightTracer final : public Renderer {
       media_at(context.scene, ray.origin, ray.time, scratch);
       media = &scratch;
     }
-    value *= visible_fraction(context.scene, ray, media, sample.wavelengths, sample.arena);
+    value *= visible_fraction(context.scene, ray, media, sample.wavelengths, sample.arena, Transport::importance);
     if (value.black()) return;
     const int length = int(i) + 1;
     sample.splat(lens->film, value, sample.wavelengths, length);

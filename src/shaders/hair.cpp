@@ -1,9 +1,10 @@
 // HairShader: hair and fur.
 
 #include "shaders/hair.h"
-#include "shaders/joint_scatter.h"
 
 #include "etendue/medium_stack.h"
+#include "shaders/joint_scatter.h"
+#include "shaders/part_choice.h"
 #include "shaders/reflectance.h"
 #include "shaders/scalar_map.h"
 #include "shaders/tangent_frame.h"
@@ -21,40 +22,33 @@ namespace {
 // What is left of the number that chose the lobe draws phi.
 //
 // Not reciprocal: the exchanged path meets the fibre where this one leaves it, at another h, and f |in.z| does not depend on
-// the ribbon's slope towards `in`. Seen from afar, averaged over h, it is but for the tilt.
+// the ribbon's slope towards `in`. Seen from afar, averaged over h, it is but for the tilt. Importance is the adjoint.
 //
 // On a ribbon h goes from edge to edge, and from behind the other way around. On what encloses a volume, such as a tube, it is
 // the sine of the angle between the normal and `out` around the fibre: with e the direction of `out` across the fibre's
-// x, the normal z is h (e cross x) + sqrt(1 - h^2) e, so h = -e.y. The one scattering at the point where light is met stands
-// for all that happens within the fibre; so from inside the wall is not there, for light that leaves on the far side.
+// x, the normal z is h (e cross x) + sqrt(1 - h^2) e, so h = -e.y.
 class HairScatter final : public JointScatter {
  public:
-  static constexpr Lobes all = glossy_reflection | glossy_transmission | pass_through;
+  static constexpr Lobes all = glossy_reflection | glossy_transmission;
 
   HairScatter(const SurfacePoint& p, const Frame& frame, const HairFibre& fibre, bool round, Spectrum absorption)
-      : JointScatter(p, frame, round ? all : Lobes(all & ~pass_through)),
+      : JointScatter(p, frame, all),
         fibre_(fibre),
         round_(round),
         across_(std::isfinite(p.uv.y) ? clamp(-1 + 2 * p.uv.y, -1, 1) : 0),
-        absorption_(absorption) {}
+        absorption_(absorption) {
+    reciprocal_ = false;
+  }
 
  protected:
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
-    if (in.z == 0 || leaves(out)) return {};
+    if (in.z == 0) return {};
     ScatterValue r = along_and_around(Angles(out), section(out), in);
     r.value /= std::abs(in.z);
     return r;
   }
 
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    if (leaves(out)) {
-      s.in = -out;
-      s.value = Spectrum(1.0f);
-      s.density = 1;
-      s.lobe = pass_through;
-      return (which & pass_through) != 0;
-    }
-    if (!(which & glossy_lobes)) return false;
     const Angles from(out);
     const HairFibre::Section across = section(out);
     const auto probability = probabilities(across);
@@ -75,7 +69,6 @@ class HairScatter final : public JointScatter {
 
   // Exact: which side light leaves on depends on phi alone.
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    if (leaves(out)) return (which & pass_through) ? Spectrum(1.0f) : Spectrum();
     const HairFibre::Section across = section(out);
     const float front_begins = out.z > 0 ? 0 : -pi;
     Spectrum sum;
@@ -96,8 +89,6 @@ class HairScatter final : public JointScatter {
     float phi;
   };
 
-  /// Whether a path has come to the wall of a round fibre from inside.
-  bool leaves(const Vector3& out) const { return round_ && out.z < 0; }
   HairFibre::Section section(const Vector3& out) const {
     const Angles from(out);
     float h = out.z < 0 ? -across_ : across_;
@@ -129,6 +120,52 @@ class HairScatter final : public JointScatter {
   bool round_;
   float across_;  // h on a ribbon seen from its front
   Spectrum absorption_;
+};
+
+// The wall of a round fibre. The scattering at the point that is seen from outside stands for all that happens within the
+// fibre, and for that light comes from all sides: so it passes the wall on the far side from outside, and a path from the
+// camera passes it from inside. What the path meets from inside, or light that is to leave to the inside, scatters nothing.
+// Of light that arrives from outside the wall thus does both, scatter and let pass: the sum of the two is no fraction.
+class WallScatter final : public ScatterCombination {
+ public:
+  static constexpr Lobes all = HairScatter::all | pass_through;
+
+  WallScatter(const SurfacePoint& p, const HairScatter& fibre) : ScatterCombination(p, all), fibre_(fibre) {
+    frame_ = fibre.frame();
+  }
+
+  ScatterValue combined_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
+                                          Lobes which) const override {
+    if (!outside(transport == Transport::radiance ? out : in)) return {};
+    const ScatterValue v = fibre_.value_and_density(out, in, transport, which);
+    return {v.value, v.density * (1 - straight_probability(out, transport, which))};
+  }
+
+  std::optional<ScatterSample> combined_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                               Lobes which) const override {
+    const float straight = straight_probability(out, transport, which);
+    if (choice < straight) return straight_on(out, Spectrum(1 / straight), straight);
+    if (transport == Transport::radiance && !outside(out)) return std::nullopt;
+    std::optional<ScatterSample> s = fibre_.sample(out, left_of_choice(choice, straight), u, transport, which);
+    if (!s || (transport == Transport::importance && !outside(s->direction))) return std::nullopt;
+    s->weight /= 1 - straight;
+    s->density *= 1 - straight;
+    return s;
+  }
+
+  Spectrum combined_albedo(const Vector3& out, Lobes which) const override {
+    if (outside(out)) return fibre_.albedo(out, which);
+    return which & pass_through ? Spectrum(1.0f) : Spectrum();
+  }
+
+ private:
+  bool outside(const Vector3& v) const { return dot(normal_, v) > 0; }
+  float straight_probability(const Vector3& out, Transport transport, Lobes which) const {
+    if (!(which & pass_through) || outside(out) == (transport == Transport::radiance)) return 0;
+    return transport == Transport::importance && which & glossy_lobes ? 0.5f : 1;
+  }
+
+  const HairScatter& fibre_;
 };
 
 class HairShader final : public Shader {
@@ -172,9 +209,12 @@ class HairShader final : public Shader {
     if (const SceneObject* around = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
       eta /= MediumStack::index(around, w)[0];
     const HairFibre fibre(scalar_at(*longitudinal_roughness, p), scalar_at(*azimuthal_roughness, p), radians(tilt), eta);
-    return arena.make<HairScatter>(p, tangent_frame(p), fibre, p.object && p.object->closed(), absorption_at(p, w, fibre));
+    const bool round = p.object && p.object->closed();
+    const auto* scatter = arena.make<HairScatter>(p, tangent_frame(p), fibre, round, absorption_at(p, w, fibre));
+    if (!round) return scatter;
+    return arena.make<WallScatter>(p, *scatter);
   }
-  Lobes possible_lobes() const override { return HairScatter::all; }
+  Lobes possible_lobes() const override { return WallScatter::all; }
   // Light that goes through a fibre is outside again: there is no inside to be in.
   bool transmits() const override { return false; }
   bool reciprocal() const override { return false; }  // see HairScatter

@@ -34,8 +34,6 @@ namespace {
 constexpr int longest = 4096;
 constexpr Lobes smooth_transmission = smooth_lobes & transmission_lobes;
 
-Transport adjoint(Transport t) { return t == Transport::radiance ? Transport::importance : Transport::radiance; }
-
 /// Russian roulette; `squared_index` undoes the change of radiance by refraction.
 bool survives(Spectrum& carried, float squared_index, HashedRandom& random) {
   const float survival = carried.maximum() * squared_index;

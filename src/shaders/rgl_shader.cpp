@@ -15,18 +15,13 @@ namespace {
 // it was measured (what the file holds is f cos, so little is known of f where cos is small):
 //     f(out, in) = (f_file(out, in) cos(in) + f_file(in, out) cos(out)) / (cos(in) + cos(out)).
 //
-// Directions are drawn as the file says (see rgl_data.h). That density may vanish where f_file(in, out) does not, so of the
-// mean, one direction in ten is drawn with density cos / pi.
+// Directions are drawn as the file says (see rgl_data.h). That density may vanish where f_file(in, out) does not, which the
+// mean needs, and importance: one direction in ten is drawn with density cos / pi.
 class RglScatter final : public Scatter {
  public:
-  RglScatter(const SurfacePoint& p, const Frame& frame, const RglData& data, const Wavelengths& w, bool reciprocal)
-      : Scatter(p, frame, glossy_reflection),
-        data_(&data),
-        wavelengths_(w),
-        channels_(data.channels(w)),
-        reciprocal_(reciprocal),
-        cosine_share_(reciprocal ? 0.1f : 0) {
-    has_choice_ = reciprocal;
+  RglScatter(const SurfacePoint& p, const Frame& frame, const RglData& data, const Wavelengths& w, bool symmetric)
+      : Scatter(p, frame, glossy_reflection), data_(&data), wavelengths_(w), channels_(data.channels(w)) {
+    reciprocal_ = symmetric;
   }
 
  protected:
@@ -39,7 +34,7 @@ class RglScatter final : public Scatter {
 
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const override {
     const Vector3 from = upwards(out);
-    const Vector3 to = choice < cosine_share_ ? warp::cosine_hemisphere(u) : data_->sample(from, u);
+    const Vector3 to = choice < cosine_share ? warp::cosine_hemisphere(u) : data_->sample(from, u);
     if (!(to.z > 0)) return false;
     // Both from the direction that came out, rounded as it is: where f is steep they must belong together.
     s.value = value(from, to);
@@ -64,14 +59,14 @@ class RglScatter final : public Scatter {
     return (there + data_->evaluate(to, from, channels_, wavelengths_)) * (to.z / (from.z + to.z));
   }
   float density_of(const Vector3& from, const Vector3& to) const {
-    return (1 - cosine_share_) * data_->density(from, to) + cosine_share_ * warp::cosine_hemisphere_density(to.z);
+    return (1 - cosine_share) * data_->density(from, to) + cosine_share * warp::cosine_hemisphere_density(to.z);
   }
+
+  static constexpr float cosine_share = 0.1f;
 
   const RglData* data_;
   Wavelengths wavelengths_;
   RglChannels channels_;
-  bool reciprocal_;
-  float cosine_share_;
 };
 
 class RglShader final : public Shader {

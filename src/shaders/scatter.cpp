@@ -17,6 +17,9 @@
 // `out`: the true function is f |out . ns| / |out . ng|, and the true cosine |in . ng|. As the renderer multiplies by
 // |in . ns|, f must be multiplied by |out . ns| |in . ng| / (|out . ng| |in . ns|) (eq. 5.19). Radiance needs no factor.
 //
+// Models that are not reciprocal. On a path from a light, light comes from `out` and leaves to `in`: f is asked for (in, out).
+// Directions are still drawn as if it were (out, in), which is near, and weighed with what f then is.
+//
 // Sides. Whether a pair of directions is a reflection or a transmission is decided by ng, or light would leak through
 // surfaces; the local functions decide by ns. A direction on whose side the two normals disagree carries nothing, which
 // is the same for both roles of a direction, so reciprocity is kept.
@@ -54,13 +57,19 @@ Spectrum Scatter::albedo(const Vector3& out, Lobes which) const {
 
 Spectrum Scatter::relative_index(const Vector3&, const Vector3&) const { return Spectrum(1.0f); }
 
+Spectrum Scatter::local_importance(const Vector3& out, const Vector3& in, Lobes which) const {
+  if (reciprocal_) return local_evaluate(out, in, which);
+  const Spectrum f = local_evaluate(in, out, which);
+  return out.z * in.z > 0 ? f : f / squared(relative_index(in, out));
+}
+
 Spectrum Scatter::evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
   which &= lobes_;
   if (combined_) return combination().combined_value_and_density(out, in, transport, which).value;
   const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
   if (!pair.sides_agree() || !asked(pair, which)) return {};
+  if (transport == Transport::importance) return local_importance(pair.out, pair.in, which) * pair.importance_factor();
   const Spectrum value = local_evaluate(pair.out, pair.in, which);
-  if (transport == Transport::importance) return value * pair.importance_factor();
   if (pair.reflection()) return value;
   return value / squared(relative_index(pair.out, pair.in));
 }
@@ -79,6 +88,8 @@ ScatterValue Scatter::value_and_density(const Vector3& out, const Vector3& in, T
   const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
   if (!pair.sides_agree() || !asked(pair, which)) return {};
   if (transport == Transport::radiance && pair.reflection()) return local_value_and_density(pair.out, pair.in, which);
+  if (transport == Transport::importance && !reciprocal_)
+    return {local_importance(pair.out, pair.in, which) * pair.importance_factor(), local_density(pair.out, pair.in, which)};
   const ScatterValue local = local_value_and_density(pair.out, pair.in, which);
   if (transport == Transport::importance) return {local.value * pair.importance_factor(), local.density};
   return {local.value / squared(relative_index(pair.out, pair.in)), local.density};
@@ -104,6 +115,8 @@ std::optional<ScatterSample> Scatter::sample(const Vector3& out, float choice, P
   if (!(pair.in_geometric * pair.in.z > 0) && local.lobe != pass_through) return std::nullopt;
 
   Spectrum weight = local.value / local.density;
+  if (transport == Transport::importance && !reciprocal_ && (local.lobe & smooth_lobes))
+    weight = local_importance(pair.out, pair.in, which) * (std::abs(pair.in.z) / local.density);
   if (local.lobe != pass_through) {
     if (transport == Transport::importance)
       weight *= pair.importance_factor();

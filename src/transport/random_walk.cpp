@@ -76,13 +76,17 @@ class Walk {
     return false;
   }
 
-  /// Whether the walk goes straight on, with a probability q that is the fraction of light that does. Both outcomes are made
-  /// up for before a vertex is made of the other, so that what is connected to it is as well.
+  /// Whether the walk goes straight on, with a probability q that is the fraction of light that does, or of its sum with what
+  /// is scattered where that is more than all. Both outcomes are made up for before a vertex is made of the other, so that what
+  /// is connected to it is as well.
   bool passes(const Scatter& scatter, const Vector3& out, const SurfacePoint& point, Spectrum& edge) {
     const auto straight = scatter.sample(out, 0, {}, start_.transport, pass_through);
     const bool alone = scatter.lobes() == pass_through;
     const Spectrum fraction = straight ? straight->weight : Spectrum();
-    const float q = alone ? 1 : clamp(fraction.average(), 0, 1);
+    const float through = fraction.average();
+    const float q = alone         ? 1
+                    : through < 1 ? std::max(through, 0.0f)
+                                  : through / (through + scatter.albedo(out, vertex_lobes).average());
     if (q < 1 && random_.next() >= q) {
       carried_ /= 1 - q;
       return false;
@@ -130,7 +134,7 @@ class Walk {
     if (v.specular)
       density_ = 1;
     else
-      back = scattering_density(v, next.direction, v.out, start_.transport);
+      back = scattering_density(v, next.direction, v.out, adjoint(start_.transport));
     set_reverse(v, back);
     if (track_ && next.transmitted()) cross_boundary(media_, *v.point.object, v.point.normal, next.direction);
     ray_.origin = v.point.exit(next.direction);

@@ -6,7 +6,7 @@
 namespace etendue {
 
 Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const MediumStack* around,
-                                 const Wavelengths& wavelengths, Arena& arena) {
+                                 const Wavelengths& wavelengths, Arena& arena, Transport transport) {
   MediumStack media;
   if (around) media = *around;
   Ray ray = shadow;
@@ -36,7 +36,7 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
     if (!hidden) {
       point.media = around ? &media : nullptr;
       const Scatter* scatter = object.shader->bind(point, wavelengths, arena);
-      const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, Transport::radiance, pass_through) : std::nullopt;
+      const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, transport, pass_through) : std::nullopt;
       if (!straight) return {};
       // Asked alone, the lobe is certain, and its weight the fraction that gets through.
       fraction *= straight->weight;

@@ -10,14 +10,15 @@ namespace etendue {
 
 /// The fraction of light that gets along a shadow ray, per wavelength: 0 when something opaque lies on it. `media` are
 /// those at the ray's origin, on the side it leaves to; null: vacuum, where nothing is tracked. Unbiased; exact for
-/// homogeneous media and for surfaces that only pass light on or block it.
-Spectrum visible_fraction_slowly(const Scene&, const Ray&, const MediumStack* media, const Wavelengths&, Arena&);
+/// homogeneous media and for surfaces that only pass light on or block it. The ray goes against the light (radiance) or along
+/// with it (importance), for surfaces that are not the same for both.
+Spectrum visible_fraction_slowly(const Scene&, const Ray&, const MediumStack* media, const Wavelengths&, Arena&, Transport);
 
 inline Spectrum visible_fraction(const Scene& scene, const Ray& ray, const MediumStack* media, const Wavelengths& wavelengths,
-                                 Arena& arena) {
+                                 Arena& arena, Transport transport = Transport::radiance) {
   if (!scene.has_null_surfaces() && (!media || media->empty())) [[likely]]
     return scene.any(ray) ? Spectrum() : Spectrum(1.0f);
-  return visible_fraction_slowly(scene, ray, media, wavelengths, arena);
+  return visible_fraction_slowly(scene, ray, media, wavelengths, arena, transport);
 }
 
 }  // namespace etendue
