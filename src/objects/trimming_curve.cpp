@@ -61,7 +61,7 @@ void halve(const Control* net, int degree, double tolerance, int depth, std::vec
     points.push_back({end.x, end.y});
     return;
   }
-  Control low[bezier::highest_degree + 1], high[bezier::highest_degree + 1];
+  Control low[bezier::highest_degree + 1] = {}, high[bezier::highest_degree + 1] = {};
   bezier::split(degree, 0, true, 0.5, net, low, high);
   halve(low, degree, tolerance, depth - 1, points);
   halve(high, degree, tolerance, depth - 1, points);

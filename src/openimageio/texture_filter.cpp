@@ -162,8 +162,7 @@ void CachedTexture::nearest(Point2 at, Wrap wrap, float* out) const {
   at = near(at, wrap);
   if (!(at.x == at.x)) return;
   TexelReader reader(*this, 0, wrap, out);
-  const float column = at.x * float(reader.width()), row = (1 - at.y) * float(reader.height());
-  reader.add(int(std::floor(column)), int(std::floor(row)), 1);
+  reader.add(int(std::floor(at.x * reader.width())), int(std::floor((1 - at.y) * reader.height())), 1.0f);
 }
 
 void CachedTexture::bilinear(Point2 at, Wrap wrap, float* out) const { line(at, {}, 0, 0, wrap, out); }
