@@ -151,8 +151,8 @@ class Measured : public testing::Test {
 
 // ---- values ---------------------------------------------------------------------------------------------------------
 
-// f cos(in) at four wavelengths and the density, by the `measured` plugin of Mitsuba 3.9.1 from the same bytes. One direction in
-// ten is drawn with density cos / pi here.
+// f cos(in) at four wavelengths and the density, by the `measured` plugin of Mitsuba 3.9.1 from the same bytes. One direction
+// in ten is drawn with density cos / pi here.
 TEST_F(Measured, RglAgreesWithMitsuba) {
   const Vector3 pairs[4][2] = {{{0.3f, -0.2f, 0.8f}, {-0.5f, 0.4f, 0.7f}},
                                {{-0.6f, 0.5f, 0.5f}, {0.1f, 0.7f, 0.6f}},
