@@ -160,7 +160,7 @@ TEST(Principled, DispersionIsThatOfTheAbbeNumber) {
       {{"transmission_weight", 1.0}, {"transmission_dispersion_scale", 0.5}, {"transmission_dispersion_abbe_number", 20.0}});
   Wavelengths w;
   const float lines[] = {587.6f, 486.1f, 656.3f, 550};
-  for (int i = 0; i < spectrum_size; ++i) w.place(i, lines[i], 1);
+  for (int i = 0; i < spectrum_size; ++i) w.place(i, lines[i % 4], 1);
   const Spectrum n = b.shader->interior_index(w);
   EXPECT_NEAR(n[0], 1.5f, 1e-5f);
   EXPECT_NEAR((n[0] - 1) / (n[1] - n[2]), 40, 0.01);
