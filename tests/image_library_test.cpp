@@ -55,7 +55,7 @@ TEST(ImageLibrary, IsMissedBeforeRendering) {
   };
   run({"--help"}, 0);
   run({"render", "a.etd", "--samples", "1", "-o", "a.npy", "--quiet"}, 0);
-  std::string said = run({"render", "a.etd", "--samples", "1000000000", "--quiet"}, 2);
+  std::string said = run({"render", "a.etd", "--samples", "1000000000", "--time", "20s", "--quiet"}, 2);
   EXPECT_NE(said.find("a.etd:2"), std::string::npos) << said;
   EXPECT_NE(said.find("libetendue_openimageio.so"), std::string::npos) << said;
   folder.write("a.png", "no picture");
