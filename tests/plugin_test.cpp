@@ -51,6 +51,7 @@ Job { camera: PerspectiveCamera { from: [0, 0, -4], to: [0, 0, 0] }, image: Imag
   EXPECT_EQ(run(program + " render " + f + "/gold.etd --samples 16 --quiet -o " + f + "/gold.npy", &output), 0) << output;
   EXPECT_TRUE(fs::exists(f + "/gold.npy"));
   // Plugins appear everywhere built-in parts do.
+  EXPECT_EQ(run(program + " conform GoldShader --quick --plugin " + library, &output), 0) << output;
   EXPECT_EQ(run(program + " classes GoldShader --plugin " + library, &output), 0) << output;
   EXPECT_NE(output.find("purity"), std::string::npos) << output;
   EXPECT_EQ(run(program + " render " + f + "/gold.etd --set 'scene.objects[0].shader.purity=2'", &output), 2);

@@ -22,8 +22,8 @@
 //     that p and q must be for that is the same function in both places, so faces may be stochastic.
 // Inside, the walk only draws reflections: what is let out is counted by the connections. Back from `in` the faces are
 // asked for the adjoint, f*: f*(in, d) |cos d| / |d.ng| = f(d, in) |cos in| / |in.ng|, so an edge carries the product of its
-// weights times |in.ng| / |d.ng|. That is only true of faces that are reciprocal: of one that is not, only specular lobes are
-// traced back, and the second and third kind of paths are found from the side of `out` alone.
+// weights times |in.ng| / |d.ng|. That is only relied on of faces that are reciprocal: of one that is not, only specular lobes
+// are traced back, and the second and third kind of paths are found from the side of `out` alone.
 
 #include "shaders/layer_stack.h"
 

@@ -52,6 +52,7 @@ const ScatterCombination& Scatter::combination() const { return static_cast<cons
 
 Spectrum Scatter::albedo(const Vector3& out, Lobes which) const {
   which &= lobes_;
+  if (which == no_lobes) return {};
   return combined_ ? combination().combined_albedo(out, which) : local_albedo(frame_.to_local(out), which);
 }
 

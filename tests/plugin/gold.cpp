@@ -1,4 +1,4 @@
-// A shader in one file, out of tree: a rough-looking gold made of a mirror lobe over a diffuse one.
+// A shader in one file, out of tree: gold that scatters diffusely.
 #include "etendue/color.h"
 #include "etendue/description.h"
 #include "etendue/shader.h"
