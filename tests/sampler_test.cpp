@@ -115,6 +115,27 @@ TEST(Sampler, SameArgumentsGiveSameNumbers) {
   }
 }
 
+TEST(Sampler, NumbersOfABounceAreThoseAskedForOneByOne) {
+  for (const char* name : names) {
+    const Ref<Sampler> sampler = create<Sampler>(name);
+    for (const bool lights : {false, true})
+      for (const bool lobes : {false, true})
+        for (std::uint32_t i = 0; i < 100; ++i) {
+          SampleStream at_once(*sampler, SampleKey(3, 10, 20, i)), single = at_once;
+          at_once.jump(i * 7);
+          single.jump(i * 7);
+          const SampleStream::Bounce bounce = at_once.next_bounce(lights, lobes);
+          const float light_choice = single.next();
+          EXPECT_EQ(bounce.light_choice, lights ? light_choice : 0) << name;
+          EXPECT_EQ(bounce.light_point, single.next_pair()) << name;
+          const float lobe_choice = single.next();
+          EXPECT_EQ(bounce.lobe_choice, lobes ? lobe_choice : 0) << name;
+          EXPECT_EQ(bounce.direction, single.next_pair()) << name;
+          EXPECT_EQ(at_once.dimension(), single.dimension());
+        }
+  }
+}
+
 // A (0,2)-sequence: each aligned block of 2^k samples has one point in each elementary interval of area 2^-k.
 TEST(SobolSampler, OnePointInEachElementaryInterval) {
   const Ref<Sampler> sampler = create<Sampler>("SobolSampler");

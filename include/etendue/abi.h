@@ -12,7 +12,7 @@
 namespace etendue::detail {
 
 /// Raised whenever a public header changes what plugins see.
-#define ETENDUE_INTERFACE_VERSION 3
+#define ETENDUE_INTERFACE_VERSION 4
 
 inline constexpr int abi_wavelengths = spectrum_size;
 static_assert(spectrum_size == 4 || spectrum_size == 8 || spectrum_size == 16);

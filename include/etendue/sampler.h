@@ -34,6 +34,13 @@ class Sampler : public Component {
   virtual float number(const SampleKey&, std::uint32_t dimension) const = 0;
   /// Two numbers, well spread together over the samples of a pixel; uses dimensions `dimension` and `dimension + 1`.
   virtual Point2 pair(const SampleKey&, std::uint32_t dimension) const = 0;
+  /// The same pairs as two calls give, for samplers that find two at once with less work.
+  struct Pairs {
+    Point2 first, second;
+  };
+  virtual Pairs two_pairs(const SampleKey& key, std::uint32_t first, std::uint32_t second) const {
+    return {pair(key, first), pair(key, second)};
+  }
 };
 
 /// A sample's numbers in the order an algorithm asks for them.
@@ -46,6 +53,19 @@ class SampleStream {
     const Point2 p = sampler_->pair(key_, dimension_);
     dimension_ += 2;
     return p;
+  }
+  /// The numbers of a bounce, in this order: which luminaire, where on it, which lobe, where in it. They depend on nothing, so
+  /// the processor finds them while it does the rest. A choice among one alone is passed over.
+  struct Bounce {
+    float light_choice = 0, lobe_choice = 0;
+    Point2 light_point, direction;
+  };
+  Bounce next_bounce(bool several_lights, bool several_lobes) {
+    const std::uint32_t first = dimension_;
+    dimension_ += 6;
+    const Sampler::Pairs pairs = sampler_->two_pairs(key_, first + 1, first + 4);
+    return {several_lights ? sampler_->number(key_, first) : 0, several_lobes ? sampler_->number(key_, first + 3) : 0,
+            pairs.first, pairs.second};
   }
   /// Passes over one number that will not be looked at; those that follow are the same as if it had been taken.
   void skip() { ++dimension_; }

@@ -68,20 +68,34 @@ struct ScatterValue {
 class Scatter {
  public:
   /// f [1/sr], without the cosine. Specular lobes give zero.
-  Spectrum evaluate(const Vector3& out, const Vector3& in, Transport = Transport::radiance, Lobes = all_lobes) const;
+  Spectrum evaluate(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance,
+                    Lobes which = all_lobes) const {
+    return world_evaluate(out, in, transport, Lobes(which & lobes_));
+  }
   /// Solid-angle density [1/sr] with which `sample` gives `in`, specular lobes aside. The reverse density is the same
   /// call with the directions exchanged.
-  float density(const Vector3& out, const Vector3& in, Transport = Transport::radiance, Lobes = all_lobes) const;
+  float density(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance,
+                Lobes which = all_lobes) const {
+    return world_density(out, in, transport, Lobes(which & lobes_));
+  }
   /// Both of the above in one call.
-  ScatterValue value_and_density(const Vector3& out, const Vector3& in, Transport = Transport::radiance,
-                                 Lobes = all_lobes) const;
+  ScatterValue value_and_density(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance,
+                                 Lobes which = all_lobes) const {
+    return world_value_and_density(out, in, transport, Lobes(which & lobes_));
+  }
   /// Chooses a direction among the asked lobes: `choice` picks the lobe, `u` the direction. Empty when the sample is
   /// absorbed (its contribution is zero, and counts).
-  std::optional<ScatterSample> sample(const Vector3& out, float choice, Point2 u, Transport = Transport::radiance,
-                                      Lobes = all_lobes) const;
+  std::optional<ScatterSample> sample(const Vector3& out, float choice, Point2 u, Transport transport = Transport::radiance,
+                                      Lobes which = all_lobes) const {
+    which &= lobes_;
+    return which == no_lobes ? std::nullopt : world_sample(out, choice, u, transport, which);
+  }
   /// An estimate of the fraction of light from all asked lobes that leaves towards `out`, for Russian roulette and for
   /// choosing between lobes; exact where the model has a closed form.
-  Spectrum albedo(const Vector3& out, Lobes which = all_lobes) const;
+  Spectrum albedo(const Vector3& out, Lobes which = all_lobes) const {
+    which &= lobes_;
+    return which == no_lobes ? Spectrum() : world_albedo(out, which);
+  }
 
   /// The lobes present at this point.
   Lobes lobes() const { return lobes_; }
@@ -119,7 +133,15 @@ class Scatter {
   virtual bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample&) const = 0;
   virtual Spectrum local_albedo(const Vector3& out, Lobes which) const = 0;
   /// Of smooth lobes: index on the side of `in` over index on the side of `out`, per wavelength; 1 when light is not refracted.
-  virtual Spectrum relative_index(const Vector3& out, const Vector3& in) const;
+  virtual Spectrum relative_index(const Vector3&, const Vector3&) const { return Spectrum(1.0f); }
+
+  // Answers to the public calls, for the asked lobes that are present. Here by the local functions; see scatter_model.h and
+  // ScatterCombination for who else answers.
+  virtual Spectrum world_evaluate(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
+  virtual float world_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
+  virtual ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
+  virtual std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport, Lobes which) const;
+  virtual Spectrum world_albedo(const Vector3& out, Lobes which) const;
 
   Frame frame_;
   Normal3 normal_;
@@ -130,17 +152,12 @@ class Scatter {
   bool reciprocal_ = true;
 
  private:
-  friend class ScatterCombination;
+  template <class Model>
+  friend class ScatterAnswers;
   /// What an object of which one side absorbs leaves of its shader's lobes.
   static Lobes let_through(const SurfacePoint& p) {
     return p.object && p.object->sides != Sides::both ? reflection_lobes : all_lobes;
   }
-
-  /// f of importance, but for shading normals.
-  Spectrum local_importance(const Vector3& out, const Vector3& in, Lobes which) const;
-  const class ScatterCombination& combination() const;
-
-  bool combined_ = false;
 };
 
 /// A Scatter made of others, each of which may have a shading normal of its own: it answers the public calls itself, in
@@ -148,14 +165,14 @@ class Scatter {
 /// is the cosine with this one's normal, so values of the others go through `turned`.
 class ScatterCombination : public Scatter {
  public:
-  // `which` holds the asked lobes that are present. Values are f of `Scatter::evaluate`, corrections included.
-  virtual ScatterValue combined_value_and_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const = 0;
-  virtual std::optional<ScatterSample> combined_sample(const Vector3& out, float choice, Point2 u, Transport,
-                                                       Lobes which) const = 0;
-  virtual Spectrum combined_albedo(const Vector3& out, Lobes which) const = 0;
+  // Values are f of `Scatter::evaluate`, corrections included.
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const override = 0;
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport,
+                                            Lobes which) const override = 0;
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override = 0;
 
  protected:
-  ScatterCombination(const SurfacePoint& p, Lobes lobes) : Scatter(p, lobes) { combined_ = true; }
+  ScatterCombination(const SurfacePoint& p, Lobes lobes) : Scatter(p, lobes) {}
   ~ScatterCombination() = default;
 
   /// Of a part's value, what makes value * cosine(in) here the part's value * its own cosine.
@@ -164,6 +181,12 @@ class ScatterCombination : public Scatter {
   }
 
  private:
+  Spectrum world_evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
+    return world_value_and_density(out, in, transport, which).value;
+  }
+  float world_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
+    return world_value_and_density(out, in, transport, which).density;
+  }
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const final { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const final { return 0; }
   bool local_sample(const Vector3&, float, Point2, Lobes, LocalSample&) const final { return false; }

@@ -24,6 +24,10 @@ void check_range(Trial& trial, const Sampler& sampler) {
     trial.expect(inside(x) && inside(p.x) && inside(p.y), "numbers lie in [0, 1)", where);
     trial.expect(sampler.number(key, dimension) == x && sampler.pair(key, dimension) == p,
                  "the same arguments give the same numbers", where);
+    const auto other = std::uint32_t(trial.random() % 1000);
+    const Sampler::Pairs pairs = sampler.two_pairs(key, dimension, other);
+    trial.expect(pairs.first == p && pairs.second == sampler.pair(key, other), "two pairs at once are those of two calls",
+                 where);
   }
 }
 

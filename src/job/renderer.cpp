@@ -60,6 +60,48 @@ struct Division {
   std::uint32_t last(std::uint64_t item) const { return std::min(first(item) + chunk, end); }
 };
 
+void record_camera(PathRecord& record, const Camera& camera, const Ray& ray) {
+  PathRecord::Vertex v;
+  v.kind = "camera";
+  v.object = camera.class_info().name;
+  v.position = ray.origin;
+  v.normal = Normal3(ray.direction);
+  v.throughput = Spectrum(1.0f);
+  record.vertices.push_back(std::move(v));
+}
+
+// Inlined: a fortieth of the time of simple scenes.
+[[gnu::always_inline]] inline Renderer::CameraSample take_sample(const Renderer& renderer, const RenderContext& context, int x,
+                                                                 int y, const SampleKey& key, Arena& arena,
+                                                                 const Renderer::Request& request) {
+  const Ref<Sampler>& sampler = renderer.sampler;
+  const Point2 within = sampler->pair(key, film_dimension);
+  Renderer::CameraSample s{{float(x) + within.x, float(y) + within.y},
+                           {},
+                           context.wavelengths.sample(key, sampler->number(key, wavelength_dimension))};
+  const Camera& camera = context.camera;
+  const Point2 lens = camera.has_lens() ? sampler->pair(key, lens_dimension) : Point2{};
+  const bool still = !(camera.shutter_close > camera.shutter_open);
+  const float time = still ? camera.shutter_open : camera.shutter_time(sampler->number(key, time_dimension));
+  SampleStream random(*sampler, key);
+  random.jump(path_dimension);
+
+  SampleContext sample{s.wavelengths, random, arena, request.features, request.record, request.lengths, request.splats};
+  Ray ray = camera.ray(s.film, lens, time);
+  const float scale = filter_scale(key);
+  ray.width *= scale;
+  ray.spread *= scale;
+  if (request.record) [[unlikely]]
+    record_camera(*request.record, camera, ray);
+  s.value = renderer.radiance(context, ray, sample);
+  arena.reset();
+  if (request.record) [[unlikely]] {
+    request.record->wavelengths = s.wavelengths;
+    request.record->result = s.value;
+  }
+  return s;
+}
+
 }  // namespace
 
 void Renderer::pass(const RenderContext& context, Pass& pass) const {
@@ -69,60 +111,34 @@ void Renderer::pass(const RenderContext& context, Pass& pass) const {
   pass.run(division.count(), [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
     const PixelArea area = division.pixels(item);
     tile.begin(context.image, area);
-    static thread_local std::vector<Splat> splats;
-    static thread_local std::vector<Spectrum> lengths;
-    lengths.clear();
+    static thread_local std::vector<Splat> all_splats;
+    static thread_local std::vector<Spectrum> all_lengths;
+    std::vector<Splat>& splats = all_splats;
+    all_lengths.resize(path_lengths);
+    const std::span<Spectrum> lengths = all_lengths;
+    const std::span<const Spectrum> by_length = lengths;
+    Features features;
+    const Request request{wants_features ? &features : nullptr, nullptr, lengths, &splats};
+    const std::uint32_t first = division.first(item), last = division.last(item);
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x)
-        for (std::uint32_t n = division.first(item); n < division.last(item); ++n) {
-          Features features;
+        for (SampleKey key(context.seed, x, y, first); key.sample < last; ++key.sample) {
+          if (request.features) features = {};
           splats.clear();
-          if (path_lengths > 0) lengths.assign(path_lengths, Spectrum());
-          const Request request{wants_features ? &features : nullptr, nullptr, lengths, &splats};
-          const CameraSample s = camera_sample(context, x, y, n, arena, request);
+          for (Spectrum& light : lengths) light = {};
+          const CameraSample s = take_sample(*this, context, x, y, key, arena, request);
           tile.count_path();
-          tile.contribute(s.film, x, y, n, s.value, s.wavelengths, 1, lengths);
-          for (const Splat& splat : splats) tile.splat(splat.film, x, y, n, splat.value, splat.wavelengths, splat.length);
-          if (wants_features) tile.features(x, y, features);
+          tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, 1, by_length);
+          for (const Splat& splat : splats)
+            tile.splat(splat.film, x, y, key.sample, splat.value, splat.wavelengths, splat.length);
+          if (request.features) tile.features(x, y, features);
         }
   });
 }
 
 Renderer::CameraSample Renderer::camera_sample(const RenderContext& context, int x, int y, std::uint32_t n, Arena& arena,
                                                const Request& request) const {
-  PathRecord* const record = request.record;
-  SampleStream random(*sampler, SampleKey(context.seed, x, y, n));
-  const SampleKey& key = random.key();
-  const Point2 within = sampler->pair(key, film_dimension);
-  CameraSample s{{float(x) + within.x, float(y) + within.y},
-                 {},
-                 context.wavelengths.sample(key, sampler->number(key, wavelength_dimension))};
-  const Camera& camera = context.camera;
-  const Point2 lens = camera.has_lens() ? sampler->pair(key, lens_dimension) : Point2{};
-  const bool still = !(camera.shutter_close > camera.shutter_open);
-  const float time = still ? camera.shutter_open : camera.shutter_time(sampler->number(key, time_dimension));
-  random.jump(path_dimension);
-
-  SampleContext sample{s.wavelengths, random, arena, request.features, record, request.lengths, request.splats};
-  Ray ray = camera.ray(s.film, lens, time);
-  ray.width *= filter_scale(key);
-  ray.spread *= filter_scale(key);
-  if (record) {
-    PathRecord::Vertex v;
-    v.kind = "camera";
-    v.object = camera.class_info().name;
-    v.position = ray.origin;
-    v.normal = Normal3(ray.direction);
-    v.throughput = Spectrum(1.0f);
-    record->vertices.push_back(std::move(v));
-  }
-  s.value = radiance(context, ray, sample);
-  arena.reset();
-  if (record) {
-    record->wavelengths = s.wavelengths;
-    record->result = s.value;
-  }
-  return s;
+  return take_sample(*this, context, x, y, SampleKey(context.seed, x, y, n), arena, request);
 }
 
 Spectrum Renderer::radiance(const RenderContext&, const Ray&, SampleContext&) const {

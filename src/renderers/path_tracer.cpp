@@ -82,12 +82,12 @@ class PathTracer final : public Renderer {
     float crossed = 0;  // distance to the last boundary passed straight on [m]
     int crossings = 0;  // of those since the last vertex
 
-    const auto arrive = [&](int length, const Spectrum& light) {
+    const auto arrive = [&](int length, const Spectrum& light) __attribute__((always_inline)) {
       if (seeded(SeededBug::skipped_length) && length == 4) return;
       radiance += light;
       sample.note_length(length, light);
     };
-    const auto meet = [&](const SurfacePoint& point, int length) {
+    const auto meet = [&](const SurfacePoint& point, int length) __attribute__((always_inline)) {
       const Spectrum emitted = throughput * point.object->emission->radiance(point, -ray.direction, sample.wavelengths);
       float weight = 1;
       if (!specular && next_event && !emitted.black() && !seeded(SeededBug::luminaire_twice)) {
@@ -100,7 +100,7 @@ class PathTracer final : public Renderer {
     };
     // Whether the path survives. The factor undoes the change of radiance by refraction, which comes back when the path
     // leaves the medium.
-    const auto roulette = [&](int depth) {
+    const auto roulette = [&](int depth) __attribute__((always_inline)) {
       if (depth >= roulette_depth) {
         const float survival = std::min(1.0f, throughput.maximum() * eta_squared);
         if (sample.random.next() >= survival) return false;
@@ -157,6 +157,9 @@ class PathTracer final : public Renderer {
         }
         break;
       }
+      const bool first = depth == 1 && sample.features, last = depth >= max_depth;
+      // What the last segment meets matters only if it shines.
+      if (clear && last && !first && !sample.record && hit.depth == 0 && !hit.object->luminaire()) break;
       scene.locate(ray, hit, point);
       if (track_media) {
         settle_coincident(scene, ray, hit, point, media);
@@ -174,9 +177,7 @@ class PathTracer final : public Renderer {
       Vector3 out = -ray.direction;
       record_surface(sample.record, point, throughput);
       if (point.object->luminaire()) meet(point, depth);
-      const bool first = depth == 1 && sample.features;
       // Behind the last vertex a surface that light passes straight on may still show a luminaire.
-      const bool last = depth >= max_depth;
       if (last && !first && !null_surfaces) break;
 
       const Scatter* scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
@@ -186,16 +187,10 @@ class PathTracer final : public Renderer {
 
       std::optional<ScatterSample> next;
       for (bool moved = false;; moved = true) {
-        // All of the bounce's numbers at once: they depend on nothing, so the processor finds them while it does the rest.
-        SampleStream& random = sample.random;
-        const float light_choice = one_luminaire ? (random.skip(), 0.0f) : random.next();
-        const Point2 light_point = random.next_pair();
-        const float lobe_choice = scatter->has_choice() ? random.next() : (random.skip(), 0.0f);
-        const Point2 scatter_direction = random.next_pair();
-
+        const SampleStream::Bounce random = sample.random.next_bounce(!one_luminaire, scatter->has_choice());
         if (next_event && !last && scatter->has(smooth_lobes)) {
-          awaits_light = propose_direct_light(*light_sampler, point, *scatter, out, sample.wavelengths, light_choice,
-                                              light_point, heuristic, direct);
+          awaits_light = propose_direct_light(*light_sampler, point, *scatter, out, sample.wavelengths, random.light_choice,
+                                              random.light_point, heuristic, direct);
           if (awaits_light) {
             direct.light *= throughput;
             if (seeded(SeededBug::lost_cosine)) direct.light /= scatter->cosine(direct.shadow.direction);
@@ -205,7 +200,7 @@ class PathTracer final : public Renderer {
 
         const Transport transport = seeded(SeededBug::no_squared_index) ? Transport::importance : Transport::radiance;
         // Made where it stays: assigned it would be copied, which waits until its parts have reached memory.
-        ::new (&next) std::optional<ScatterSample>(scatter->sample(out, lobe_choice, scatter_direction, transport));
+        ::new (&next) std::optional<ScatterSample>(scatter->sample(out, random.lobe_choice, random.direction, transport));
         if (!next || moved || last || !enters_body(point, *next)) break;
 
         // Light that enters a body which scatters it leaves elsewhere: the path goes on from there. The way inside counts as
@@ -217,7 +212,7 @@ class PathTracer final : public Renderer {
         record_scatter(sample.record, *next);
         next.reset();
         const std::optional<SubsurfaceExit> exit =
-            point.object->shader->sample_exit(point, scene, sample.wavelengths, random, sample.arena);
+            point.object->shader->sample_exit(point, scene, sample.wavelengths, sample.random, sample.arena);
         if (!exit || !exit->scatter || ++depth >= max_depth) break;
         throughput *= exit->weight;
         // It leaves on the side it came in on.

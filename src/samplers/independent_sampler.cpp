@@ -23,9 +23,14 @@ class IndependentSampler final : public Sampler {
     return to_unit_float(std::uint32_t(bits(key, dimension) >> 32));
   }
   Point2 pair(const SampleKey& key, std::uint32_t dimension) const override {
-    const std::uint64_t h = bits(key, dimension);
-    return {to_unit_float(std::uint32_t(h >> 32)), to_unit_float(std::uint32_t(h))};
+    return halves(bits(key, dimension));
   }
+  Pairs two_pairs(const SampleKey& key, std::uint32_t first, std::uint32_t second) const override {
+    return {halves(bits(key, first)), halves(bits(key, second))};
+  }
+
+ private:
+  static Point2 halves(std::uint64_t h) { return {to_unit_float(std::uint32_t(h >> 32)), to_unit_float(std::uint32_t(h))}; }
 };
 
 const Register<IndependentSampler> registered;

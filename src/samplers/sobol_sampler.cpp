@@ -26,9 +26,20 @@ constexpr std::uint64_t reverse_both(std::uint64_t x) {
   return ((x >> 1) & 0x5555555555555555ull) | ((x & 0x5555555555555555ull) << 1);
 }
 
+/// Four of them at once, in what follows as well.
+using Four = std::uint32_t __attribute__((vector_size(16)));
+inline Four reverse(Four x) {
+  x = (x >> 16) | (x << 16);
+  x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+  return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+}
+
 /// A hash in which each bit depends on lower bits and itself alone (Laine & Karras 2011; constants of Burley 2020, listing
 /// 3). On reversed bits this is a nested uniform permutation.
-constexpr std::uint32_t permute_reversed(std::uint32_t x, std::uint32_t seed) {
+template <class Bits>
+constexpr Bits permute_reversed(Bits x, Bits seed) {
   x += seed;
   x ^= x * 0x6c50b47cu;
   x ^= x * 0xb82f1e52u;
@@ -40,7 +51,8 @@ constexpr std::uint32_t permute_reversed(std::uint32_t x, std::uint32_t seed) {
 /// The bit-reversed second Sobol coordinate of a point's index. Its generator matrix is Pascal's triangle modulo 2: digit i
 /// is the exclusive or of the index bits j with binomial(j, i) odd, which are those whose j has all bits of i (Lucas). The
 /// sum over such supersets takes one step for each of the five bits of j.
-constexpr std::uint32_t sobol_second_reversed(std::uint32_t x) {
+template <class Bits>
+constexpr Bits sobol_second_reversed(Bits x) {
   x ^= (x >> 1) & 0x55555555u;
   x ^= (x >> 2) & 0x33333333u;
   x ^= (x >> 4) & 0x0f0f0f0fu;
@@ -61,6 +73,8 @@ std::uint64_t hash(const SampleKey& key, std::uint32_t dimension) {
   return std::uint64_t(product >> 64) ^ std::uint64_t(product);
 }
 
+std::uint32_t second_seed(std::uint64_t hash) { return std::uint32_t((hash * 0xd1342543de82ef95ull) >> 32); }
+
 class SobolSampler final : public Sampler {
  public:
   static void describe(Description<SobolSampler>& d) {
@@ -79,11 +93,21 @@ class SobolSampler final : public Sampler {
   Point2 pair(const SampleKey& key, std::uint32_t dimension) const override {
     const std::uint64_t h = hash(key, dimension);
     const std::uint32_t index = shuffled(key.sample, h);
-    const std::uint32_t second_seed = std::uint32_t((h * 0xd1342543de82ef95ull) >> 32);
     const std::uint32_t x = permute_reversed(index, std::uint32_t(h >> 32));
-    const std::uint32_t y = permute_reversed(sobol_second_reversed(index), second_seed);
+    const std::uint32_t y = permute_reversed(sobol_second_reversed(index), second_seed(h));
     const std::uint64_t both = reverse_both((std::uint64_t(y) << 32) | x);
     return {to_unit_float(std::uint32_t(both >> 32)), to_unit_float(std::uint32_t(both))};
+  }
+
+  Pairs two_pairs(const SampleKey& key, std::uint32_t first, std::uint32_t second) const override {
+    const std::uint64_t g = hash(key, first), h = hash(key, second);
+    const auto g_low = std::uint32_t(g), h_low = std::uint32_t(h), start = reverse(key.sample);
+    const Four index = reverse(permute_reversed(Four{start, start, start, start}, Four{g_low, g_low, h_low, h_low}));
+    constexpr Four second_ones{0, ~0u, 0, ~0u};
+    const Four point = (index & ~second_ones) | (sobol_second_reversed(index) & second_ones);
+    const Four seeds{std::uint32_t(g >> 32), second_seed(g), std::uint32_t(h >> 32), second_seed(h)};
+    const Four bits = reverse(permute_reversed(point, seeds));
+    return {{to_unit_float(bits[0]), to_unit_float(bits[1])}, {to_unit_float(bits[2]), to_unit_float(bits[3])}};
   }
 };
 

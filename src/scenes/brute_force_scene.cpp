@@ -17,17 +17,7 @@ class BruteForceScene final : public Scene {
   }
 
   bool nearest(const Ray& ray, Hit& hit) const override {
-    if (others_.empty()) return triangles_.nearest(ray, hit);
-    bool found = triangles_.nearest(ray, hit);
-    Ray rest = ray;
-    if (found) rest.maximum = hit.distance;
-    const Inverse inverse(ray);
-    for (const Other& other : others_)
-      if (inverse.meets(other.bounds, rest.maximum) && other.object->intersect(rest, hit)) {
-        rest.maximum = hit.distance;
-        found = true;
-      }
-    return found;
+    return others_.empty() ? triangles_.nearest(ray, hit) : nearest_of_all(ray, hit);
   }
 
   void all(const Ray& ray, HitList& list) const override {
@@ -37,14 +27,7 @@ class BruteForceScene final : public Scene {
       if (inverse.meets(other.bounds, ray.maximum)) other.object->all_hits(ray, list);
   }
 
-  bool any(const Ray& ray) const override {
-    if (others_.empty()) return triangles_.any(ray);
-    if (triangles_.any(ray)) return true;
-    const Inverse inverse(ray);
-    for (const Other& other : others_)
-      if (inverse.meets(other.bounds, ray.maximum) && other.object->occludes(ray)) return true;
-    return false;
-  }
+  bool any(const Ray& ray) const override { return others_.empty() ? triangles_.any(ray) : any_of_all(ray); }
 
  protected:
   void build(std::span<const SceneObject* const> finite) override {
@@ -60,6 +43,28 @@ class BruteForceScene final : public Scene {
   }
 
  private:
+  // Apart from the above, so that what the case without others needs is a jump.
+  [[gnu::noinline]] bool nearest_of_all(const Ray& ray, Hit& hit) const {
+    bool found = triangles_.nearest(ray, hit);
+    Ray rest = ray;
+    if (found) rest.maximum = hit.distance;
+    const Inverse inverse(ray);
+    for (const Other& other : others_)
+      if (inverse.meets(other.bounds, rest.maximum) && other.object->intersect(rest, hit)) {
+        rest.maximum = hit.distance;
+        found = true;
+      }
+    return found;
+  }
+
+  [[gnu::noinline]] bool any_of_all(const Ray& ray) const {
+    if (triangles_.any(ray)) return true;
+    const Inverse inverse(ray);
+    for (const Other& other : others_)
+      if (inverse.meets(other.bounds, ray.maximum) && other.object->occludes(ray)) return true;
+    return false;
+  }
+
   struct Other {
     const SceneObject* object;
     Bounds3 bounds;

@@ -2,7 +2,7 @@
 
 #include "etendue/color.h"
 #include "etendue/medium_stack.h"
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "etendue/warp.h"
 #include "shaders/fresnel.h"
 #include "shaders/reflectance.h"
@@ -19,14 +19,13 @@ struct RelativeIndex {
   Spectrum mean_reflectance() const { return mean_fresnel_conductor(n, k); }
 };
 
-class PolishedConductor final : public Scatter {
+class PolishedConductor final : public ScatterModel<PolishedConductor> {
  public:
   PolishedConductor(const SurfacePoint& p, const RelativeIndex& index, Spectrum tint)
-      : Scatter(p, specular_reflection), index_(index), tint_(tint) {
+      : ScatterModel(p, specular_reflection), index_(index), tint_(tint) {
     has_choice_ = false;
   }
 
- protected:
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
   bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
@@ -51,11 +50,11 @@ class PolishedConductor final : public Scatter {
 // The first is sampled by visible normals, the second by the cosine. A sample is of the second with the probability q
 // that is its share of the light, F taken for its mean. Reflections of the first kind that lead under the surface are
 // absorbed, so the density integrates to less than 1.
-class RoughConductor final : public Scatter {
+class RoughConductor final : public ScatterModel<RoughConductor> {
  public:
   RoughConductor(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution,
                  const RelativeIndex& index, Spectrum tint, bool multiple)
-      : Scatter(p, frame, glossy_reflection),
+      : ScatterModel(p, frame, glossy_reflection),
         distribution_(distribution),
         multiple_reflection_(distribution),
         index_(index),
@@ -66,7 +65,6 @@ class RoughConductor final : public Scatter {
     has_choice_ = multiple;
   }
 
- protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
     return local_value_and_density(out, in, which).value;
   }

@@ -1,6 +1,6 @@
 // CoupledMatteSpecular: a polished coat over a matt base (varnished wood, tiles), whose base fades where the coat shines.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "etendue/warp.h"
 #include "shaders/half_vector.h"
 #include "shaders/reflectance.h"
@@ -18,12 +18,11 @@ namespace {
 //
 // Sampling: coat or base by their albedos (means over the path's wavelengths), the base with density cos / pi; the weight's
 // spread is that of g.
-class CoupledScatter final : public Scatter {
+class CoupledScatter final : public ScatterModel<CoupledScatter> {
  public:
   CoupledScatter(const SurfacePoint& p, Lobes lobes, Spectrum matte, Spectrum normal_reflectance)
-      : Scatter(p, lobes), base_(matte * (Spectrum(1.0f) - normal_reflectance)), normal_reflectance_(normal_reflectance) {}
+      : ScatterModel(p, lobes), base_(matte * (Spectrum(1.0f) - normal_reflectance)), normal_reflectance_(normal_reflectance) {}
 
- protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(which & diffuse_reflection) || !(out.z * in.z > 0)) return {};
     return base_ * (21 / (20 * pi) * passed(out) * passed(in));

@@ -1,7 +1,7 @@
 // Dielectric: the boundary of glass, water and the like, smooth or rough.
 
 #include "etendue/medium_stack.h"
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "shaders/fresnel.h"
 #include "shaders/rough_dielectric.h"
 #include "shaders/roughness.h"
@@ -15,13 +15,12 @@ namespace {
 // weight F_i / F_hero. Refraction has the hero's direction; where the index differs between the path's wavelengths the
 // sample is marked dispersive and the path drops the others, which makes up for them in the hero's own density (see
 // Wavelengths::drop_secondary). A wavelength that is totally reflected has F_i = 1 like any other.
-class DielectricScatter final : public Scatter {
+class DielectricScatter final : public ScatterModel<DielectricScatter> {
  public:
   /// eta: index inside over index outside.
   DielectricScatter(const SurfacePoint& p, Spectrum eta, bool varies, bool dispersive)
-      : Scatter(p, specular_reflection | specular_transmission), eta_(eta), varies_(varies), dispersive_(dispersive) {}
+      : ScatterModel(p, specular_reflection | specular_transmission), eta_(eta), varies_(varies), dispersive_(dispersive) {}
 
- protected:
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 

@@ -1,6 +1,6 @@
 // DiffractionGrating: a mirror with fine grooves, which sends each colour its own way.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "shaders/reflectance.h"
 #include "shaders/scalar_map.h"
 #include "shaders/tangent_frame.h"
@@ -20,19 +20,18 @@ namespace {
 //
 // Sampling: an order is drawn among those the hero has, in proportion to e_m. All but the zeroth have a direction of the
 // hero's own, and are marked dispersive: the path goes on without its other wavelengths.
-class DiffractionGratingScatter final : public Scatter {
+class DiffractionGratingScatter final : public ScatterModel<DiffractionGratingScatter> {
  public:
   /// `steps`: lambda / d of each wavelength; `efficiency`: of the orders 0, ±1, ±2, …
   DiffractionGratingScatter(const SurfacePoint& p, const Frame& frame, Spectrum reflectance, Spectrum steps,
                             const std::vector<float>& efficiency, bool single)
-      : Scatter(p, frame, specular_reflection),
+      : ScatterModel(p, frame, specular_reflection),
         reflectance_(reflectance),
         steps_(steps),
         efficiency_(efficiency.data()),
         last_(int(efficiency.size()) - 1),
         single_(single) {}
 
- protected:
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 

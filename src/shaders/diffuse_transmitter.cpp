@@ -1,6 +1,6 @@
 // DiffuseTransmitter: a thin sheet that scatters light evenly on both sides: paper, a leaf, a lamp shade.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "etendue/warp.h"
 #include "shaders/reflectance.h"
 
@@ -10,15 +10,14 @@ namespace {
 // f = R / pi where both directions are on one side and T / pi where they are on two [1/sr]: R of the light leaves on the side
 // it came from and T on the other, in the distribution of Lambert. The side is drawn by R and T (means over the path's
 // wavelengths), the direction there with density cos / pi.
-class DiffuseTransmitterScatter final : public Scatter {
+class DiffuseTransmitterScatter final : public ScatterModel<DiffuseTransmitterScatter> {
  public:
   DiffuseTransmitterScatter(const SurfacePoint& p, Lobes lobes, Spectrum reflectance, Spectrum transmittance)
-      : Scatter(p, lobes), reflectance_(reflectance), transmittance_(transmittance) {
+      : ScatterModel(p, lobes), reflectance_(reflectance), transmittance_(transmittance) {
     const float r = reflectance.average(), t = transmittance.average();
     reflect_probability_ = r / (r + t);
   }
 
- protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return (out.z * in.z > 0 ? reflectance_ : transmittance_) * inverse_pi;
   }

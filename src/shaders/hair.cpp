@@ -27,7 +27,7 @@ namespace {
 // On a ribbon h goes from edge to edge, and from behind the other way around. On what encloses a volume, such as a tube, it is
 // the sine of the angle between the normal and `out` around the fibre: with e the direction of `out` across the fibre's
 // x, the normal z is h (e cross x) + sqrt(1 - h^2) e, so h = -e.y.
-class HairScatter final : public JointScatter {
+class HairScatter final : public JointScatter<HairScatter> {
  public:
   static constexpr Lobes all = glossy_reflection | glossy_transmission;
 
@@ -40,7 +40,6 @@ class HairScatter final : public JointScatter {
     reciprocal_ = false;
   }
 
- protected:
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
     if (in.z == 0) return {};
     ScatterValue r = along_and_around(Angles(out), section(out), in);
@@ -134,15 +133,14 @@ class WallScatter final : public ScatterCombination {
     frame_ = fibre.frame();
   }
 
-  ScatterValue combined_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
-                                          Lobes which) const override {
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     if (!outside(transport == Transport::radiance ? out : in)) return {};
     const ScatterValue v = fibre_.value_and_density(out, in, transport, which);
     return {v.value, v.density * (1 - straight_probability(out, transport, which))};
   }
 
-  std::optional<ScatterSample> combined_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                               Lobes which) const override {
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override {
     const float straight = straight_probability(out, transport, which);
     if (choice < straight) return straight_on(out, Spectrum(1 / straight), straight);
     if (transport == Transport::radiance && !outside(out)) return std::nullopt;
@@ -153,7 +151,7 @@ class WallScatter final : public ScatterCombination {
     return s;
   }
 
-  Spectrum combined_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
     if (outside(out)) return fibre_.albedo(out, which);
     return which & pass_through ? Spectrum(1.0f) : Spectrum();
   }

@@ -1,13 +1,13 @@
 #pragma once
 // JointScatter: for models whose value and density come from one computation.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 
 namespace etendue {
 
-class JointScatter : public Scatter {
- protected:
-  using Scatter::Scatter;
+template <class Model>
+class JointScatter : public ScatterModel<Model> {
+ public:
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override = 0;
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const final {
     return local_value_and_density(out, in, which).value;
@@ -15,6 +15,10 @@ class JointScatter : public Scatter {
   float local_density(const Vector3& out, const Vector3& in, Lobes which) const final {
     return local_value_and_density(out, in, which).density;
   }
+
+ protected:
+  using ScatterModel<Model>::ScatterModel;
+  ~JointScatter() = default;
 };
 
 }  // namespace etendue

@@ -69,13 +69,12 @@ struct CosineLobe {
 constexpr size_t most_lobes = 8;
 using Colors = std::array<Spectrum, most_lobes>;
 
-class LafortuneScatter final : public JointScatter {
+class LafortuneScatter final : public JointScatter<LafortuneScatter> {
  public:
   LafortuneScatter(const SurfacePoint& p, const Frame& frame, Lobes lobes, const std::vector<CosineLobe>& list,
                    Spectrum diffuse, const Colors& colors)
       : JointScatter(p, frame, lobes), list_(list.data()), count_(list.size()), diffuse_(diffuse), colors_(colors) {}
 
- protected:
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(out.z * in.z > 0)) return {};
     return value_and_density_of(above(out), above(in), shares(above(out), which), which);

@@ -1,6 +1,6 @@
 // Lambertian: light leaves alike in all directions, on the side it came from.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "etendue/warp.h"
 #include "shaders/reflectance.h"
 
@@ -9,13 +9,13 @@ namespace {
 
 // f = rho / pi [1/sr], so that the integral of f cos over the hemisphere is rho. Directions are drawn with density
 // cos / pi, so f cos / density = rho for every sample.
-class LambertianScatter final : public Scatter {
+class LambertianScatter final : public ScatterModel<LambertianScatter> {
  public:
-  LambertianScatter(const SurfacePoint& p, Spectrum reflectance) : Scatter(p, diffuse_reflection), reflectance_(reflectance) {
+  LambertianScatter(const SurfacePoint& p, Spectrum reflectance)
+      : ScatterModel(p, diffuse_reflection), reflectance_(reflectance) {
     has_choice_ = false;
   }
 
- protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? reflectance_ * inverse_pi : Spectrum();
   }

@@ -74,8 +74,8 @@ float LayeredScatter::density_between(const LayerStack& stack, Lobes asked, cons
   return goes_in * stack.density(out, in, transport, random);
 }
 
-ScatterValue LayeredScatter::combined_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
-                                                        Lobes which) const {
+ScatterValue LayeredScatter::world_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
+                                                     Lobes which) const {
   const LayerStack* const* stacks = seen_from(out);
   const LayerStack& stack = *stacks[0];
   const Scatter& face = stack.face(stack.side(out));
@@ -104,8 +104,8 @@ ScatterValue LayeredScatter::combined_value_and_density(const Vector3& out, cons
   return sum;
 }
 
-std::optional<ScatterSample> LayeredScatter::combined_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                                             Lobes which) const {
+std::optional<ScatterSample> LayeredScatter::world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                                          Lobes which) const {
   const LayerStack& stack = *seen_from(out)[0];
   const int side = stack.side(out);
   const Scatter& face = stack.face(side);
@@ -139,7 +139,7 @@ std::optional<ScatterSample> LayeredScatter::combined_sample(const Vector3& out,
   return s;
 }
 
-Spectrum LayeredScatter::combined_albedo(const Vector3& out, Lobes which) const {
+Spectrum LayeredScatter::world_albedo(const Vector3& out, Lobes which) const {
   const LayerStack& stack = *seen_from(out)[0];
   const Question q(stack, out, which);
   Spectrum sum = stack.face(stack.side(out)).albedo(out, which & reflection_lobes);
@@ -151,7 +151,7 @@ Spectrum LayeredScatter::combined_albedo(const Vector3& out, Lobes which) const 
   // What passes straight on is part of what goes through specularly, unless it is all of it.
   if (q.between & (specular_transmission | pass_through)) {
     Spectrum straight;
-    if (q.possible & pass_through) straight = combined_sample(out, 0, {}, Transport::importance, pass_through)->weight;
+    if (q.possible & pass_through) straight = world_sample(out, 0, {}, Transport::importance, pass_through)->weight;
     if (q.between & pass_through) sum += straight;
     if (q.between & specular_transmission) sum += max(a.specular[1] - straight, 0);
   }

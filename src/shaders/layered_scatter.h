@@ -17,13 +17,12 @@ class LayeredScatter final : public ScatterCombination {
   LayeredScatter(const SurfacePoint& p, const LayerStack* const* front, const LayerStack* const* back, int stacks, int walks,
                  std::uint64_t seed, Lobes lobes);
 
-  ScatterValue combined_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
-                                          Lobes which) const override;
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override;
 
-  std::optional<ScatterSample> combined_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                               Lobes which) const override;
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override;
 
-  Spectrum combined_albedo(const Vector3& out, Lobes which) const override;
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override;
 
  private:
   /// What is asked of light that comes from `out`.

@@ -1,6 +1,7 @@
 // LayeredShader: varnish on wood, glaze on a pot, a sheet of glass: any surface over any other.
 
 #include "etendue/medium_stack.h"
+#include "etendue/scatter_model.h"
 #include "shaders/layered_scatter.h"
 #include "shaders/scalar_map.h"
 
@@ -8,11 +9,10 @@ namespace etendue {
 namespace {
 
 /// In the place of a layer that scatters nothing.
-class BlackScatter final : public Scatter {
+class BlackScatter final : public ScatterModel<BlackScatter> {
  public:
-  explicit BlackScatter(const SurfacePoint& p) : Scatter(p, no_lobes) {}
+  explicit BlackScatter(const SurfacePoint& p) : ScatterModel(p, no_lobes) {}
 
- protected:
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
   bool local_sample(const Vector3&, float, Point2, Lobes, LocalSample&) const override { return false; }

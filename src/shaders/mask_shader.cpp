@@ -19,15 +19,14 @@ class MaskScatter final : public ScatterCombination {
     if (below) frame_ = below->frame();
   }
 
-  ScatterValue combined_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
-                                          Lobes which) const override {
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     if (!below_ || !below_->has(which & smooth_lobes)) return {};
     const ScatterValue v = below_->value_and_density(out, in, transport, which);
     return {v.value * opacity_, v.density * (1 - straight_probability(out, which))};
   }
 
-  std::optional<ScatterSample> combined_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                               Lobes which) const override {
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override {
     const float open = 1 - opacity_;
     if (which == pass_through)
       return straight_on(out, Spectrum(open) + opacity_ * straight_fraction(below_, out, transport), 1);
@@ -41,7 +40,7 @@ class MaskScatter final : public ScatterCombination {
     return s;
   }
 
-  Spectrum combined_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
     Spectrum sum;
     if (below_) sum = below_->albedo(out, which) * opacity_;
     if (which & pass_through) sum += Spectrum(1 - opacity_);

@@ -14,10 +14,8 @@ namespace etendue {
 //   Spectrum matte_albedo(out), glossy_albedo(out)
 //   float matte_weight(out), glossy_weight(out)    their parts in the choice
 template <class Model>
-class MatteGlossyScatter : public JointScatter {
- protected:
-  using JointScatter::JointScatter;
-
+class MatteGlossyScatter : public JointScatter<Model> {
+ public:
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(out.z * in.z > 0)) return {};
     return combine(
@@ -30,6 +28,9 @@ class MatteGlossyScatter : public JointScatter {
     if (which & glossy_reflection) sum += model().glossy_albedo(out);
     return sum;
   }
+
+ protected:
+  using JointScatter<Model>::JointScatter;
 
   float glossy_probability(const Vector3& out, Lobes which) const {
     if (!(which & glossy_reflection)) return 0;
@@ -65,9 +66,7 @@ class MatteGlossyScatter : public JointScatter {
 /// One whose lobe is drawn by its half vector: the model states sample_half(u) besides, a half vector with z > 0.
 template <class Model>
 class HalfVectorScatter : public MatteGlossyScatter<Model> {
- protected:
-  using MatteGlossyScatter<Model>::MatteGlossyScatter;
-
+ public:
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, Scatter::LocalSample& s) const override {
     const auto& model = static_cast<const Model&>(*this);
     const float probability = this->glossy_probability(out, which);
@@ -84,6 +83,9 @@ class HalfVectorScatter : public MatteGlossyScatter<Model> {
         s, this->combine(
                s.in, probability, which, [&] { return model.matte(out, s.in); }, [&] { return model.glossy(out, s.in); }));
   }
+
+ protected:
+  using MatteGlossyScatter<Model>::MatteGlossyScatter;
 };
 
 }  // namespace etendue

@@ -1,7 +1,7 @@
 // MerlShader: a measured isotropic material from a file of the MERL database.
 
 #include "etendue/color.h"
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "etendue/value.h"
 #include "etendue/warp.h"
 #include "shaders/merl_file.h"
@@ -98,12 +98,11 @@ class MerlData {
   std::vector<Rgb> albedo_;
 };
 
-class MerlScatter final : public Scatter {
+class MerlScatter final : public ScatterModel<MerlScatter> {
  public:
   MerlScatter(const SurfacePoint& p, const MerlData& data, const RgbSpace& space, const Wavelengths& w)
-      : Scatter(p, glossy_reflection), data_(&data), space_(&space), wavelengths_(w) {}
+      : ScatterModel(p, glossy_reflection), data_(&data), space_(&space), wavelengths_(w) {}
 
- protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? value(upwards(out), upwards(in)) : Spectrum();
   }

@@ -32,8 +32,7 @@ class MixScatter final : public ScatterCombination {
     frame_ = first && (!second || !(first->frame().n == p.shading_normal)) ? first->frame() : second->frame();
   }
 
-  ScatterValue combined_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
-                                          Lobes which) const override {
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     const float probability[2] = {first_probability(out, which), 1 - first_probability(out, which)};
     ScatterValue sum;
     for (int k = 0; k < 2; ++k) {
@@ -45,8 +44,8 @@ class MixScatter final : public ScatterCombination {
     return sum;
   }
 
-  std::optional<ScatterSample> combined_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                               Lobes which) const override {
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override {
     // Both parts' light goes the same way: all of it, without choosing.
     if (which == pass_through)
       return straight_on(
@@ -75,7 +74,7 @@ class MixScatter final : public ScatterCombination {
     return s;
   }
 
-  Spectrum combined_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
     Spectrum sum;
     for (int k = 0; k < 2; ++k)
       if (parts_[k]) sum += parts_[k]->albedo(out, which) * shares_[k];

@@ -1,6 +1,6 @@
 // OrenNayar: a rough matt surface (plaster, clay, the moon), which looks flatter than a Lambertian one and loses no energy.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "etendue/warp.h"
 #include "shaders/eon.h"
 #include "shaders/reflectance.h"
@@ -44,12 +44,14 @@ struct ClippedCosine {
   float a, b, c, d, determinant, part;
 };
 
-class OrenNayarScatter final : public Scatter {
+class OrenNayarScatter final : public ScatterModel<OrenNayarScatter> {
  public:
   OrenNayarScatter(const SurfacePoint& p, Spectrum color, float roughness)
-      : Scatter(p, diffuse_reflection), lobe_(color, roughness), roughness_(roughness), uniform_(std::pow(roughness, 0.1f)) {}
+      : ScatterModel(p, diffuse_reflection),
+        lobe_(color, roughness),
+        roughness_(roughness),
+        uniform_(std::pow(roughness, 0.1f)) {}
 
- protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? lobe_.value(out, in) : Spectrum();
   }

@@ -1,17 +1,16 @@
 // PassThrough: a boundary that is not there for light.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 
 namespace etendue {
 namespace {
 
-class PassThroughScatter final : public Scatter {
+class PassThroughScatter final : public ScatterModel<PassThroughScatter> {
  public:
   // Around the geometric normal: interpolated normals play no part, and where they disagree with the surface nothing may
   // be lost.
-  explicit PassThroughScatter(const SurfacePoint& p) : Scatter(p, Frame(p.normal), pass_through) { has_choice_ = false; }
+  explicit PassThroughScatter(const SurfacePoint& p) : ScatterModel(p, Frame(p.normal), pass_through) { has_choice_ = false; }
 
- protected:
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
   bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {

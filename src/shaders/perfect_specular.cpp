@@ -1,17 +1,16 @@
 // PerfectSpecular: a mirror.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "shaders/reflectance.h"
 
 namespace etendue {
 namespace {
 
-class PerfectSpecularScatter final : public Scatter {
+class PerfectSpecularScatter final : public ScatterModel<PerfectSpecularScatter> {
  public:
   PerfectSpecularScatter(const SurfacePoint& p, Spectrum reflectance)
-      : Scatter(p, specular_reflection), reflectance_(reflectance) {}
+      : ScatterModel(p, specular_reflection), reflectance_(reflectance) {}
 
- protected:
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
   bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {

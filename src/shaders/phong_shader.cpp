@@ -29,7 +29,6 @@ class PhongScatter final : public MatteGlossyScatter<PhongScatter> {
         diffuse_weight_(diffuse.average()),
         specular_weight_(specular.average()) {}
 
- protected:
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
     const float probability = glossy_probability(out, which);
     const Vector3 r = mirror(out);

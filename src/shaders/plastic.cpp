@@ -34,7 +34,7 @@ struct Coat {
   float through(const Vector3& v) const { return rough ? (*rough)(v) : 1 - fresnel_dielectric(std::abs(v.z), eta); }
 };
 
-class PlasticScatter final : public JointScatter {
+class PlasticScatter final : public JointScatter<PlasticScatter> {
  public:
   PlasticScatter(const SurfacePoint& p, const MicrofacetDistribution& distribution, const Coat& coat, Spectrum body,
                  bool nonlinear)
@@ -50,7 +50,6 @@ class PlasticScatter final : public JointScatter {
     body_weight_ = body_albedo_.average();
   }
 
- protected:
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(out.z * in.z > 0)) return {};
     const float through = coat_.through(out), coat_probability = probability_of_coat(through, which);

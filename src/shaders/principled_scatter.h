@@ -47,12 +47,11 @@ struct PrincipledLayers {
 };
 
 /// All lobes of a surface like these layers.
-class PrincipledScatter final : public JointScatter {
+class PrincipledScatter final : public JointScatter<PrincipledScatter> {
  public:
   static Lobes lobes_of(const PrincipledLayers&);
   PrincipledScatter(const SurfacePoint& p, const Frame& frame, const PrincipledLayers&);
 
- protected:
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     return combine(out, in, which, plan(out, which));
   }

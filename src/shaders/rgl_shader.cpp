@@ -1,6 +1,6 @@
 // RglShader: a material measured by the EPFL laboratory RGL, from its .bsdf file.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "etendue/value.h"
 #include "etendue/warp.h"
 #include "shaders/rgl_data.h"
@@ -17,14 +17,13 @@ namespace {
 //
 // Directions are drawn as the file says (see rgl_data.h). That density may vanish where f_file(in, out) does not, which the
 // mean needs, and importance: one direction in ten is drawn with density cos / pi.
-class RglScatter final : public Scatter {
+class RglScatter final : public ScatterModel<RglScatter> {
  public:
   RglScatter(const SurfacePoint& p, const Frame& frame, const RglData& data, const Wavelengths& w, bool symmetric)
-      : Scatter(p, frame, glossy_reflection), data_(&data), wavelengths_(w), channels_(data.channels(w)) {
+      : ScatterModel(p, frame, glossy_reflection), data_(&data), wavelengths_(w), channels_(data.channels(w)) {
     reciprocal_ = symmetric;
   }
 
- protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? value(upwards(out), upwards(in)) / std::abs(in.z) : Spectrum();
   }

@@ -24,7 +24,7 @@ namespace etendue {
 // no wavelength needs to be dropped. Light scattered more than once is known for the hero: that which gets through is
 // multiplied by eta / eta_hero, which keeps both transports adjoint at every wavelength; what it gains or loses by that is the
 // relative difference of the indices times the few hundredths of light that are scattered so.
-class RoughDielectric final : public JointScatter {
+class RoughDielectric final : public JointScatter<RoughDielectric> {
  public:
   /// eta: index below (z < 0) over that above. `multiple`: whether light scattered more than once is counted, where it is
   /// known. `single`: the path has only its hero left.
@@ -44,7 +44,6 @@ class RoughDielectric final : public JointScatter {
     return d.smooth() || std::max(d.alpha_x, d.alpha_y) * bend < 3e-4f;
   }
 
- protected:
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (out.z == 0 || in.z == 0) return {};
     ScatterValue r = out.z * in.z > 0 ? reflection(out, in, which) : transmission(out, in, which);

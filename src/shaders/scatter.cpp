@@ -1,130 +1,24 @@
-// Scatter's public calls: side tests, lobe masks and the two corrections that make f depend on what is carried.
-//
-// Notation: light or importance is carried along a path that came from `out` and goes on to `in`. The renderer
-// multiplies f by |in . ns|, the cosine with the shading normal ns. ng is the geometric normal.
-//
-// Refraction (Veach 1997, section 5.2). A beam that is refracted keeps its power but not its spread:
-// n_o^2 cos_o dw_o = n_i^2 cos_i dw_i, so radiance that arrives in a medium of index n_i leaves into one of index n_o as
-// L_o = (1 - F) (n_o / n_i)^2 L_i (eq. 5.2). A path that carries radiance's adjoint from the camera looks from `out` to
-// where light comes from, `in`: n_o is the index on the side of `out`, n_i that on the side of `in`, and with
-// eta = n_i / n_o the factor is 1 / eta^2. A path from a light carries power: none of it is gained or lost by the change
-// of spread, f integrates over `in` to 1 - F, and there is no factor. Local functions are in this second convention.
-// Indices differ between wavelengths, and so does the factor. A specular refraction has the direction of one wavelength: where
-// indices differ only the hero goes on, and its factor is all that counts.
-//
-// Shading normals (Veach 1997, section 5.3). Using f |in . ns| for radiance that arrives from `in` means a surface whose
-// true function is f |in . ns| / |in . ng|, a function of where light comes from. On a path from a light, light comes from
-// `out`: the true function is f |out . ns| / |out . ng|, and the true cosine |in . ng|. As the renderer multiplies by
-// |in . ns|, f must be multiplied by |out . ns| |in . ng| / (|out . ng| |in . ns|) (eq. 5.19). Radiance needs no factor.
-//
-// Models that are not reciprocal. On a path from a light, light comes from `out` and leaves to `in`: f is asked for (in, out).
-// Directions are still drawn as if it were (out, in), which is near, and weighed with what f then is.
-//
-// Sides. Whether a pair of directions is a reflection or a transmission is decided by ng, or light would leak through
-// surfaces; the local functions decide by ns. A direction on whose side the two normals disagree carries nothing, which
-// is the same for both roles of a direction, so reciprocity is kept.
+// Scatter's answers for models that have nothing but local functions.
 
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 
 namespace etendue {
-namespace {
 
-/// Two directions in local coordinates, and their cosines with the geometric normal.
-struct Pair {
-  Vector3 out, in;
-  float out_geometric, in_geometric;
+using Answers = ScatterAnswers<Scatter>;
 
-  bool sides_agree() const { return out_geometric * out.z > 0 && in_geometric * in.z > 0; }
-  bool reflection() const { return out.z * in.z > 0; }
-  /// The shading-normal factor of importance.
-  float importance_factor() const { return std::abs(out.z * in_geometric / (out_geometric * in.z)); }
-};
-
-Spectrum squared(const Spectrum& s) { return s * s; }
-
-bool asked(const Pair& pair, Lobes which) {
-  return (which & smooth_lobes & (pair.reflection() ? reflection_lobes : transmission_lobes)) != 0;
+Spectrum Scatter::world_evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
+  return Answers::evaluate(*this, out, in, transport, which);
 }
-
-}  // namespace
-
-const ScatterCombination& Scatter::combination() const { return static_cast<const ScatterCombination&>(*this); }
-
-Spectrum Scatter::albedo(const Vector3& out, Lobes which) const {
-  which &= lobes_;
-  if (which == no_lobes) return {};
-  return combined_ ? combination().combined_albedo(out, which) : local_albedo(frame_.to_local(out), which);
+float Scatter::world_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const {
+  return Answers::density(*this, out, in, which);
 }
-
-Spectrum Scatter::relative_index(const Vector3&, const Vector3&) const { return Spectrum(1.0f); }
-
-Spectrum Scatter::local_importance(const Vector3& out, const Vector3& in, Lobes which) const {
-  if (reciprocal_) return local_evaluate(out, in, which);
-  const Spectrum f = local_evaluate(in, out, which);
-  return out.z * in.z > 0 ? f : f / squared(relative_index(in, out));
+ScatterValue Scatter::world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
+  return Answers::value_and_density(*this, out, in, transport, which);
 }
-
-Spectrum Scatter::evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
-  which &= lobes_;
-  if (combined_) return combination().combined_value_and_density(out, in, transport, which).value;
-  const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
-  if (!pair.sides_agree() || !asked(pair, which)) return {};
-  if (transport == Transport::importance) return local_importance(pair.out, pair.in, which) * pair.importance_factor();
-  const Spectrum value = local_evaluate(pair.out, pair.in, which);
-  if (pair.reflection()) return value;
-  return value / squared(relative_index(pair.out, pair.in));
+std::optional<ScatterSample> Scatter::world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                                   Lobes which) const {
+  return Answers::sample(*this, out, choice, u, transport, which);
 }
-
-float Scatter::density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
-  which &= lobes_;
-  if (combined_) return combination().combined_value_and_density(out, in, transport, which).density;
-  const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
-  if (!pair.sides_agree() || !asked(pair, which)) return 0;
-  return local_density(pair.out, pair.in, which);
-}
-
-ScatterValue Scatter::value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
-  which &= lobes_;
-  if (combined_) return combination().combined_value_and_density(out, in, transport, which);
-  const Pair pair{frame_.to_local(out), frame_.to_local(in), dot(normal_, out), dot(normal_, in)};
-  if (!pair.sides_agree() || !asked(pair, which)) return {};
-  if (transport == Transport::radiance && pair.reflection()) return local_value_and_density(pair.out, pair.in, which);
-  if (transport == Transport::importance && !reciprocal_)
-    return {local_importance(pair.out, pair.in, which) * pair.importance_factor(), local_density(pair.out, pair.in, which)};
-  const ScatterValue local = local_value_and_density(pair.out, pair.in, which);
-  if (transport == Transport::importance) return {local.value * pair.importance_factor(), local.density};
-  return {local.value / squared(relative_index(pair.out, pair.in)), local.density};
-}
-
-std::optional<ScatterSample> Scatter::sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                             Lobes which) const {
-  which &= lobes_;
-  if (combined_) return which == no_lobes ? std::nullopt : combination().combined_sample(out, choice, u, transport, which);
-  Pair pair;
-  pair.out = frame_.to_local(out);
-  pair.out_geometric = dot(normal_, out);
-  // What passes straight on knows no normals.
-  if (!(pair.out_geometric * pair.out.z > 0)) which &= pass_through;
-  if (which == no_lobes) return std::nullopt;
-
-  LocalSample local;
-  if (!local_sample(pair.out, choice, u, which, local) || !(local.density > 0)) return std::nullopt;
-  pair.in = local.in;
-  const Vector3 direction = frame_.to_world(local.in);
-  pair.in_geometric = dot(normal_, direction);
-  // Those of `out` agree, or nothing but passing through was asked.
-  if (!(pair.in_geometric * pair.in.z > 0) && local.lobe != pass_through) return std::nullopt;
-
-  Spectrum weight = local.value / local.density;
-  if (transport == Transport::importance && !reciprocal_ && (local.lobe & smooth_lobes))
-    weight = local_importance(pair.out, pair.in, which) * (std::abs(pair.in.z) / local.density);
-  if (local.lobe != pass_through) {
-    if (transport == Transport::importance)
-      weight *= pair.importance_factor();
-    else if (!pair.reflection())
-      weight = weight / squared(local.lobe & specular_lobes ? Spectrum(local.eta) : relative_index(pair.out, pair.in));
-  }
-  return ScatterSample{direction, weight, local.density, local.lobe, local.eta, local.dispersive};
-}
+Spectrum Scatter::world_albedo(const Vector3& out, Lobes which) const { return Answers::albedo(*this, out, which); }
 
 }  // namespace etendue

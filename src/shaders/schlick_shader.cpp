@@ -64,7 +64,7 @@ const Table& albedo_table() {
   return table;
 }
 
-class SchlickScatter final : public JointScatter {
+class SchlickScatter final : public JointScatter<SchlickScatter> {
  public:
   /// With one layer, `base` has no lobes.
   SchlickScatter(const SurfacePoint& p, const Frame& frame, const Layer& top, const Layer& base, const Table& table)
@@ -74,7 +74,6 @@ class SchlickScatter final : public JointScatter {
     return Lobes((l.d > 0 ? diffuse_reflection : 0) | (l.g > 0 ? glossy_reflection : 0) | (l.s > 0 ? specular_reflection : 0));
   }
 
- protected:
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     return out.z * in.z > 0 ? value_and_density_of(out, in, shares(out, which), which) : ScatterValue();
   }

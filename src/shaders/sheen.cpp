@@ -1,6 +1,7 @@
 // SheenShader: the bright edges of velvet and dusty things, over any other surface.
 
 #include "shaders/sheen.h"
+#include "etendue/scatter_model.h"
 #include "etendue/warp.h"
 #include "shaders/part_choice.h"
 #include "shaders/reflectance.h"
@@ -11,14 +12,13 @@ namespace {
 
 /// The fibres alone. E is at most 0.93, and small but near the horizon; directions are drawn uniformly, with density 1 / (2
 /// pi).
-class SheenScatter final : public Scatter {
+class SheenScatter final : public ScatterModel<SheenScatter> {
  public:
   SheenScatter(const SurfacePoint& p, const Frame& frame, const SheenLobe& lobe, Spectrum color)
-      : Scatter(p, frame, glossy_reflection), lobe_(lobe), color_(color) {
+      : ScatterModel(p, frame, glossy_reflection), lobe_(lobe), color_(color) {
     has_choice_ = false;
   }
 
- protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? color_ * lobe_.value(out, in) : Spectrum();
   }
@@ -61,16 +61,15 @@ class CoveredScatter final : public ScatterCombination {
     frame_ = base.frame();
   }
 
-  ScatterValue combined_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
-                                          Lobes which) const override {
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     const float probability = sheen_probability(out, which);
     const ScatterValue a = sheen_.value_and_density(out, in, transport, which);
     const ScatterValue b = base_.value_and_density(out, in, transport, which);
     return {a.value + b.value * through(out, in), lerp(probability, b.density, a.density)};
   }
 
-  std::optional<ScatterSample> combined_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                               Lobes which) const override {
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override {
     const float sheen = sheen_probability(out, which);
     const bool fibres = choice < sheen;
     const Scatter& chosen = fibres ? static_cast<const Scatter&>(sheen_) : base_;
@@ -94,7 +93,7 @@ class CoveredScatter final : public ScatterCombination {
     return s;
   }
 
-  Spectrum combined_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
     return sheen_.albedo(out, which) + base_.albedo(out, which) * passed(out);
   }
 

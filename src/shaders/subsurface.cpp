@@ -13,7 +13,7 @@
 
 #include "etendue/color.h"
 #include "etendue/medium_stack.h"
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "etendue/warp.h"
 #include "shaders/albedo_inversion.h"
 #include "shaders/fresnel.h"
@@ -29,11 +29,11 @@ Spectrum reflectance_of(float cosine, const Spectrum& eta) {
 
 /// The boundary, as seen by light that arrives. Reflection or entry is chosen by the mean of F over the path's wavelengths;
 /// neither direction depends on the wavelength in a way that counts, so all of them are kept. Alike on both sides.
-class BoundaryScatter final : public Scatter {
+class BoundaryScatter final : public ScatterModel<BoundaryScatter> {
  public:
-  BoundaryScatter(const SurfacePoint& p, Spectrum eta) : Scatter(p, specular_reflection | specular_transmission), eta_(eta) {}
+  BoundaryScatter(const SurfacePoint& p, Spectrum eta)
+      : ScatterModel(p, specular_reflection | specular_transmission), eta_(eta) {}
 
- protected:
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 
@@ -68,16 +68,15 @@ class BoundaryScatter final : public Scatter {
 };
 
 /// What comes from inside: f = (1 - F(in)) / (c pi) [1/sr], with directions drawn by cos / pi.
-class ExitScatter final : public Scatter {
+class ExitScatter final : public ScatterModel<ExitScatter> {
  public:
   ExitScatter(const SurfacePoint& p, Spectrum eta)
-      : Scatter(p, diffuse_reflection),
+      : ScatterModel(p, diffuse_reflection),
         eta_(eta),
         scale_(map(eta, [](float e) { return 1 / (1 - mean_fresnel_dielectric(e)); })) {
     has_choice_ = false;
   }
 
- protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? passed(std::abs(in.z)) * inverse_pi : Spectrum();
   }

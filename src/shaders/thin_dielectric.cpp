@@ -1,7 +1,7 @@
 // ThinDielectric: a pane of glass, so thin that light leaves it where it came in.
 
 #include "etendue/medium_stack.h"
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 #include "shaders/fresnel.h"
 #include "shaders/reflectance.h"
 #include "shaders/roughness.h"
@@ -15,17 +15,16 @@ namespace {
 // They hold for each polarisation on its own, which all passages keep; unpolarised light is half of each. The slab is thicker
 // than the light's coherence, so intensities add. A passage at the angle of cosine c' inside is 1 / c' times as long as one
 // along the normal: a = color^(1 / c').
-class ThinDielectricScatter final : public Scatter {
+class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
  public:
   /// eta: index of the slab over that around it; `passage`: what is left after one passage along the normal.
   ThinDielectricScatter(const SurfacePoint& p, Spectrum eta, Spectrum passage)
-      : Scatter(p, specular_reflection | pass_through),
+      : ScatterModel(p, specular_reflection | pass_through),
         eta_(eta),
         passage_(passage),
         clear_(passage.minimum() >= 1),
         flat_(eta.minimum() == eta.maximum() && passage.minimum() == passage.maximum()) {}
 
- protected:
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 

@@ -2,6 +2,7 @@
 
 #include "etendue/medium_stack.h"
 #include "etendue/object_map.h"
+#include "etendue/scatter_model.h"
 #include "shaders/film_interference.h"
 #include "shaders/scalar_map.h"
 
@@ -15,7 +16,7 @@ namespace {
 //
 // Whether a path is reflected is drawn with the mean of the reflectances over its wavelengths, not the hero's alone: the
 // hero's may vanish where the others' do not. The weights R_i / mean R are then at most their number.
-class ThinFilmScatter final : public Scatter {
+class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
  public:
   struct Layers {
     Spectrum outside, film, base, absorbing;  ///< indices; that of the base is base + i absorbing
@@ -25,9 +26,9 @@ class ThinFilmScatter final : public Scatter {
   };
 
   ThinFilmScatter(const SurfacePoint& p, const Layers& layers)
-      : Scatter(p, Lobes(specular_reflection | (layers.through ? Lobes(specular_transmission) : no_lobes))), layers_(layers) {}
+      : ScatterModel(p, Lobes(specular_reflection | (layers.through ? Lobes(specular_transmission) : no_lobes))),
+        layers_(layers) {}
 
- protected:
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 
