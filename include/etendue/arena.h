@@ -15,10 +15,6 @@ class Arena {
  public:
   static constexpr size_t block_size = size_t(1) << 16;
 
-  Arena() = default;
-  Arena(const Arena&) = delete;
-  Arena& operator=(const Arena&) = delete;
-
   template <class T, class... Args>
   T* make(Args&&... args) {
     static_assert(std::is_trivially_destructible_v<T>, "arena objects are never destroyed");
@@ -27,35 +23,28 @@ class Arena {
   }
 
   void reset() {
+    block_ = 0;
     used_ = 0;
-    if (block_ > 0) take(0);
   }
 
  private:
   void* allocate(size_t size, size_t alignment) {
     size_t at = (used_ + alignment - 1) & ~(alignment - 1);
-    if (at + size > room_) [[unlikely]] {
-      take(room_ == 0 ? 0 : block_ + 1);
+    if (blocks_.empty() || at + size > block_size) {
+      if (!blocks_.empty()) ++block_;
+      if (block_ == blocks_.size())
+        blocks_.emplace_back(static_cast<std::byte*>(::operator new(block_size, std::align_val_t(64))));
       at = 0;
     }
     used_ = at + size;
-    return begin_ + at;
-  }
-  /// Goes on in a block.
-  [[gnu::noinline]] void take(size_t block) {
-    if (block == blocks_.size())
-      blocks_.emplace_back(static_cast<std::byte*>(::operator new(block_size, std::align_val_t(64))));
-    block_ = block;
-    begin_ = blocks_[block].get();
-    room_ = block_size;
+    return blocks_[block_].get() + at;
   }
 
   struct Free {
     void operator()(std::byte* p) const { ::operator delete(p, std::align_val_t(64)); }
   };
   std::vector<std::unique_ptr<std::byte, Free>> blocks_;
-  size_t block_ = 0, used_ = 0, room_ = 0;  // of the block gone on in: its number, bytes handed out, bytes in all
-  std::byte* begin_ = nullptr;
+  size_t block_ = 0, used_ = 0;
 };
 
 }  // namespace etendue

@@ -57,10 +57,9 @@ class ImageTile {
 
   /// Adds a sample at a film point (pixels; centres at half-integers), in the pixel (px, py) it belongs to. Bad values
   /// are noted and count as zero.
-  /// `by_length`, when given, holds the parts of the value by path length, for `ImageBuffer::path_lengths`. (A reference: as a
-  /// value it would go through the stack, and be waited for.)
+  /// `by_length`, when given, holds the parts of the value by path length, for `ImageBuffer::path_lengths`.
   void contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, float weight = 1,
-                  const std::span<const Spectrum>& by_length = {});
+                  std::span<const Spectrum> by_length = {});
   /// Adds light that did not come through a pixel of its own (light tracing): what one path, of as many as there are
   /// samples, brings to the mean radiance over the whole picture. May lie anywhere in the picture. (px, py) and sample say
   /// which sample brought it, length how many segments its path had.

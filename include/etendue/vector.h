@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 
 #include "etendue/math.h"
 
@@ -97,13 +96,9 @@ struct Frame {
   explicit Frame(const Normal3& normal) : n(normal) {
     const float sign = std::copysign(1.0f, n.z);
     const float a = -1 / (sign + n.z);
-    // x and y together, as they are read: numbers that were written one by one and are read as two are waited for.
-    using Two = float __attribute__((vector_size(8)));
-    const Two xy{n.x, n.y}, s_xy = Two{1, 0} + (sign * n.x * a) * xy, t_xy = Two{0, sign} + (n.y * a) * xy;
-    std::memcpy(&s, &s_xy, sizeof s_xy);
-    std::memcpy(&t, &t_xy, sizeof t_xy);
-    s.z = -sign * n.x;
-    t.z = -n.y;
+    const float b = n.x * n.y * a;
+    s = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+    t = {b, sign + n.y * n.y * a, -n.y};
   }
 
   Vector3 to_local(const Vector3& v) const { return {dot(s, v), dot(t, v), dot(n, v)}; }

@@ -26,8 +26,6 @@ void Placement::set(const Component& camera, const Point3& from, const Point3& t
   still_ = Pose(transform_.still() * base_);
 }
 
-Pose Placement::moved(float time) const { return Pose(transform_.at(time) * base_); }
-
 void check_shutter(const Camera& camera) {
   if (!std::isfinite(camera.shutter_open)) camera.fail("shutter_open", "must be a finite time");
   if (!std::isfinite(camera.shutter_close) || camera.shutter_close < camera.shutter_open)

@@ -28,15 +28,9 @@ class Placement {
   /// Checks and takes the members of a camera; throws at the member that is wrong.
   void set(const Component& camera, const Point3& from, const Point3& to, const Vector3& up,
            const AnimatedTransform& transform);
-  Pose at(float time) const {
-    if (!moving_) [[likely]]
-      return still_;
-    return moved(time);
-  }
+  Pose at(float time) const { return moving_ ? Pose(transform_.at(time) * base_) : still_; }
 
  private:
-  Pose moved(float time) const;
-
   Pose still_;
   bool moving_ = false;
   Transform base_;

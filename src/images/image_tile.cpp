@@ -106,7 +106,7 @@ void ImageTile::note(int x, int y, std::uint32_t sample, BadSample::Kind kind) {
 }
 
 void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum& value,
-                           const Wavelengths& wavelengths, float weight, const std::span<const Spectrum>& by_length) {
+                           const Wavelengths& wavelengths, float weight, std::span<const Spectrum> by_length) {
   Xyz color;
   BadKind kind = BadKind::not_a_number;
   bool good = to_color(value, wavelengths, color, kind);

@@ -70,10 +70,8 @@ void record_camera(PathRecord& record, const Camera& camera, const Ray& ray) {
   record.vertices.push_back(std::move(v));
 }
 
-// Inlined: a fortieth of the time of simple scenes.
-[[gnu::always_inline]] inline Renderer::CameraSample take_sample(const Renderer& renderer, const RenderContext& context, int x,
-                                                                 int y, const SampleKey& key, Arena& arena,
-                                                                 const Renderer::Request& request) {
+Renderer::CameraSample take_sample(const Renderer& renderer, const RenderContext& context, int x, int y, const SampleKey& key,
+                                   Arena& arena, const Renderer::Request& request) {
   const Ref<Sampler>& sampler = renderer.sampler;
   const Point2 within = sampler->pair(key, film_dimension);
   Renderer::CameraSample s{{float(x) + within.x, float(y) + within.y},
@@ -116,7 +114,6 @@ void Renderer::pass(const RenderContext& context, Pass& pass) const {
     std::vector<Splat>& splats = all_splats;
     all_lengths.resize(path_lengths);
     const std::span<Spectrum> lengths = all_lengths;
-    const std::span<const Spectrum> by_length = lengths;
     Features features;
     const Request request{wants_features ? &features : nullptr, nullptr, lengths, &splats};
     const std::uint32_t first = division.first(item), last = division.last(item);
@@ -128,7 +125,7 @@ void Renderer::pass(const RenderContext& context, Pass& pass) const {
           for (Spectrum& light : lengths) light = {};
           const CameraSample s = take_sample(*this, context, x, y, key, arena, request);
           tile.count_path();
-          tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, 1, by_length);
+          tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, 1, lengths);
           for (const Splat& splat : splats)
             tile.splat(splat.film, x, y, key.sample, splat.value, splat.wavelengths, splat.length);
           if (request.features) tile.features(x, y, features);

@@ -97,9 +97,22 @@ class Rectangle final : public SceneObject {
     std::optional<World> scratch;
     const World& w = world(time, scratch);
     SurfaceSample s;
-    // Apart, since few points are so near: without it this is short.
-    if (w.may_be_near(from) && sample_near(w, from, u, time, s)) [[unlikely]]
-      return s;
+    Vector3 seen_corner;
+    if (w.near(from, seen_corner)) {
+      if (w.perpendicular) {
+        const SphericalRectangle r = w.seen(seen_corner);
+        if (r.usable()) {
+          const Point2 at = r.sample(u);
+          fill_part(w, {clamp((at.x - seen_corner.x) / w.length_u, 0, 1), clamp((at.y - seen_corner.y) / w.length_v, 0, 1)},
+                    time, s.point);
+          complete_by_angle(s, from, 1 / r.solid_angle());
+          return s;
+        }
+      } else {
+        sample_half(w, from, u, time, s);
+        return s;  // always this one, so that it is made in place
+      }
+    }
     fill_part(w, u, time, s.point);
     complete_by_area(s, from, 1 / w.area);
     return s;
@@ -141,13 +154,12 @@ class Rectangle final : public SceneObject {
     Point3 corner_at(int i) const {
       return corner + ((i == 1 || i == 2 ? 1.0f : 0.0f) * edge_u + (i >= 2 ? 1.0f : 0.0f) * edge_v);
     }
-    /// From most places it is far, which the distance of its middle shows with little to compute.
-    bool may_be_near(const Point3& from) const { return !(length_squared((corner - from) + half_diagonal) > far_squared); }
     /// Whether sampling by solid angle may pay. `origin` becomes the corner as seen from the point, along the edges and
     /// the normal (for perpendicular edges).
     [[gnu::always_inline]] inline bool near(const Point3& from, Vector3& origin) const {
-      if (!may_be_near(from)) return false;
       const Vector3 c = corner - from;
+      // From most places it is far, which the distance of its middle shows with less to compute.
+      if (length_squared(c + half_diagonal) > far_squared) return false;
       origin = {dot(c, unit_u), dot(c, unit_v), dot(c, normal)};
       const float x = clamp(0, origin.x, origin.x + length_u), y = clamp(0, origin.y, origin.y + length_v);
       return area > worthwhile_solid_angle * (x * x + y * y + origin.z * origin.z);
@@ -223,23 +235,6 @@ class Rectangle final : public SceneObject {
   [[gnu::always_inline]] inline void fill_part(const World& w, Point2 uv, float time, SurfacePoint& p) const {
     fill(w, uv, time, p);
     set_part(uv, p);
-  }
-
-  /// By solid angle, where that pays.
-  [[gnu::noinline]] bool sample_near(const World& w, const Point3& from, Point2 u, float time, SurfaceSample& s) const {
-    Vector3 seen_corner;
-    if (!w.near(from, seen_corner)) return false;
-    if (!w.perpendicular) {
-      sample_half(w, from, u, time, s);
-      return true;
-    }
-    const SphericalRectangle r = w.seen(seen_corner);
-    if (!r.usable()) return false;
-    const Point2 at = r.sample(u);
-    fill_part(w, {clamp((at.x - seen_corner.x) / w.length_u, 0, 1), clamp((at.y - seen_corner.y) / w.length_v, 0, 1)}, time,
-              s.point);
-    complete_by_angle(s, from, 1 / r.solid_angle());
-    return true;
   }
 
   /// Of a parallelogram that is no rectangle: one half by chance, then by solid angle.

@@ -130,27 +130,6 @@ void TriangleObject::fill(std::uint32_t primitive, float u, float v, float time,
     fill_at<true>(primitive, u, v, time, p);
 }
 
-// What few meshes need is apart, and finds for itself what it needs: the rest stays short and in registers.
-[[gnu::noinline]] TriangleObject::Plane TriangleObject::plane_now(std::uint32_t primitive, const Moment& now) const {
-  const Corners c = stored_corners(primitive, now);
-  return plane_of(c.p[0], c.p[1] - c.p[0], c.p[2] - c.p[0]);
-}
-
-template <bool moving>
-[[gnu::noinline]] Normal3 TriangleObject::interpolated_normal(const std::array<std::uint32_t, 3>& corners, float u, float v,
-                                                              const Moment& now, const Normal3& flat) const {
-  const auto normal = [&](std::uint32_t corner) {
-    return moving ? stored_normal(corner, now) : Vector3(mesh_.normals[corner]);
-  };
-  const Vector3 n0 = normal(corners[0]), n1 = normal(corners[1]), n2 = normal(corners[2]);
-  const Vector3 s = (1 - u - v) * n0 + u * n1 + v * n2;
-  const float ss = dot(s, s);
-  const bool known = ss > 1e-12f && dot(n0, n0) > 0 && dot(n1, n1) > 0 && dot(n2, n2) > 0;
-  if (!known) return flat;
-  const Normal3 smooth((1 / std::sqrt(ss)) * s);
-  return dot(smooth, flat) < 0 ? -smooth : smooth;
-}
-
 template <bool moving>
 inline void TriangleObject::fill_at(std::uint32_t primitive, float u, float v, float time, SurfacePoint& p) const {
   const auto& t = mesh_.triangles[primitive];
@@ -160,14 +139,32 @@ inline void TriangleObject::fill_at(std::uint32_t primitive, float u, float v, f
   const Point3& p0 = moving ? corners.p[0] : mesh_.positions[t[0]];
   const Vector3 e1 = (moving ? corners.p[1] : mesh_.positions[t[1]]) - p0;
   const Vector3 e2 = (moving ? corners.p[2] : mesh_.positions[t[2]]) - p0;
-  Plane plane = planes_.empty() ? plane_now(primitive, now) : planes_[primitive];
-  if (moving) plane.error += motion_error(primitive, now, plane.normal);
-  p.error = plane.error;
-  p.normal = plane.normal;
-  p.shading_normal = mesh_.normals.empty() ? plane.normal : interpolated_normal<moving>(t, u, v, now, plane.normal);
+  if (!planes_.empty()) {
+    const Plane& plane = planes_[primitive];
+    p.normal = plane.normal;
+    p.error = plane.error;
+  } else {
+    const Plane plane = plane_of(p0, e1, e2);
+    p.normal = plane.normal;
+    p.error = plane.error;
+  }
+  if (moving) p.error += motion_error(primitive, now, p.normal);
   p.position = p0 + (u * e1 + v * e2);
 
   const float w = 1 - u - v;
+  if (mesh_.normals.empty()) {
+    p.shading_normal = p.normal;
+  } else {
+    const auto normal = [&](std::uint32_t corner) {
+      return moving ? stored_normal(corner, now) : Vector3(mesh_.normals[corner]);
+    };
+    const Vector3 n0 = normal(t[0]), n1 = normal(t[1]), n2 = normal(t[2]);
+    const Vector3 s = w * n0 + u * n1 + v * n2;
+    const float ss = dot(s, s);
+    const bool known = ss > 1e-12f && dot(n0, n0) > 0 && dot(n1, n1) > 0 && dot(n2, n2) > 0;
+    p.shading_normal = known ? Normal3((1 / std::sqrt(ss)) * s) : p.normal;
+    if (dot(p.shading_normal, p.normal) < 0) p.shading_normal = -p.shading_normal;
+  }
   const auto& corner = uv_corners_[primitive & uv_mask_];
   const Point2 &a0 = uvs_[corner[0]], &a1 = uvs_[corner[1]], &a2 = uvs_[corner[2]];
   p.uv = {w * a0.x + u * a1.x + v * a2.x, w * a0.y + u * a1.y + v * a2.y};

@@ -86,9 +86,6 @@ class TriangleObject : public SceneObject, public NumberedParts {
   Corners corners(std::uint32_t primitive, float time) const;
   void fill(std::uint32_t primitive, float u, float v, float time, SurfacePoint&) const;
   template <bool moving>
-  Normal3 interpolated_normal(const std::array<std::uint32_t, 3>& corners, float u, float v, const Moment&,
-                              const Normal3& flat) const;
-  template <bool moving>
   void fill_at(std::uint32_t primitive, float u, float v, float time, SurfacePoint&) const;
   /// Chooses a triangle by its area in the stored coordinates; `x` becomes a fresh number in [0, 1).
   std::uint32_t choose(float& x, float other) const;
@@ -109,7 +106,6 @@ class TriangleObject : public SceneObject, public NumberedParts {
     float error = 0;  // see SurfacePoint
   };
   static Plane plane_of(const Point3&, const Vector3& e1, const Vector3& e2);
-  Plane plane_now(std::uint32_t primitive, const Moment&) const;
 
   std::vector<Plane> planes_;  // in the stored coordinates; none for large meshes
   struct {

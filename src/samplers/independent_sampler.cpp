@@ -22,9 +22,7 @@ class IndependentSampler final : public Sampler {
   float number(const SampleKey& key, std::uint32_t dimension) const override {
     return to_unit_float(std::uint32_t(bits(key, dimension) >> 32));
   }
-  Point2 pair(const SampleKey& key, std::uint32_t dimension) const override {
-    return halves(bits(key, dimension));
-  }
+  Point2 pair(const SampleKey& key, std::uint32_t dimension) const override { return halves(bits(key, dimension)); }
   Pairs two_pairs(const SampleKey& key, std::uint32_t first, std::uint32_t second) const override {
     return {halves(bits(key, first)), halves(bits(key, second))};
   }

@@ -67,8 +67,7 @@ class HeroWavelengths final : public WavelengthSampler {
   }
 
  private:
-  // Few enough to stay in the nearest cache; most are one or two nm wide.
-  static constexpr int cells = 256, distance = cells / spectrum_size;
+  static constexpr int cells = 1024, distance = cells / spectrum_size;
   /// The cells whose wavelengths go together, in order and once more: from any of them on, the others follow in turn.
   struct Column {
     float low[2 * spectrum_size], width[2 * spectrum_size];  // nm
