@@ -109,11 +109,8 @@ void Renderer::pass(const RenderContext& context, Pass& pass) const {
   pass.run(division.count(), [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
     const PixelArea area = division.pixels(item);
     tile.begin(context.image, area);
-    static thread_local std::vector<Splat> all_splats;
-    static thread_local std::vector<Spectrum> all_lengths;
-    std::vector<Splat>& splats = all_splats;
-    all_lengths.resize(path_lengths);
-    const std::span<Spectrum> lengths = all_lengths;
+    std::vector<Splat> splats;
+    std::vector<Spectrum> lengths(path_lengths);
     Features features;
     const Request request{wants_features ? &features : nullptr, nullptr, lengths, &splats};
     const std::uint32_t first = division.first(item), last = division.last(item);
