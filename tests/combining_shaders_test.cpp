@@ -62,7 +62,7 @@ TEST(MixShader, OfLambertiansIsTheLambertianOfTheMean) {
   Arena arena;
   const Scatter& scatter = *mix->bind(test::surface_point(), test::wavelengths(), arena);
   const Vector3 out = at_angle(scatter.frame(), 40), in = at_angle(scatter.frame(), 70, 2);
-  EXPECT_NEAR(scatter.evaluate(out, in)[0], 0.35f * inverse_pi, 1e-6f);
+  EXPECT_NEAR(scatter.evaluate(out, in)[0], 0.35f * inverse_pi * scatter.cosine(in), 1e-6f);
   EXPECT_NEAR(scatter.density(out, in), scatter.cosine(in) * inverse_pi, 1e-6f);
   EXPECT_NEAR(scatter.albedo(out)[0], 0.35f, 1e-6f);
   test::Random random(1);
@@ -89,15 +89,15 @@ TEST(MixShader, KeepsTheAdjointOfPartsWithOtherNormals) {
   int seen = 0;
   for (int i = 0; i < 500; ++i) {
     const Vector3 a = random.direction(), b = random.direction();
-    const Spectrum light = scatter.evaluate(a, b, Transport::importance) * (scatter.cosine(b) / std::abs(dot(p.normal, b)));
-    const Spectrum camera = scatter.evaluate(b, a) * (scatter.cosine(a) / std::abs(dot(p.normal, a)));
+    const Spectrum light = scatter.evaluate(a, b, Transport::importance) / std::abs(dot(p.normal, b));
+    const Spectrum camera = scatter.evaluate(b, a) / std::abs(dot(p.normal, a));
     EXPECT_NEAR(light[0], camera[0], 1e-3f * camera[0] + 1e-9f);
     seen += !light.black();
     // The weight of a sample is f |cos| / density for both.
     for (const Transport t : {Transport::radiance, Transport::importance})
       if (const auto s = scatter.sample(a, to_unit_float(std::uint32_t(i) << 23), random.pair(), t)) {
         const ScatterValue v = scatter.value_and_density(a, s->direction, t);
-        EXPECT_NEAR(s->weight[0], v.value[0] * scatter.cosine(s->direction) / v.density, 2e-3f * s->weight[0]);
+        EXPECT_NEAR(s->weight[0], v.value[0] / v.density, 2e-3f * s->weight[0]);
         EXPECT_NEAR(s->density, v.density, 2e-3f * v.density);
       }
   }
@@ -114,7 +114,7 @@ TEST(MaskShader, LetsTheRestPass) {
   const Vector3 out = at_angle(scatter.frame(), 20), in = at_angle(scatter.frame(), 50, 2);
   EXPECT_NEAR(scatter.sample(out, 0, {}, Transport::radiance, pass_through)->weight[0], 0.7f, 1e-6f);
   EXPECT_NEAR(both.sample(out, 0, {}, Transport::radiance, pass_through)->weight[0], 0.85f, 1e-6f);
-  EXPECT_NEAR(scatter.evaluate(out, in)[0], 0.15f * inverse_pi, 1e-6f);
+  EXPECT_NEAR(scatter.evaluate(out, in)[0], 0.15f * inverse_pi * scatter.cosine(in), 1e-6f);
   EXPECT_EQ(scatter.lobes(), pass_through | diffuse_reflection);
   // Of all lobes: 70 % straight on, 15 % reflected. Both weights are constant, so the means are exact to counting.
   test::Random random(2);

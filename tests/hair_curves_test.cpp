@@ -50,9 +50,9 @@ TEST(HairCurves, OffsetsFollowFromNormalsOfTubes) {
     const Scatter* behind = bound(ribbon, pi, (1 - h) / 2);
     for (const Vector3& in : {Vector3{-0.2f, 0.7f, 0.6f}, Vector3{-0.4f, -0.5f, 0.5f}, Vector3{-0.3f, 0.1f, -0.9f}}) {
       const Vector3 d = normalize(in);
-      const float expected = flat->evaluate(out, d)[0] * flat->cosine(d);
-      EXPECT_NEAR(round->evaluate(out, d)[0] * round->cosine(d), expected, 2e-3f * expected + 1e-5f) << h;
-      EXPECT_NEAR(behind->evaluate(out, d)[0] * behind->cosine(d), expected, 2e-3f * expected + 1e-5f) << h;
+      const float expected = flat->evaluate(out, d)[0];
+      EXPECT_NEAR(round->evaluate(out, d)[0], expected, 2e-3f * expected + 1e-5f) << h;
+      EXPECT_NEAR(behind->evaluate(out, d)[0], expected, 2e-3f * expected + 1e-5f) << h;
     }
   }
 }

@@ -78,9 +78,8 @@ TEST(Hair, WithoutAbsorptionNothingIsLost) {
   for (const Vector3& out : {Vector3{0.1f, 0.2f, 0.97f}, Vector3{-0.7f, 0.5f, 0.5f}, Vector3{0.3f, 0.5f, -0.8f}}) {
     const Vector3 v = normalize(out);
     double albedo = 0;
-    for (const double cell : test::integrate_cells(scatter->frame(), 60, 60, [&](const Vector3& in) {
-           return double(scatter->evaluate(v, in)[0] * scatter->cosine(in));
-         }))
+    for (const double cell : test::integrate_cells(scatter->frame(), 60, 60,
+                                                   [&](const Vector3& in) { return double(scatter->evaluate(v, in)[0]); }))
       albedo += cell;
     EXPECT_NEAR(albedo, 1, 3e-3);
     EXPECT_NEAR(scatter->albedo(v)[0], 1, 1e-5f);
@@ -93,8 +92,8 @@ TEST(Hair, AlbedoTellsTheSides) {
   const Scatter* scatter = hair->bind(on_ribbon(0.2f), test::wavelengths(), arena);
   const Vector3 out = normalize(Vector3{0.3f, -0.4f, 0.8f});
   double back = 0, through = 0;
-  const auto cells = test::integrate_cells(
-      scatter->frame(), 60, 60, [&](const Vector3& in) { return double(scatter->evaluate(out, in)[0] * scatter->cosine(in)); });
+  const auto cells =
+      test::integrate_cells(scatter->frame(), 60, 60, [&](const Vector3& in) { return double(scatter->evaluate(out, in)[0]); });
   for (size_t i = 0; i < cells.size(); ++i) (i < cells.size() / 2 ? through : back) += cells[i];
   EXPECT_NEAR(scatter->albedo(out, reflection_lobes)[0], back, 3e-3);
   EXPECT_NEAR(scatter->albedo(out, transmission_lobes)[0], through, 3e-3);

@@ -200,7 +200,8 @@ TEST(Dielectric, RoughIsReciprocalAndKeepsAllWavelengths) {
   int through = 0;
   for (int i = 0; i < 500; ++i) {
     const Vector3 a = random.direction(), b = random.direction();
-    const Spectrum from_light = s.evaluate(a, b, Transport::importance), from_camera = s.evaluate(b, a);
+    const Spectrum from_light = s.evaluate(a, b, Transport::importance) / s.cosine(b),
+                   from_camera = s.evaluate(b, a) / s.cosine(a);
     for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(from_light[k], from_camera[k], 1e-3f * from_camera[k] + 1e-7f);
     through += dot(s.frame().n, a) * dot(s.frame().n, b) < 0 && !from_light.black();
   }

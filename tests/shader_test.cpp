@@ -78,7 +78,7 @@ TEST(Shader, WeightIsValueTimesCosineOverDensity) {
             EXPECT_NEAR(both.density, s->density, 2e-3f * s->density) << c.name;
             EXPECT_FLOAT_EQ(both.density, scatter->density(out, s->direction, transport, which));
             const Spectrum value = scatter->evaluate(out, s->direction, transport, which);
-            const Spectrum weight = value * (scatter->cosine(s->direction) / both.density);
+            const Spectrum weight = value / both.density;
             for (int k = 0; k < spectrum_size; ++k) {
               EXPECT_FLOAT_EQ(value[k], both.value[k]);
               EXPECT_NEAR(weight[k], s->weight[k], 2e-3f * s->weight[k]) << c.name;
@@ -95,9 +95,8 @@ TEST(Shader, AlbedoAtMostOneAndEstimated) {
       const Scatter* scatter = c.shader->bind(test::surface_point(), test::wavelengths(), arena);
       const Vector3 out = at_angle(scatter->frame(), angle);
       double albedo = 0;
-      for (const double cell : test::integrate_cells(scatter->frame(), 40, 40, [&](const Vector3& in) {
-             return double(scatter->evaluate(out, in)[0] * scatter->cosine(in));
-           }))
+      for (const double cell : test::integrate_cells(scatter->frame(), 40, 40,
+                                                     [&](const Vector3& in) { return double(scatter->evaluate(out, in)[0]); }))
         albedo += cell;
       EXPECT_LE(albedo, 1.001) << c.name << " at " << angle;
       const double estimate = double(scatter->albedo(out)[0]);
@@ -126,7 +125,7 @@ TEST(Shader, Reciprocity) {
     const Scatter* scatter = c.shader->bind(test::surface_point(), test::wavelengths(), arena);
     for (int i = 0; i < 200; ++i) {
       const Vector3 a = random.direction(), b = random.direction();
-      const Spectrum ab = scatter->evaluate(a, b), ba = scatter->evaluate(b, a);
+      const Spectrum ab = scatter->evaluate(a, b) * scatter->cosine(a), ba = scatter->evaluate(b, a) * scatter->cosine(b);
       for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(ab[k], ba[k], 1e-4f * std::abs(ab[k]) + 1e-9f) << c.name;
       seen += !ab.black();
     }
@@ -145,10 +144,8 @@ TEST(Shader, ImportanceIsTheAdjointUnderShadingNormals) {
     const Scatter* scatter = c.shader->bind(p, test::wavelengths(), arena);
     for (int i = 0; i < 300; ++i) {
       const Vector3 a = random.direction(), b = random.direction();
-      const Spectrum from_light =
-          scatter->evaluate(a, b, Transport::importance) * (scatter->cosine(b) / std::abs(dot(p.normal, b)));
-      const Spectrum from_camera =
-          scatter->evaluate(b, a, Transport::radiance) * (scatter->cosine(a) / std::abs(dot(p.normal, a)));
+      const Spectrum from_light = scatter->evaluate(a, b, Transport::importance) / std::abs(dot(p.normal, b));
+      const Spectrum from_camera = scatter->evaluate(b, a, Transport::radiance) / std::abs(dot(p.normal, a));
       for (int k = 0; k < spectrum_size; ++k)
         EXPECT_NEAR(from_light[k], from_camera[k], 1e-3f * from_camera[k] + 1e-9f) << c.name;
       seen += !from_light.black();
@@ -188,7 +185,7 @@ TEST(Shader, LobesAreMasked) {
   const Vector3 a = at_angle(scatter->frame(), 30, 0), b = at_angle(scatter->frame(), 35, M_PI);
   const float both = scatter->evaluate(a, b)[0], diffuse = scatter->evaluate(a, b, Transport::radiance, diffuse_lobes)[0];
   const float glossy = scatter->evaluate(a, b, Transport::radiance, glossy_lobes)[0];
-  EXPECT_NEAR(diffuse, 0.5f * inverse_pi, 1e-6f);
+  EXPECT_NEAR(diffuse, 0.5f * inverse_pi * scatter->cosine(b), 1e-6f);
   EXPECT_GT(glossy, diffuse);
   EXPECT_NEAR(both, diffuse + glossy, 1e-5f);
   EXPECT_TRUE(scatter->evaluate(a, b, Transport::radiance, transmission_lobes).black());

@@ -10,6 +10,8 @@ namespace etendue {
 
 /// Which sides of a surface do something.
 enum class Sides : std::uint8_t { front, back, both };
+/// What becomes of light that a shading normal would send through the surface; see scatter_answers.h.
+enum class ShadingNormals : std::uint8_t { folded, clipped };
 
 /// A direction with its solid-angle density.
 struct DirectionSample {

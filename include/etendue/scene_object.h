@@ -67,6 +67,7 @@ class SceneObject : public Component {
   Ref<VolumeShader> interior;    ///< null: vacuum inside
   Sides sides = Sides::both;     ///< which sides scatter light; the other absorbs it
   int priority = 0;              ///< where objects overlap, the one of highest priority fills the space
+  ShadingNormals shading_normals = ShadingNormals::folded;  ///< what becomes of light they would send through the surface
 
   bool luminaire() const { return bool(emission); }
 

@@ -56,18 +56,20 @@ struct ScatterSample {
   bool transmitted() const { return (lobe & transmission_lobes) != 0; }
 };
 
-/// Value [1/sr] and density [1/sr] for one pair of directions.
+/// What scattering does with light from one direction to another.
 struct ScatterValue {
-  Spectrum value;
-  float density = 0;
+  Spectrum value;     ///< f |cos| [1/sr]: of the radiance that arrives, per solid angle, what leaves
+  float density = 0;  ///< [1/sr] with which `sample` gives the direction
 };
 
 /// Scattering at a point. `out` is the direction the path came from, `in` the one it goes on to, both pointing away
-/// from the surface. Public calls do the side tests, lobe masks and corrections for shading normals and refraction;
-/// parts override the protected local versions, where z is along the shading normal on the front side.
+/// from the surface. Public calls do the side tests, lobe masks and corrections for shading normals and refraction
+/// (scatter_answers.h derives them); parts override the protected local versions, where z is along the shading normal on the
+/// front side.
 class Scatter {
  public:
-  /// f [1/sr], without the cosine. Specular lobes give zero.
+  /// f |cos| [1/sr], the cosine being that with the normal the model has, which is why it is part of the value. Specular
+  /// lobes give zero.
   Spectrum evaluate(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance,
                     Lobes which = all_lobes) const {
     return world_evaluate(out, in, transport, Lobes(which & lobes_));
@@ -101,8 +103,8 @@ class Scatter {
   Lobes lobes() const { return lobes_; }
   bool has(Lobes any) const { return (lobes_ & any) != 0; }
   /// Whether `sample` looks at its `choice`; parts that never do may say so, which saves drawing a number.
-  bool has_choice() const { return has_choice_; }
-  /// |cos| of the angle between a direction and the shading normal: the cosine that goes with f.
+  bool has_choice() const { return has_choice_ || normals_ == Normals::folded; }
+  /// |cos| of the angle between a direction and the shading normal.
   float cosine(const Vector3& v) const { return std::abs(dot(frame_.n, v)); }
   const Frame& frame() const { return frame_; }
 
@@ -110,7 +112,7 @@ class Scatter {
   Scatter(const SurfacePoint& p, Lobes lobes) : Scatter(p, Frame(p.shading_normal), lobes) {}
   /// With a tangent frame of its own (anisotropic models); frame.n must be on the side of the point's normal.
   Scatter(const SurfacePoint& p, const Frame& frame, Lobes lobes)
-      : frame_(frame), normal_(p.normal), lobes_(Lobes(lobes & let_through(p))) {}
+      : frame_(frame), normal_(p.normal), lobes_(Lobes(lobes & let_through(p))), normals_(normals_of(p, frame)) {}
   ~Scatter() = default;
 
   struct LocalSample {
@@ -135,6 +137,10 @@ class Scatter {
   /// Of smooth lobes: index on the side of `in` over index on the side of `out`, per wavelength; 1 when light is not refracted.
   virtual Spectrum relative_index(const Vector3&, const Vector3&) const { return Spectrum(1.0f); }
 
+  /// Whether a viewer at a local direction sees all light reflected by a smooth boundary, which has no smooth lobes. Only asked
+  /// of models that set has_captives_.
+  virtual bool holds_captive(const Vector3&) const { return false; }
+
   // Answers to the public calls, for the asked lobes that are present. Here by the local functions; see scatter_model.h and
   // ScatterCombination for who else answers.
   virtual Spectrum world_evaluate(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
@@ -146,7 +152,10 @@ class Scatter {
   Frame frame_;
   Normal3 normal_;
   Lobes lobes_;
+  /// Whether the shading normal is the surface's, and if not, what is done about it.
+  enum class Normals : std::uint8_t { same, folded, clipped } normals_;
   bool has_choice_ = true;
+  bool has_captives_ = false;
   /// False of a model whose f depends on which direction is `out`. Then local_evaluate has where light leaves to as `out`, for
   /// importance too; local_sample and local_density still have where the path came from.
   bool reciprocal_ = true;
@@ -158,14 +167,17 @@ class Scatter {
   static Lobes let_through(const SurfacePoint& p) {
     return p.object && p.object->sides != Sides::both ? reflection_lobes : all_lobes;
   }
+  static Normals normals_of(const SurfacePoint& p, const Frame& frame) {
+    if (frame.n == p.normal) return Normals::same;
+    return p.object && p.object->shading_normals == ShadingNormals::clipped ? Normals::clipped : Normals::folded;
+  }
 };
 
 /// A Scatter made of others, each of which may have a shading normal of its own: it answers the public calls itself, in
-/// world directions, by asking the others' public calls, which do their own corrections. What the renderer multiplies by
-/// is the cosine with this one's normal, so values of the others go through `turned`.
+/// world directions, by asking the others' public calls, which do their own corrections.
 class ScatterCombination : public Scatter {
  public:
-  // Values are f of `Scatter::evaluate`, corrections included.
+  // Values are those of `Scatter::evaluate`, cosine and corrections included.
   ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const override = 0;
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport,
                                             Lobes which) const override = 0;
@@ -174,11 +186,6 @@ class ScatterCombination : public Scatter {
  protected:
   ScatterCombination(const SurfacePoint& p, Lobes lobes) : Scatter(p, lobes) {}
   ~ScatterCombination() = default;
-
-  /// Of a part's value, what makes value * cosine(in) here the part's value * its own cosine.
-  float turned(const Scatter& part, const Vector3& in) const {
-    return part.frame().n == frame_.n ? 1 : part.cosine(in) / std::max(cosine(in), 1e-12f);
-  }
 
  private:
   Spectrum world_evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {

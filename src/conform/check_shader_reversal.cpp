@@ -1,8 +1,8 @@
 // Light and importance: reciprocity, and that the two kinds of transport are each other's adjoint.
 //
 // With measures by the geometric normal ng, importance carried from a to b must be what radiance carried from b to a is (Veach
-// 1997, sections 5.2 and 5.3, equations 5.17 to 5.19):
-//     f_importance(a, b) |b . ns| / |b . ng| = f_radiance(b, a) |a . ns| / |a . ng|,
+// 1997, sections 5.2 and 5.3, equations 5.17 to 5.19): with v(a, b) = f(a, b) |b . ns|, the values of Scatter,
+//     v_importance(a, b) / |b . ng| = v_radiance(b, a) / |a . ng|,
 // for reflection and, as it contains the squared indices, refraction. Without a shading normal it is f_importance(a, b) =
 // f_radiance(b, a); and f_radiance(a, b) (n_b / n_a)^2 = f_radiance(b, a) is reciprocity across refraction.
 
@@ -47,10 +47,10 @@ void check_adjoint(Trial& trial, const BoundShader& bound, const std::string& ch
       const Pair pair = draw_pair(trial, scatter, which);
       // Both sides times both cosines with ng, so that nothing is divided.
       const auto importance = [&](const Vector3& a, const Vector3& b) {
-        return scatter.evaluate(a, b, Transport::importance, which) * (scatter.cosine(b) * std::abs(dot(ng, a)));
+        return scatter.evaluate(a, b, Transport::importance, which) * std::abs(dot(ng, a));
       };
       const auto radiance = [&](const Vector3& a, const Vector3& b) {
-        return scatter.evaluate(b, a, Transport::radiance, which) * (scatter.cosine(a) * std::abs(dot(ng, b)));
+        return scatter.evaluate(b, a, Transport::radiance, which) * std::abs(dot(ng, b));
       };
       const Spectrum from_light = importance(pair.a, pair.b), from_camera = radiance(pair.a, pair.b);
       trial.expect(agree(from_light, from_camera, 3e-3f, pair.hero_alone,
@@ -76,7 +76,10 @@ void check_reciprocity(Trial& trial, const BoundShader& bound) {
       if (!reflection && pair.eta == 1 && (which & glossy_transmission) &&
           trial.part<Shader>().interior_index(bound.wavelengths())[0] != 1)
         continue;  // not sampled: the index is not known
-      const auto value = [&](const Vector3& a, const Vector3& b) { return scatter.evaluate(a, b, Transport::radiance, which); };
+      // f with both cosines, so that nothing is divided.
+      const auto value = [&](const Vector3& a, const Vector3& b) {
+        return scatter.evaluate(a, b, Transport::radiance, which) * scatter.cosine(a);
+      };
       const Spectrum ab = value(pair.a, pair.b) * square(pair.eta), ba = value(pair.b, pair.a);
       trial.expect(agree(ab, ba, 3e-3f, hero_alone(pair, bound, trial.part<Shader>()),
                          [&] {

@@ -130,11 +130,10 @@ void check_sample(Trial& trial, const BoundShader& bound, const Vector3& out, co
   trial.expect(agree(Spectrum(s.density), Spectrum(p), 2e-3f, true, [&] { return rounding_of(density, s.direction); }),
                "a sample's density is that of its direction",
                [&] { return fmt::format("{}: {} from sample, {} from density", where(), s.density, p); });
-  const auto flux = [&](const Vector3& in) { return value(in) * scatter.cosine(in); };
-  const Spectrum carried = s.weight * s.density, wanted = flux(s.direction);
+  const Spectrum carried = s.weight * s.density, wanted = value(s.direction);
   trial.expect(agree(carried, wanted, 4e-3f, s.dispersive,
-                     [&] { return rounding_of(flux, s.direction) + s.weight * rounding_of(density, s.direction); }),
-               "a sample's weight is value times cosine over density",
+                     [&] { return rounding_of(value, s.direction) + s.weight * rounding_of(density, s.direction); }),
+               "a sample's weight is value over density",
                [&] { return fmt::format("{}: weight {} instead of {}", where(), text(s.weight), text(wanted / s.density)); });
   const float reverse = scatter.density(s.direction, out, transport, which);
   trial.expect(reverse >= 0 && reverse < infinity, "the reverse density is finite",

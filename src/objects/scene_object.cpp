@@ -15,7 +15,12 @@ void SceneObject::describe(Description<SceneObject>& d) {
       .member<&SceneObject::interior>("interior", "", "the medium inside; none: vacuum", Effect::rebuild)
       .member<&SceneObject::sides>("sides", "", "which sides scatter light; the other absorbs it",
                                    choices("front", "back", "both"))
-      .member<&SceneObject::priority>("priority", "1", "where objects overlap, the one of highest priority fills the space");
+      .member<&SceneObject::priority>("priority", "1", "where objects overlap, the one of highest priority fills the space")
+      .member<&SceneObject::shading_normals>(
+          "shading_normals", "",
+          "what becomes of light that normals which are interpolated, bumped or read from an image would send through the "
+          "surface: folded, it is turned back to the side it belongs to and nothing is lost; clipped, it is lost",
+          choices("folded", "clipped"));
 }
 
 SurfaceSample SceneObject::sample_visible(const Point3& from, Point2 u, float time) const {

@@ -146,8 +146,8 @@ class DirectRenderer final : public Renderer {
       const bool rivalled = strategy == Strategy::both && !light.delta;
       const float weight = weight_over_density(heuristic, n * chosen.probability * light.density,
                                                rivalled ? float(shader_samples) * f.density : 0);
-      sum += f.value * light.radiance * (scatter.cosine(light.direction) * weight) *
-             visible_fraction(scene, light.shadow, nullptr, sample.wavelengths, sample.arena);
+      sum +=
+          f.value * light.radiance * weight * visible_fraction(scene, light.shadow, nullptr, sample.wavelengths, sample.arena);
     }
     return sum;
   }

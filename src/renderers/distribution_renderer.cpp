@@ -203,7 +203,7 @@ class DistributionRenderer final : public Renderer {
         } else {
           const ScatterValue other =
               place.scatter.value_and_density(place.out, next->direction, Transport::radiance, kind.rivals);
-          const Spectrum value = next->weight * next->density + other.value * place.scatter.cosine(next->direction);
+          const Spectrum value = next->weight * next->density + other.value;
           density += float(rivals) * other.density;
           child.throughput *= value / density;
         }
@@ -265,8 +265,7 @@ class DistributionRenderer final : public Renderer {
       if (place.scatter.has(alone))
         f += place.scatter.evaluate(place.out, light.direction, Transport::radiance, alone) / density;
       if (f.black()) continue;
-      sum += f * light.radiance * place.scatter.cosine(light.direction) *
-             visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.arena);
+      sum += f * light.radiance * visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.arena);
     }
     return sum;
   }

@@ -122,8 +122,7 @@ class WhittedRenderer final : public Renderer {
       if (!luminaire->delta() || !sample_luminaire(*luminaire, point, wavelengths, {0.5f, 0.5f}, light)) continue;
       const Spectrum f = scatter.evaluate(out, light.direction, Transport::radiance, smooth_lobes);
       if (f.black()) continue;
-      sum += f * light.radiance * (scatter.cosine(light.direction) / light.density) *
-             visible_fraction(scene, light.shadow, nullptr, wavelengths, arena);
+      sum += f * light.radiance / light.density * visible_fraction(scene, light.shadow, nullptr, wavelengths, arena);
     }
     return sum;
   }

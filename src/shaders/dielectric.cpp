@@ -19,7 +19,9 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
  public:
   /// eta: index inside over index outside.
   DielectricScatter(const SurfacePoint& p, Spectrum eta, bool varies, bool dispersive)
-      : ScatterModel(p, specular_reflection | specular_transmission), eta_(eta), varies_(varies), dispersive_(dispersive) {}
+      : ScatterModel(p, specular_reflection | specular_transmission), eta_(eta), varies_(varies), dispersive_(dispersive) {
+    has_captives_ = true;
+  }
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
@@ -48,6 +50,11 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
     s.eta = eta;
     s.dispersive = dispersive_;
     return true;
+  }
+
+  bool holds_captive(const Vector3& out) const override {
+    float unused = 0;
+    return fresnel_dielectric(std::abs(out.z), towards(out, eta_[0]), unused) >= 1;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {

@@ -7,7 +7,7 @@
 // transmittance exp(-extinction dz / |cos w|) (Guo et al. 2018, eqs. 6 to 10). Each face answers for itself, by its public
 // calls in world directions, for radiance or importance alike: factors for refraction and shading normals are theirs, and
 // multiply to those of the whole. In the medium, where distances go by the shading normal, importance gets the factor of
-// scatter.cpp (Veach 1997, eq. 5.19) at each scattering, so that the adjoint is right throughout.
+// shading normals (Veach 1997, eq. 5.19) at each scattering, so that the adjoint is right throughout.
 //
 // walk() follows one such path from `out`. At each face any lobe is drawn, and the path ends when one lets it out: the product
 // of the weights is an unbiased estimate for the direction that came out, whatever its density is.
@@ -189,7 +189,7 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
     Spectrum f = leaving.evaluate(-w, in, transport, transmission_lobes);
     if (f.black()) return;
     const float back = density > 0 ? leaving.density(in, -w, adjoint(transport), reversible(exit)) : 0;
-    f *= leaving.cosine(in) * (density > 0 ? density / (density + back) : 1);
+    if (density > 0) f *= density / (density + back);
     sum += carried * f * transmittance(w, std::abs(float(exit) - z));
   };
 
@@ -204,8 +204,7 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
         if (edge.end() != at) continue;
         const ScatterValue v = here.value_and_density(from, -edge.direction, transport, lobes);
         if (v.value.black()) continue;
-        const float factor = here.cosine(edge.direction) * edge.weight(v.density);
-        sum += carried * v.value * edge.carried * transmittance(edge.direction, 1) * factor;
+        sum += carried * v.value * edge.carried * transmittance(edge.direction, 1) * edge.weight(v.density);
       }
     const float choice = random.next();
     const auto s = here.sample(from, choice, random.next_pair(), transport, lobes);

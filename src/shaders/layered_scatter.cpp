@@ -83,7 +83,7 @@ ScatterValue LayeredScatter::world_value_and_density(const Vector3& out, const V
   const bool same_side = stack.side(out) == stack.side(in);
   ScatterValue sum;
   if (same_side && face.has(which & reflection_lobes & smooth_lobes)) {
-    sum.value = face.evaluate(out, in, transport, which & reflection_lobes) * turned(face, in);
+    sum.value = face.evaluate(out, in, transport, which & reflection_lobes);
     sum.density = face.density(out, in, transport, q.face);
   }
   if (!(q.between & smooth_lobes & (same_side ? reflection_lobes : transmission_lobes))) return sum;
@@ -97,8 +97,7 @@ ScatterValue LayeredScatter::world_value_and_density(const Vector3& out, const V
     else
       between.set(i, estimate[0]);
   }
-  const float cosine_in = cosine(in);
-  if (cosine_in > 0) sum.value += between * (1 / (float(walks_) * cosine_in));
+  sum.value += between / float(walks_);
   sum.density += density_between(stack, q.face, out, in, transport);
   if (!sum.value.finite()) sum.value = {};
   return sum;

@@ -8,15 +8,12 @@ namespace {
 
 // f = (1 - a) f1 + a f2. The mixture is computed, not drawn: a point has both.
 //
-// Shading normals. The parts may have different ones, n1 and n2 (a bumped part). What counts is the light they scatter,
-// f1 |in.n1| and f2 |in.n2|, as each part's public calls define it; the renderer multiplies what is returned here by |in.n|,
-// so a part's value goes in times |in.nk| / |in.n| (`turned`). The adjoint stays right: each part fulfils
-// f*(a, b) |b.nk| / |b.ng| = f(b, a) |a.nk| / |a.ng| (Veach 1997, eqs. 5.17 to 5.19; f* is f for importance, ng the geometric
-// normal). Both sides are linear in f |.nk|, which is all that enters the sum, so the sum fulfils the same with |.n|.
+// Shading normals. The parts may have different ones (a bumped part). Each part's public calls give f |cos| by its own; these
+// are what is summed. The adjoint stays right, as it is linear in them (scatter_answers.h).
 //
 // Sampling. A part is chosen with probability P_k, in proportion to its share times its albedo, and gives a direction. That
 // could have come from either part, so the density is P_1 p_1 + P_2 p_2 and the weight
-//     ((1 - a) f1 |in.n1| + a f2 |in.n2|) / (P_1 p_1 + P_2 p_2),
+//     ((1 - a) f1 |cos| + a f2 |cos|) / (P_1 p_1 + P_2 p_2),
 // the balance heuristic. For a specular sample it is that part's share of its weight over P_k. Where a part is stochastic its
 // p_k is not the true density of its samples: dividing by it would be wrong, so a sample then stands for its own part alone,
 // with weight share * weight / P_k. The density returned is the same sum, all the same: comparing densities needs only one
@@ -28,7 +25,7 @@ class MixScatter final : public ScatterCombination {
         parts_{first, second},
         shares_{1 - amount, amount},
         stochastic_(stochastic) {
-    // Where both agree nothing is to be turned; where one has been tilted, it is its normal that pictures of normals show.
+    // Where one has been tilted, it is its normal that pictures of normals show.
     frame_ = first && (!second || !(first->frame().n == p.shading_normal)) ? first->frame() : second->frame();
   }
 
@@ -38,7 +35,7 @@ class MixScatter final : public ScatterCombination {
     for (int k = 0; k < 2; ++k) {
       if (!parts_[k] || !parts_[k]->has(which)) continue;
       const ScatterValue v = parts_[k]->value_and_density(out, in, transport, which);
-      sum.value += v.value * (shares_[k] * turned(*parts_[k], in));
+      sum.value += v.value * shares_[k];
       sum.density += probability[k] * v.density;
     }
     return sum;
@@ -69,7 +66,7 @@ class MixScatter final : public ScatterCombination {
     if (stochastic_)
       s->weight *= shares_[k] / probability;
     else
-      s->weight = (s->weight * (shares_[k] * s->density) + v.value * (shares_[1 - k] * other->cosine(s->direction))) / density;
+      s->weight = (s->weight * (shares_[k] * s->density) + v.value * shares_[1 - k]) / density;
     s->density = density;
     return s;
   }

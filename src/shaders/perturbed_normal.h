@@ -16,8 +16,7 @@ class PerturbedNormalShader : public Shader {
   Lobes possible_lobes() const override { return shader->possible_lobes(); }
   Spectrum interior_index(const Wavelengths& w) const override { return shader->interior_index(w); }
   bool transmits() const override { return shader->transmits(); }
-  // What a tilted normal would send through the surface is lost, whatever the shader below.
-  bool lossless() const override { return false; }
+  bool lossless() const override { return shader->lossless(); }
   // Light that leaves elsewhere leaves by the normal of the surface there.
   /// By its own, turned, cosines it is, not by those of what it is part of.
   bool reciprocal() const override { return false; }

@@ -1,6 +1,6 @@
 // Scatter's answers for models that have nothing but local functions.
 
-#include "etendue/scatter_model.h"
+#include "etendue/scatter_answers.h"
 
 namespace etendue {
 
@@ -9,8 +9,8 @@ using Answers = ScatterAnswers<Scatter>;
 Spectrum Scatter::world_evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
   return Answers::evaluate(*this, out, in, transport, which);
 }
-float Scatter::world_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const {
-  return Answers::density(*this, out, in, which);
+float Scatter::world_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
+  return Answers::density(*this, out, in, transport, which);
 }
 ScatterValue Scatter::world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const {
   return Answers::value_and_density(*this, out, in, transport, which);

@@ -88,7 +88,7 @@ class CoveredScatter final : public ScatterCombination {
     if (stochastic_)  // the base's density is not that of its samples: each sample stands for its own part
       s->weight *= share / probability;
     else
-      s->weight = (s->weight * (share * s->density) + v.value * ((fibres ? t : 1) * cosine(s->direction))) / density;
+      s->weight = (s->weight * (share * s->density) + v.value * (fibres ? t : 1)) / density;
     s->density = density;
     return s;
   }

@@ -57,7 +57,6 @@ template <class Scattering, class Leave>
       [&](const Vector3& in) __attribute__((always_inline)) {
         // Of all lobes, as the path will be continued by: the density is that of choosing this direction among them.
         ScatterValue f = scatter.value_and_density(out, in, Transport::radiance);
-        f.value *= scatter.cosine(in);
         if (!shader_sampling) f.density = 0;
         return f;
       },

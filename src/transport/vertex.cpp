@@ -15,7 +15,7 @@ ScatterValue scattering(const Vertex& v, const Vector3& out, const Vector3& in, 
   ScatterValue f = v.scatter->value_and_density(out, in, transport, smooth_lobes);
   // The walk chooses among all lobes.
   if (v.scatter->has(specular_lobes)) f.density = scattering_density(v, out, in, transport);
-  if (!seeded(SeededBug::lost_cosine)) f.value *= v.scatter->cosine(in);
+  if (seeded(SeededBug::lost_cosine)) f.value /= v.scatter->cosine(in);
   return f;
 }
 

@@ -53,7 +53,7 @@ class StudentTracer final : public Renderer {
       if (choice.luminaire) {
         const SurfaceSample lamp = choice.luminaire->sample_visible(point.position, on_luminaire, ray.time);
         if (lamp.density > 0) {
-          const Spectrum f = scatter->evaluate(out, lamp.direction) * scatter->cosine(lamp.direction);
+          const Spectrum f = scatter->evaluate(out, lamp.direction);
           const Ray shadow = lamp.infinite ? point.leave(lamp.direction) : point.towards(lamp.point);
           if (!f.black() && !context.scene.any(shadow)) {
             const Spectrum emitted = choice.luminaire->emission->radiance(lamp.point, -lamp.direction, sample.wavelengths);

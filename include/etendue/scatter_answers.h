@@ -1,0 +1,299 @@
+#pragma once
+// How Scatter's public calls are answered by a model's local functions: what shading normals and refraction make of f.
+//
+// Notation: light or importance is carried along a path that came from `out` and goes on to `in`. ng is the geometric normal,
+// ns the shading normal, which interpolation or a map has turned away from it. Public values contain the cosine: they are
+// what light that arrives from `in` is multiplied by, per solid angle.
+//
+// Refraction (Veach 1997, section 5.2). A beam that is refracted keeps its power but not its spread:
+// n_o^2 cos_o dw_o = n_i^2 cos_i dw_i, so radiance that arrives in a medium of index n_i leaves into one of index n_o as
+// L_o = (1 - F) (n_o / n_i)^2 L_i (eq. 5.2). A path that carries radiance's adjoint from the camera looks from `out` to
+// where light comes from, `in`: n_o is the index on the side of `out`, n_i that on the side of `in`, and with
+// eta = n_i / n_o the factor is 1 / eta^2. A path from a light carries power: none of it is gained or lost by the change
+// of spread, f integrates over `in` to 1 - F, and there is no factor. Local functions are in this second convention.
+// Indices differ between wavelengths, and so does the factor. A specular refraction has the direction of one wavelength: where
+// indices differ only the hero goes on, and its factor is all that counts.
+//
+// Shading normals: radiance. The model knows ns alone, but which side of the surface a direction is on is decided by ng, or
+// light would leak through. Where the two disagree, most renderers lose the light: a white surface darkens towards its
+// outline, a ball of glass loses 0.3 to 3 %. Here two mirrors bring every direction to the side it belongs to:
+//   - a viewer from whom ns faces away is looked at from his image in the plane across ns: seen(out);
+//   - light that the model takes from the wrong side of the surface is taken from its image in the surface: fold(w).
+// A mirror keeps solid angles and fold leads each direction somewhere, so what leaves towards `out` is
+//     R(out, in) = sum over w with fold(w) = in of f(seen(out), w) |w . ns|     [1/sr],
+// and its integral over `in` is that of the model over all w, its own albedo: a model that loses nothing loses nothing under
+// any shading normal. At most two w lead to one direction: itself, and its image in the surface. Both mirrors are the
+// identity at their planes, so R has no seams. An object may ask for the loss instead (ShadingNormals::clipped).
+//
+// Shading normals: importance. Multiplying light from `in` by R means a surface whose true function is R / |in . ng|, a
+// function of where light comes from. On a path from a light, light comes from `out`, and the true cosine is |in . ng|:
+//     I(out, in) = R(in, out) |in . ng| / |out . ng|                        (Veach 1997, section 5.3, eq. 5.19).
+// So the w are images of `out`, and the model looks from seen(in).
+//
+// Captives. A smooth boundary that reflects all light from within keeps it inside. Real light that gets in also gets out; but
+// under shading normals light gets in along ways that it does not find back, and would run along under the surface for ever (a
+// hundredth of what enters bumped glass). A real surface has as many slopes the other way: a viewer who is wholly
+// reflected sees the opposite one, of normal 2 (ng . ns) ng - ns, with the probability captive_share. Its model is the
+// same, mirrored across the tilt of ns.
+//
+// Models that are not reciprocal. On a path from a light, light comes from `out` and leaves to `in`: f is asked for (in, out).
+// Directions are still drawn as if it were (out, in), which is near, and weighed with what f then is.
+
+#include "etendue/shader.h"
+
+namespace etendue {
+
+/// Model: Scatter, whose local functions are virtual, or a final class, in which they are public and the compiler sees which
+/// they are.
+template <class Model>
+class ScatterAnswers {
+  /// Up to two directions.
+  struct Directions {
+    Vector3 at[2];
+    int count = 0;
+    void add(const Vector3& v) { at[count++] = v; }
+  };
+  /// Which of the two slopes: that of ns, or the opposite one.
+  enum class Slope : bool { own, opposite };
+
+  static bool plain(const Model& m) { return m.normals_ == Scatter::Normals::same; }
+  static bool folds(const Model& m) { return m.normals_ == Scatter::Normals::folded; }
+
+  /// A direction mirrored across the tilt of ns, t = ns - (ns . ng) ng, as which the opposite slope becomes that of ns.
+  static Vector3 mirrored(const Model& m, const Vector3& v, Slope slope) {
+    if (slope == Slope::own) return v;
+    const Vector3 t = Vector3(m.frame_.n) - dot(m.frame_.n, m.normal_) * Vector3(m.normal_);
+    return v - (2 * dot(t, v) / length_squared(t)) * t;
+  }
+
+  /// The local direction of a slope that the model looks from when the path ends at `v`. False: from there nothing is seen.
+  static bool seen(const Model& m, const Vector3& v, Vector3& local, Slope slope = Slope::own) {
+    local = m.frame_.to_local(mirrored(m, v, slope));
+    if (plain(m)) return local.z != 0;
+    const float side = dot(m.normal_, v);
+    if (side * local.z > 0) return true;
+    if (!folds(m)) return false;
+    local.z = -local.z;
+    return side * local.z > 0;
+  }
+  /// Of a local direction of a slope, those that see it: from which the model looks from there.
+  static Directions seers(const Model& m, const Vector3& local, Slope slope = Slope::own) {
+    Directions found;
+    const Vector3 v = m.frame_.to_world(local);
+    const float side = plain(m) ? local.z : dot(m.normal_, v);
+    if (!(side * local.z > 0)) return found;  // and its image across ns is farther still on the wrong side
+    found.add(mirrored(m, v, slope));
+    if (folds(m) && (side - 2 * local.z * dot(m.frame_.n, m.normal_)) * local.z > 0)
+      found.add(mirrored(m, v - 2 * local.z * Vector3(m.frame_.n), slope));
+    return found;
+  }
+
+  /// The direction that a local one of a slope stands for, where light comes from. False: light from there is lost.
+  static bool fold(const Model& m, const Vector3& local, Slope slope, Vector3& v, bool& image) {
+    v = mirrored(m, m.frame_.to_world(local), slope);
+    image = false;
+    if (plain(m)) return true;
+    const float side = dot(m.normal_, v);
+    if (side * local.z > 0) return true;
+    image = true;
+    v = v - 2 * side * Vector3(m.normal_);
+    return folds(m) && side != 0;
+  }
+  /// The local directions of a slope that stand for light from `v`, itself first.
+  static Directions unfolded(const Model& m, const Vector3& v, Slope slope = Slope::own) {
+    Directions found;
+    const Vector3 local = m.frame_.to_local(mirrored(m, v, slope));
+    const float side = plain(m) ? local.z : dot(m.normal_, v);
+    if (!(side * local.z > 0)) return found;  // and its image in the surface is farther still behind ns
+    found.add(local);
+    if (folds(m) && (local.z - 2 * side * dot(m.frame_.n, m.normal_)) * side > 0)
+      found.add(local - 2 * side * m.frame_.to_local(Vector3(m.normal_)));
+    return found;
+  }
+
+  /// The probability with which a slope is seen from `v`. Only models that may hold light captive show the opposite one.
+  static float visibility(const Model& m, const Vector3& v, Slope slope) {
+    float opposite = 0;
+    Vector3 own;
+    if (m.has_captives_ && folds(m) && seen(m, v, own) && m.holds_captive(own)) opposite = captive_share(m);
+    return slope == Slope::opposite ? opposite : 1 - opposite;
+  }
+  /// Twice the sine of the tilt, at most a half: what lets light out of bumped glass soonest, and shows nothing of itself where
+  /// normals are tilted by a degree or two.
+  static float captive_share(const Model& m) { return std::min(0.5f, 2 * safe_sqrt(1 - square(dot(m.frame_.n, m.normal_)))); }
+  /// The probability with which light is taken to be scattered by a slope.
+  static float chance(const Model& m, Slope slope) {
+    const float opposite = m.has_captives_ && folds(m) ? 0.5f * captive_share(m) : 0;
+    return slope == Slope::opposite ? opposite : 1 - opposite;
+  }
+
+  static bool asked(const Vector3& a, const Vector3& b, Lobes which) {
+    return (which & smooth_lobes & (a.z * b.z > 0 ? reflection_lobes : transmission_lobes)) != 0;
+  }
+  static Spectrum squared(const Spectrum& s) { return s * s; }
+
+  /// f |w . ns| of a viewer at `o` and light from `w`, as radiance.
+  static Spectrum refracted(const Model& m, const Spectrum& f, const Vector3& o, const Vector3& w) {
+    const Spectrum value = f * std::abs(w.z);
+    return o.z * w.z > 0 ? value : value / squared(m.relative_index(o, w));
+  }
+  /// The same as importance, which comes from `w`: without what refraction does to radiance.
+  static Spectrum importance(const Model& m, const Vector3& w, const Vector3& o, Lobes which) {
+    if (m.reciprocal_) return m.local_evaluate(w, o, which) * std::abs(w.z);
+    return refracted(m, m.local_evaluate(o, w, which), o, w);
+  }
+  /// |in . ng| / |out . ng|.
+  static float projected(const Model& m, const Vector3& out, const Vector3& in) {
+    return std::abs(dot(m.normal_, in) / dot(m.normal_, out));
+  }
+
+  /// What passes straight on sees the model from where it goes to when it is importance: that is asked for apart.
+  static bool straight_apart(const Model& m, Lobes which) {
+    return folds(m) && (which & pass_through) && (which & ~pass_through);
+  }
+
+ public:
+  static Spectrum evaluate(const Model& m, const Vector3& out, const Vector3& in, Transport transport, Lobes which) {
+    const bool radiance = transport == Transport::radiance;
+    Vector3 o;
+    if (!seen(m, radiance ? out : in, o)) return {};
+    const Directions light = unfolded(m, radiance ? in : out);
+    Spectrum sum;
+    for (int i = 0; i < light.count; ++i) {
+      const Vector3& w = light.at[i];
+      if (!asked(o, w, which)) continue;
+      sum += radiance ? refracted(m, m.local_evaluate(o, w, which), o, w) : importance(m, w, o, which);
+    }
+    return radiance || light.count == 0 ? sum : sum * projected(m, out, in);
+  }
+
+  static float density(const Model& m, const Vector3& out, const Vector3& in, Transport transport, Lobes which) {
+    const bool radiance = transport == Transport::radiance;
+    Vector3 o;
+    if (!seen(m, radiance ? out : in, o)) return 0;
+    const Directions light = unfolded(m, radiance ? in : out);
+    const bool apart = !radiance && straight_apart(m, which);
+    if (apart) which &= Lobes(~pass_through);
+    float sum = 0;
+    for (int i = 0; i < light.count; ++i)
+      if (const Vector3& w = light.at[i]; asked(o, w, which))
+        sum += radiance ? m.local_density(o, w, which) : m.local_density(w, o, which);
+    return radiance || sum == 0 ? sum : sum * (apart ? 0.5f : 1) / float(light.count * seers(m, o).count);
+  }
+
+  static ScatterValue value_and_density(const Model& m, const Vector3& out, const Vector3& in, Transport transport,
+                                        Lobes which) {
+    if (transport == Transport::importance)
+      return {evaluate(m, out, in, transport, which), density(m, out, in, transport, which)};
+    Vector3 o;
+    if (!seen(m, out, o)) return {};
+    const Directions light = unfolded(m, in);
+    ScatterValue sum;
+    for (int i = 0; i < light.count; ++i) {
+      const Vector3& w = light.at[i];
+      if (!asked(o, w, which)) continue;
+      const ScatterValue local = m.local_value_and_density(o, w, which);
+      sum.value += refracted(m, local.value, o, w);
+      sum.density += local.density;
+    }
+    return sum;
+  }
+
+  static std::optional<ScatterSample> sample(const Model& m, const Vector3& out, float choice, Point2 u, Transport transport,
+                                             Lobes which) {
+    if (transport == Transport::radiance) return sample_radiance(m, out, choice, u, which);
+    if (which == pass_through) return sample_straight(m, out, choice, u);
+    if (!straight_apart(m, which)) return sample_importance(m, out, choice, u, which);
+    const bool straight = take_choice(choice, 0.5f);
+    std::optional<ScatterSample> s =
+        straight ? sample_straight(m, out, choice, u) : sample_importance(m, out, choice, u, Lobes(which & ~pass_through));
+    if (!s) return s;
+    s->weight *= 2;
+    s->density *= 0.5f;
+    return s;
+  }
+
+  static Spectrum albedo(const Model& m, const Vector3& out, Lobes which) {
+    Vector3 o;
+    seen(m, out, o);
+    return m.local_albedo(o, which);
+  }
+
+ private:
+  /// Straight on, whatever the normals are.
+  static ScatterSample straight_on(const Vector3& out, const Scatter::LocalSample& local) {
+    return {-out, local.value / local.density, local.density, pass_through, 1, false};
+  }
+  static std::optional<ScatterSample> sample_straight(const Model& m, const Vector3& out, float choice, Point2 u) {
+    Vector3 o;
+    if (!seen(m, -out, o)) o = m.frame_.to_local(-out);
+    Scatter::LocalSample local;
+    if (!m.local_sample(-o, choice, u, pass_through, local) || !(local.density > 0)) return std::nullopt;
+    return straight_on(out, local);
+  }
+
+  static std::optional<ScatterSample> sample_radiance(const Model& m, const Vector3& out, float choice, Point2 u, Lobes which) {
+    Vector3 o;
+    if (!seen(m, out, o) && (which &= pass_through) == no_lobes) return std::nullopt;
+    Slope slope = Slope::own;
+    if (m.has_captives_ && folds(m) && m.holds_captive(o) && take_choice(choice, captive_share(m)) &&
+        !seen(m, out, o, slope = Slope::opposite))
+      return std::nullopt;
+    Scatter::LocalSample local;
+    if (!m.local_sample(o, choice, u, which, local) || !(local.density > 0)) return std::nullopt;
+    if (local.lobe == pass_through) return straight_on(out, local);
+    ScatterSample s{{}, local.value / local.density, local.density, local.lobe, local.eta, local.dispersive};
+    bool image;
+    if (!fold(m, local.in, slope, s.direction, image)) return std::nullopt;
+    if (s.transmitted()) s.weight = s.weight / squared(s.specular() ? Spectrum(local.eta) : m.relative_index(o, local.in));
+    if (!folds(m) || s.specular()) return s;
+    // The other local direction that stands for the same light may have been drawn as well.
+    const Directions light = unfolded(m, s.direction);
+    if (light.count < 2) return s;
+    const Vector3& other = light.at[image ? 0 : 1];
+    const ScatterValue v = m.local_value_and_density(o, other, which);
+    s.weight = (s.weight * s.density + refracted(m, v.value, o, other)) / (s.density + v.density);
+    s.density += v.density;
+    return s;
+  }
+
+  // A slope is chosen; where light comes from is one of its local directions w, each as likely as another, and where it goes to
+  // one of those that see the local direction drawn from w.
+  static std::optional<ScatterSample> sample_importance(const Model& m, const Vector3& out, float choice, Point2 u,
+                                                        Lobes which) {
+    Slope slope = Slope::own;
+    if (m.has_captives_ && folds(m) && take_choice(choice, chance(m, Slope::opposite))) slope = Slope::opposite;
+    const Directions light = unfolded(m, out, slope);
+    if (light.count == 0) return std::nullopt;
+    const int k = light.count == 2 && take_choice(choice, 0.5f) ? 1 : 0;
+    const Vector3 w = light.at[k];
+    const bool second_seer = folds(m) && take_choice(choice, 0.5f);
+    Scatter::LocalSample local;
+    if (!m.local_sample(w, choice, u, which, local) || !(local.density > 0)) return std::nullopt;
+    if (local.lobe == pass_through) return straight_on(out, local);
+    const Vector3& o = local.in;
+    const Directions to = seers(m, o, slope);
+    if (to.count == 0) return std::nullopt;
+    ScatterSample s{to.at[to.count == 2 && second_seer], {}, local.density, local.lobe, local.eta, local.dispersive};
+    const bool as_drawn = s.specular() || m.reciprocal_;
+    Spectrum value = as_drawn ? local.value * std::abs(w.z / o.z) : importance(m, w, o, which);
+    if (!s.specular() && light.count == 2) {
+      const Vector3& other = light.at[1 - k];
+      value += importance(m, other, o, which);
+      s.density += m.local_density(other, o, which);
+    }
+    s.density *= chance(m, slope) / float(light.count * to.count);
+    s.weight = value * (visibility(m, s.direction, slope) * projected(m, out, s.direction) / s.density);
+    if (s.weight.black()) return std::nullopt;
+    return s;
+  }
+
+  /// Whether something of a probability is chosen; `choice` is what is left of it.
+  static bool take_choice(float& choice, float probability) {
+    const bool chosen = choice < probability;
+    choice = std::min(chosen ? choice / probability : (choice - probability) / (1 - probability), one_minus_epsilon);
+    return chosen;
+  }
+};
+
+}  // namespace etendue
