@@ -1,4 +1,4 @@
-// Maps that come from files: parts of images, images in tiles, anisotropic filtering, and attributes of meshes.
+// Maps that come from files: parts of images, images in tiles, means over ellipses, and attributes of meshes.
 
 #include <unistd.h>
 
@@ -50,8 +50,9 @@ TEST(ImageMap, UdimFilesCoverUnitSquares) {
     write_image(folder / ("wood." + std::to_string(number) + ".exr"), {2, 2, 1, NumberType::single},
                 {value, value, value, value});
   write_image(folder / "wood.10x1.exr", {1, 1, 1, NumberType::single}, {1});  // not one of them
-  for (const char* filter : {"nearest", "trilinear", "anisotropic"}) {
-    const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", folder / "wood.<UDIM>.exr"}, {"filter", filter}});
+  for (const char* interpolation : {"nearest", "bilinear"}) {
+    const Ref<ObjectMap> map =
+        create<ObjectMap>("ImageMap", {{"file", folder / "wood.<UDIM>.exr"}, {"interpolation", interpolation}});
     EXPECT_NEAR(map->scalar(at(0.5f, 0.5f)), 0.1f, 1e-6f);
     EXPECT_NEAR(map->scalar(at(2.99f, 0.01f)), 0.3f, 1e-6f);
     EXPECT_NEAR(map->scalar(at(0.01f, 1.5f)), 0.5f, 1e-6f);
@@ -95,7 +96,7 @@ TEST(ImageMap, ChannelsByName) {
   EXPECT_NE(message.find("depth.Z"), std::string::npos) << message;
 }
 
-TEST(ImageMap, AnisotropicFilterAveragesOverTheEllipse) {
+TEST(ImageMap, AveragesOverTheEllipse) {
   // Stripes and blobs of 1/16 of the image, seen at 75 degrees to the normal along four directions.
   constexpr int size = 256;
   std::vector<float> values;
@@ -106,7 +107,7 @@ TEST(ImageMap, AnisotropicFilterAveragesOverTheEllipse) {
     for (int x = 0; x < size; ++x) values.push_back(value((float(x) + 0.5f) / size, 1 - (float(y) + 0.5f) / size));
   const Folder folder("aniso");
   write_image(folder / "waves.exr", {size, size, 1, NumberType::single}, values);
-  const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", folder / "waves.exr"}, {"filter", "anisotropic"}});
+  const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", folder / "waves.exr"}});
   test::TestSquare square(2);
   square.reference();
   test::Random random(1);

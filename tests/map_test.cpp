@@ -61,7 +61,7 @@ const std::vector<float> four{0.1f, 0.2f, 0.3f, 0.4f};
 
 TEST(ImageMap, RowZeroIsAtTheTop) {
   const ImageFile file("four.exr", {2, 2, 1, NumberType::single}, four);
-  const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", "nearest"}});
+  const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", "nearest"}});
   EXPECT_NEAR(map->scalar(at(0.25f, 0.75f)), 0.1f, 1e-6f);
   EXPECT_NEAR(map->scalar(at(0.75f, 0.75f)), 0.2f, 1e-6f);
   EXPECT_NEAR(map->scalar(at(0.25f, 0.25f)), 0.3f, 1e-6f);
@@ -70,8 +70,8 @@ TEST(ImageMap, RowZeroIsAtTheTop) {
 
 TEST(ImageMap, InterpolatesAndWraps) {
   const ImageFile file("four.exr", {2, 2, 1, NumberType::single}, four);
-  const auto map = [&](const char* wrap, const char* filter = "bilinear") {
-    return create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", filter}, {"wrap", wrap}});
+  const auto map = [&](const char* wrap, const char* interpolation = "bilinear") {
+    return create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", interpolation}, {"wrap", wrap}});
   };
   EXPECT_NEAR(map("clamp")->scalar(at(0.5f, 0.5f)), 0.25f, 1e-5f);
   EXPECT_NEAR(map("clamp")->scalar(at(0.5f, 0.75f)), 0.15f, 1e-5f);
@@ -85,7 +85,8 @@ TEST(ImageMap, InterpolatesAndWraps) {
 
 TEST(ImageMap, EightBitsAreSrgbAndDecodedBeforeFiltering) {
   const ImageFile file("bits.png", {2, 1, 3, NumberType::uint8}, {0, 0, 0, 1, 1, 1});
-  const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", "bilinear"}, {"wrap", "clamp"}});
+  const Ref<ObjectMap> map =
+      create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", "bilinear"}, {"wrap", "clamp"}});
   EXPECT_NEAR(map->scalar(at(0.5f, 0.5f)), 0.5f, 1e-3f);  // encoded, the mean would have been 0.214
   const ImageFile grey("grey.png", {1, 1, 3, NumberType::uint8}, {0.5f, 0.5f, 0.5f});
   EXPECT_NEAR(create<ObjectMap>("ImageMap", {{"file", grey.path}})->scalar(at(0.5f, 0.5f)),
@@ -116,7 +117,7 @@ TEST(ImageMap, FiltersOverTheFootprint) {
     for (int x = 0; x < 64; ++x) values.push_back(float((x + y) % 2));
   const ImageFile file("fine.exr", {64, 64, 1, NumberType::single}, values);
   const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}}),
-                       sharp = create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", "bilinear"}});
+                       squares = create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", "nearest"}});
   test::TestSquare square(2);
   square.reference();
   SurfacePoint p = at((10 + 0.5f) / 64, (10 + 0.5f) / 64);
@@ -125,9 +126,10 @@ TEST(ImageMap, FiltersOverTheFootprint) {
   EXPECT_TRUE(texel == 0 || texel == 1);
   p.footprint = 2.0f / 64 / 100;
   EXPECT_NEAR(map->scalar(p), texel, 1e-3f);
+  EXPECT_EQ(squares->scalar(p), texel);
   p.footprint = 2.0f / 64 * 4;
   EXPECT_NEAR(map->scalar(p), 0.5f, 1e-3f);
-  EXPECT_EQ(sharp->scalar(p), texel);
+  EXPECT_NEAR(squares->scalar(p), 0.5f, 1e-3f);
   p.footprint = 100;
   EXPECT_NEAR(map->scalar(p), 0.5f, 1e-3f);
 }
@@ -140,7 +142,7 @@ TEST(ImageMap, LargeTiledAndUntiledFiles) {
     ImageHeader header(200, 150, 1, NumberType::single);
     if (tiled) header.tile_side = 32;
     const ImageFile file(tiled ? "tiled.exr" : "lines.exr", header, values);
-    const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"filter", "nearest"}});
+    const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", "nearest"}});
     for (const auto& [x, y] : {std::pair(0, 0), {199, 149}, {63, 64}, {100, 31}, {31, 127}})
       EXPECT_NEAR(map->scalar(at((float(x) + 0.5f) / 200, 1 - (float(y) + 0.5f) / 150)), float(x) / 200 + float(y), 1e-4f)
           << tiled << x << " " << y;

@@ -57,6 +57,7 @@ class ImageTile {
 
   /// Adds a sample at a film point (pixels; centres at half-integers), in the pixel (px, py) it belongs to. Bad values
   /// are noted and count as zero.
+  /// `weight` says for how many samples it counts, beside the filter.
   /// `by_length`, when given, holds the parts of the value by path length, for `ImageBuffer::path_lengths`.
   void contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, float weight = 1,
                   std::span<const Spectrum> by_length = {});
@@ -81,8 +82,9 @@ class ImageTile {
   static void keep_larger(std::vector<LargeSample>&, const LargeSample&, size_t most);
   void add_lengths(Point2 film, int px, int py, const Wavelengths&, float weight, std::span<const Spectrum> by_length);
   const ImageBuffer* buffer_ = nullptr;
-  PixelArea area_, extent_;       // the area and the area widened by the filter
-  std::vector<double> sums_;      // X Y Z weight per pixel of the extent
+  PixelArea area_, extent_;  // the area and the area widened by the filter
+  // X Y Z by the filter, and the weight of the pixel's own samples, per pixel of the extent
+  std::vector<double> sums_;
   std::vector<double> moments_;   // count, sum Y, sum Y^2 of the samples in each pixel of the area
   std::vector<double> features_;  // ImageBuffer::feature_values per pixel of the area
   std::vector<double> lengths_;   // X Y Z per path length and pixel of the extent
@@ -146,12 +148,14 @@ class ImageBuffer : public Component {
   static constexpr size_t feature_values = 10, bad_samples_kept = 32;
   void allocate();
   void add_splat(const ImageTile::Splat&);
-  double filter_integral(float left, float right, float up, float down) const;
+  void find_filter_shares();
+  bool within_reach(int x, int y) const;
+  double filter_over_film(int x, int y, bool times_samples) const;
   std::uint64_t filter_hash() const;
   static double variance_of_mean(const double* moment);
   double variance_of_pixel(size_t pixel) const;
   double splat_scale() const;
-  double splat_norm() const;
+  double filter_integral() const;
   size_t index(int x, int y) const { return size_t(y - area_.y0) * size_t(area_.width()) + size_t(x - area_.x0); }
 
   PixelArea area_;
@@ -167,6 +171,9 @@ class ImageBuffer : public Component {
   // the filter tabulated over one quadrant, weight at ((i + 0.5) / table_size * radius)
   static constexpr int table_size = 64;
   std::vector<float> filter_table_;
+  // its integrals over the pixels around its own, over one quadrant of (filter_reach_ + 1)^2 pixels [pixel^2]
+  std::vector<double> filter_shares_;
+  int filter_reach_ = 0;
   float filter_radius_ = 0.5f;
   bool box_ = false;  // radius 0.5, constant: each sample counts for its own pixel alone
 };

@@ -92,6 +92,7 @@ class Renderer : public Component {
   int samples = 64;  ///< per pixel
   Ref<Sampler> sampler;
   Ref<LightSampler> light_sampler;
+  float map_filter = 0;  ///< maps are averaged over so many pixels; a bias
 
   /// Called once before the first pass of a render.
   virtual void begin(const RenderContext&);
@@ -119,8 +120,11 @@ class Renderer : public Component {
     return camera_sample(context, x, y, sample, arena, Request{});
   }
 
-  /// Whether expectations are exact for any number of samples, or only in the limit.
+  /// Whether the algorithm's expectations are exact for any number of samples, or only in the limit.
   virtual bool unbiased() const { return true; }
+  /// What makes expectations differ from the truth, in words for the user: what `unbiased` says, and `map_filter`. Empty:
+  /// nothing does.
+  std::string bias() const;
   /// What it cannot render, in words for the user; empty: nothing is left out.
   virtual std::string limits() const { return {}; }
   /// What it cannot find of the light that a given scene has; empty: nothing is missed. Renderers for which this is empty

@@ -19,10 +19,6 @@ struct SampleKey {
         sample(sample_) {}
 };
 
-/// How much of a pixel the maps under sample n are filtered over. Its share shrinks like that of all samples do, 1 / sqrt(n +
-/// 1): the first ones are smooth, and what many converge to is the map itself.
-inline float filter_scale(const SampleKey& key) { return 1 / std::sqrt(float(key.sample) + 1); }
-
 /// Stateless: the same arguments give the same numbers, from any thread.
 class Sampler : public Component {
  public:

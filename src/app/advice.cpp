@@ -57,6 +57,8 @@ std::string advice_text(const std::string& renderer, const Advice& advice) {
 
 std::vector<std::string> advice_lines(const Job& job) {
   std::vector<std::string> lines;
+  if (const std::string bias = job.renderer->bias(); !bias.empty())
+    lines.push_back(job.renderer->class_info().name + " is biased: " + bias);
   for (const Advice& advice : job.renderer->misses(scene_traits(*job.scene, *job.camera)))
     lines.push_back(advice_text(job.renderer->class_info().name, advice));
   return lines;

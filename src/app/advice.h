@@ -11,7 +11,7 @@ namespace etendue {
 
 /// "PathTracer cannot find caustics of 'lamp' by 'ball'; BidirectionalPathTracer can"
 std::string advice_text(const std::string& renderer, const Advice&);
-/// One such line for everything a job's renderer misses. The job must be prepared, here and below.
+/// One such line for everything a job's renderer misses, and one for its bias. The job must be prepared, here and below.
 std::vector<std::string> advice_lines(const Job&);
 /// Prints them as warnings on standard error.
 void advise(const Job&);

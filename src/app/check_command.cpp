@@ -94,7 +94,7 @@ int check(const SceneOptions& options) {
   fmt::print("luminaires  {}\n", luminaires_text(*job->scene, traits));
   fmt::print("image       {}\n", size);
   fmt::print("samples     {} per pixel\n", job->renderer->samples);
-  fmt::print("renderer    {}, {}\n", job->renderer->class_info().name, job->renderer->unbiased() ? "unbiased" : "consistent");
+  fmt::print("renderer    {}, {}\n", job->renderer->class_info().name, job->renderer->bias().empty() ? "unbiased" : "biased");
   if (const std::string limits = job->renderer->limits(); !limits.empty()) fmt::print("left out    {}\n", limits);
   report_light(*job, traits);
   fmt::print("{} is good\n", options.file);

@@ -87,6 +87,7 @@ void ImageBuffer::prepare() {
   kept_lengths_ = path_lengths;
   filter_table_ = std::move(table);
   filter_radius_ = radius;
+  find_filter_shares();
   box_ =
       radius == 0.5f && std::all_of(filter_table_.begin(), filter_table_.end(), [&](float w) { return w == filter_table_[0]; });
   if (!same) clear();

@@ -1,37 +1,74 @@
 // From what the film collected to a picture, and how exact it is.
 
-#include <map>
-#include <tuple>
+#include <cmath>
 
 #include "etendue/image_buffer.h"
 
 namespace etendue {
 
-/// The integral of the filter [pixel^2] over what lies closer to a pixel's centre than these distances on each side:
-/// exactly that of the table, which is constant in each cell.
-double ImageBuffer::filter_integral(float left, float right, float up, float down) const {
+// Exactly those of the table, which is constant in each of its cells.
+void ImageBuffer::find_filter_shares() {
+  filter_reach_ = int(std::ceil(filter_radius_ - 0.5f));
+  const int side = filter_reach_ + 1;
+  filter_shares_.assign(size_t(side) * size_t(side), 0);
   const double cell = double(filter_radius_) / table_size;
-  std::array<double, table_size> across{}, along{};
-  for (int i = 0; i < table_size; ++i) {
-    const auto covered = [&](float distance) { return std::clamp(double(distance) / cell - i, 0.0, 1.0); };
-    across[size_t(i)] = covered(left) + covered(right);
-    along[size_t(i)] = covered(up) + covered(down);
-  }
+  // The length of a cell of the table within the pixel `away` pixels from the filter's own, on one side of its centre.
+  const auto covered = [&](int i, int away) {
+    const auto up_to = [&](double distance) { return std::clamp(distance / cell - i, 0.0, 1.0) * cell; };
+    return away == 0 ? 2 * up_to(0.5) : up_to(away + 0.5) - up_to(away - 0.5);
+  };
+  for (int dy = 0; dy < side; ++dy)
+    for (int dx = 0; dx < side; ++dx) {
+      double& share = filter_shares_[size_t(dy * side + dx)];
+      for (int y = 0; y < table_size; ++y) {
+        const double down = covered(y, dy);
+        if (down == 0) continue;
+        double row = 0;
+        for (int x = 0; x < table_size; ++x) row += covered(x, dx) * double(filter_table_[size_t(y * table_size + x)]);
+        share += down * row;
+      }
+    }
+}
+
+/// Whether a pixel's filter reaches nothing beside the film.
+bool ImageBuffer::within_reach(int x, int y) const {
+  const PixelArea& film = area_;
+  const int r = filter_reach_;
+  return x - r >= film.x0 && x + r < film.x1 && y - r >= film.y0 && y + r < film.y1;
+}
+
+/// The integral of a pixel's filter over the film that is sampled [pixel^2]; on request each pixel's share times the samples
+/// that belong to it.
+double ImageBuffer::filter_over_film(int x, int y, bool times_samples) const {
+  const PixelArea& film = area_;
+  const int r = filter_reach_;
   double sum = 0;
-  for (size_t y = 0; y < table_size; ++y) {
-    double row = 0;
-    for (size_t x = 0; x < table_size; ++x) row += across[x] * double(filter_table_[y * table_size + x]);
-    sum += along[y] * row;
-  }
-  return sum * cell * cell;
+  for (int j = std::max(y - r, film.y0); j <= std::min(y + r, film.y1 - 1); ++j)
+    for (int i = std::max(x - r, film.x0); i <= std::min(x + r, film.x1 - 1); ++i) {
+      const double share = filter_shares_[size_t(std::abs(j - y) * (r + 1) + std::abs(i - x))];
+      const bool known = area_.contains(i, j);
+      sum += times_samples ? share * sums_[4 * (known ? index(i, j) : index(x, y)) + 3] : share;
+    }
+  return sum;
+}
+
+/// The integral of the whole filter [pixel^2].
+double ImageBuffer::filter_integral() const {
+  const int side = filter_reach_ + 1;
+  double sum = 0;
+  for (int dy = 0; dy < side; ++dy)
+    for (int dx = 0; dx < side; ++dx) sum += (dx ? 2 : 1) * (dy ? 2 : 1) * filter_shares_[size_t(dy * side + dx)];
+  return sum;
 }
 
 // A pixel estimates the mean of the radiance on the film, weighted by the filter f around it, over the film F that is
-// rendered: I = int_F f L / int_F f.
-//   Samples of the camera are spread evenly over F, with L_k known at x_k:   I ~ sum_k f(x_k) L_k / sum_k f(x_k).
-//   Splats arrive with a density of their own, each already divided by it:   I ~ scale * sum_k f(x_k) s_k / int_F f,
+// rendered: I = int_F f L / int_F f. Let F_i be the integral of f over pixel i of F.
+//   Samples of the camera, n_i of them, are spread evenly over each pixel i:   I ~ sum_k f(x_k) L_k / sum_i n_i F_i.
+//   Splats arrive with a density of their own, each already divided by it:     I ~ scale * sum_k f(x_k) s_k / sum_i F_i,
 // where the scale is the number of pixels of the whole picture (the film's area) over the number of paths. With samples of both
 // kinds the two are parts of one sum, weighted against each other by whoever made them.
+// Camera samples are divided by the sum of weights that is to be expected, not by the one that came, sum_k f(x_k): the quotient
+// of two sums that vary together is not in expectation the quotient of what is expected of each (decision 013).
 Image ImageBuffer::develop() const {
   std::vector<std::string> channels = {"X", "Y", "Z"};
   enum class Source { mean, hit_mean, first, variance, count };
@@ -71,25 +108,21 @@ Image ImageBuffer::develop() const {
   }
   if (sums_.empty()) return image;
 
-  std::map<std::tuple<float, float, float, float>, double> integrals;  // the border has few different ones
-  const auto integral = [&](int x, int y) {
-    const auto side = [&](int pixels) { return std::min(float(pixels) + 0.5f, filter_radius_); };
-    const std::tuple key(side(x - area_.x0), side(area_.x1 - 1 - x), side(y - area_.y0), side(area_.y1 - 1 - y));
-    const auto [found, fresh] = integrals.try_emplace(key, 0.0);
-    if (fresh) found->second = std::apply([&](auto... sides) { return filter_integral(sides...); }, key);
-    return found->second;
-  };
-
+  const double samples = sums_[3], whole = filter_integral();
+  bool even = true;  // as all our renderers leave it
+  for (size_t i = 3; i < sums_.size(); i += 4) even &= sums_[i] == samples;
   double* out = image.values.data();
   for (int y = area_.y0; y < area_.y1; ++y)
     for (int x = area_.x0; x < area_.x1; ++x) {
       const size_t pixel = index(x, y);
       const double* sum = &sums_[4 * pixel];
-      // Filters with negative lobes can leave a pixel of few samples without weight.
-      const double scale = sum[3] > 0 ? 1 / sum[3] : 0;
+      const bool inside = within_reach(x, y);
+      const double norm = inside ? whole : filter_over_film(x, y, false);
+      // A box of one pixel gives each sample to its own pixel, with weight 1.
+      const double expected = box_ ? sum[3] : even ? samples * norm : filter_over_film(x, y, true);
+      const double scale = expected > 0 ? 1 / expected : 0;
       for (size_t c = 0; c < 3; ++c) out[c] = scale * sum[c];
-      const double norm = splats_.empty() ? 0 : integral(x, y);
-      const double splat = norm > 0 ? splat_scale() / norm : 0;
+      const double splat = !splats_.empty() && norm > 0 ? splat_scale() / norm : 0;
       if (splat > 0)
         for (size_t c = 0; c < 3; ++c) out[c] += splat * splats_[4 * pixel + c];
       out += 3;
@@ -126,20 +159,16 @@ double ImageBuffer::variance_of_mean(const double* moment) {
 /// Splats add to a pixel's variance as arrivals that are independent of one another: scale^2 * sum of squares.
 double ImageBuffer::variance_of_pixel(size_t pixel) const {
   double variance = variance_of_mean(&moments_[3 * pixel]);
-  if (!splats_.empty()) variance += std::pow(splat_scale() / splat_norm(), 2) * splats_[4 * pixel + 3];
+  if (!splats_.empty()) variance += std::pow(splat_scale() / filter_integral(), 2) * splats_[4 * pixel + 3];
   return variance;
 }
 
 double ImageBuffer::splat_scale() const { return samples_ > 0 ? double(width) * double(height) / double(samples_) : 0; }
 
-double ImageBuffer::splat_norm() const {
-  return filter_integral(filter_radius_, filter_radius_, filter_radius_, filter_radius_);
-}
-
 double ImageBuffer::relative_error() const {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   double total = 0, samples = 0;
-  const double splat = splats_.empty() ? 0 : splat_scale() / splat_norm();
+  const double splat = splats_.empty() ? 0 : splat_scale() / filter_integral();
   const auto mean = [&](size_t pixel) {
     return moments_[3 * pixel + 1] / moments_[3 * pixel] + (splat > 0 ? splat * splats_[4 * pixel + 1] : 0);
   };

@@ -9,7 +9,7 @@
 namespace etendue {
 namespace {
 
-constexpr std::uint64_t magic = 0x32304d4c49465445;  // "ETFILM02": name and version of the format, little endian
+constexpr std::uint64_t magic = 0x33304d4c49465445;  // "ETFILM03": name and version of the format, little endian
 
 class Writer {
  public:

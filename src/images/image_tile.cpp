@@ -11,7 +11,7 @@ namespace {
 
 using BadKind = BadSample::Kind;
 
-// X Y Z weight, added at once.
+// X Y Z and a weight, added at once.
 using Sums = double __attribute__((vector_size(32)));
 inline void add(double* sum, const Sums& more) {
   Sums s;
@@ -133,12 +133,13 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
   if (!lengths_.empty() && good) [[unlikely]]
     add_lengths(film, px, py, wavelengths, weight, by_length);
 
-  const Sums one{color.x, color.y, color.z, 1};
-  if (buffer_->box_) {
-    double* sum = &sums_[4 * (size_t(py - extent_.y0) * size_t(extent_.width()) + size_t(px - extent_.x0))];
-    add(sum, double(weight) * one);
-    return;
+  const Sums light{color.x, color.y, color.z, 0};
+  if (extent_.contains(px, py)) [[likely]] {
+    double* own = &sums_[4 * (size_t(py - extent_.y0) * size_t(extent_.width()) + size_t(px - extent_.x0))];
+    own[3] += double(weight);
+    if (buffer_->box_) add(own, double(weight) * light);
   }
+  if (buffer_->box_) return;
   constexpr int size = ImageBuffer::table_size;
   const FilterWindow across(film.x, buffer_->filter_radius_, size, extent_.x0, extent_.x1);
   const FilterWindow down(film.y, buffer_->filter_radius_, size, extent_.y0, extent_.y1);
@@ -146,7 +147,7 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
     const float* row = &buffer_->filter_table_[size_t(down.cells[size_t(j)]) * size];
     double* sum =
         &sums_[4 * (size_t(down.first + j - extent_.y0) * size_t(extent_.width()) + size_t(across.first - extent_.x0))];
-    for (int i = 0; i < across.count; ++i, sum += 4) add(sum, double(row[across.cells[size_t(i)]] * weight) * one);
+    for (int i = 0; i < across.count; ++i, sum += 4) add(sum, double(row[across.cells[size_t(i)]] * weight) * light);
   }
 }
 

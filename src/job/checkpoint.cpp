@@ -82,6 +82,7 @@ Checkpoint empty_checkpoint(const Job& job) {
   }
   c.metadata = job.metadata;
   c.metadata["renderer"] = job.renderer->class_info().name;
+  if (const std::string bias = job.renderer->bias(); !bias.empty()) c.metadata["bias"] = bias;
   return c;
 }
 

@@ -22,9 +22,11 @@ void Job::describe(Description<Job>& d) {
       .member<&Job::seed>("seed", "1", "chooses the random numbers", at_least(0))
       .member<&Job::time_limit>("time_limit", "s", "stops after the pass in which this time is over; 0: no limit", at_least(0),
                                 Effect::retone)
-      .member<&Job::error_limit>("error_limit", "1",
-                                 "stops when the mean relative standard error of pixels is below this; 0: no limit",
-                                 at_least(0), Effect::retone);
+      .member<&Job::error_limit>(
+          "error_limit", "1",
+          "stops when the mean relative standard error of pixels is below this; 0: no limit. A small bias: "
+          "samples that hide their error, as those do that lack rare light, end it early",
+          at_least(0), Effect::retone);
 }
 static const Register<Job> registered;
 
@@ -230,7 +232,10 @@ Image Job::picture() const {
   for (const auto& [key, text] : metadata) picture.metadata[key] = text;
   picture.metadata["seed"] = std::to_string(seed);
   picture.metadata["samples"] = std::to_string(count(done_));
-  if (renderer) picture.metadata["renderer"] = renderer->class_info().name;
+  if (renderer) {
+    picture.metadata["renderer"] = renderer->class_info().name;
+    if (const std::string bias = renderer->bias(); !bias.empty()) picture.metadata["bias"] = bias;
+  }
   picture.metadata["version"] = ETENDUE_VERSION;
   return picture;
 }

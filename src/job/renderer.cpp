@@ -2,6 +2,8 @@
 
 #include "etendue/renderer.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 
 namespace etendue {
@@ -10,7 +12,13 @@ void Renderer::describe(Description<Renderer>& d) {
   d.summary("An image synthesis algorithm.")
       .member<&Renderer::samples>("samples", "1", "samples per pixel", range(1, 1 << 30))
       .member<&Renderer::sampler>("sampler", "", "where random numbers come from")
-      .member<&Renderer::light_sampler>("light_sampler", "", "how luminaires are chosen");
+      .member<&Renderer::light_sampler>("light_sampler", "", "how luminaires are chosen")
+      .member<&Renderer::map_filter>(
+          "map_filter", "1",
+          "width over which maps are averaged where paths from the camera meet them [pixels]; 0: maps as they are. Averages "
+          "make less noise, and large images quicker, but they are a bias: what a surface does to light is not the mean of "
+          "what its parts do, the pixel's own filter blurs once more, and paths from luminaires do not average",
+          range(0, 64));
 }
 static const Register<Renderer> registered;
 
@@ -86,9 +94,8 @@ Renderer::CameraSample take_sample(const Renderer& renderer, const RenderContext
 
   SampleContext sample{s.wavelengths, random, arena, request.features, request.record, request.lengths, request.splats};
   Ray ray = camera.ray(s.film, lens, time);
-  const float scale = filter_scale(key);
-  ray.width *= scale;
-  ray.spread *= scale;
+  ray.width *= renderer.map_filter;
+  ray.spread *= renderer.map_filter;
   if (request.record) [[unlikely]]
     record_camera(*request.record, camera, ray);
   s.value = renderer.radiance(context, ray, sample);
@@ -133,6 +140,12 @@ void Renderer::pass(const RenderContext& context, Pass& pass) const {
 Renderer::CameraSample Renderer::camera_sample(const RenderContext& context, int x, int y, std::uint32_t n, Arena& arena,
                                                const Request& request) const {
   return take_sample(*this, context, x, y, SampleKey(context.seed, x, y, n), arena, request);
+}
+
+std::string Renderer::bias() const {
+  const std::string algorithm = unbiased() ? "" : "exact only in the limit of many samples";
+  if (!(map_filter > 0)) return algorithm;
+  return algorithm + (algorithm.empty() ? "" : "; ") + fmt::format("maps are averaged over {} pixels (map_filter)", map_filter);
 }
 
 Spectrum Renderer::radiance(const RenderContext&, const Ray&, SampleContext&) const {

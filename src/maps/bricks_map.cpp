@@ -38,7 +38,7 @@ class BricksMap final : public BlendMap {
   const char* second_name() const override { return "brick"; }
 
   float fraction(const SurfacePoint& p) const override {
-    const Vector2 box = uv_footprint(p).box();
+    const Vector2 box = uv_box(p);
     const float x = p.uv.x * repeat.x, y = p.uv.y * repeat.y, width = box.x * repeat.x, height = box.y * repeat.y;
     if (!(std::abs(x) < 1e6f && std::abs(y) < 1e6f)) return 0;  // there floats have no digits left for bricks
     const auto along = [&](float row) { return pulse_mean(x - row * shift, width, half_x_, 1 - half_x_); };

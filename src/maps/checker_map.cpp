@@ -36,7 +36,7 @@ class CheckerMap final : public BlendMap {
   float fraction(const SurfacePoint& p) const override {
     float wave = 1;
     if (space == Space::uv) {
-      const Vector2 box = uv_footprint(p).box();
+      const Vector2 box = uv_box(p);
       wave = square_wave_mean(p.uv.x * repeat.x, box.x * std::abs(repeat.x)) *
              square_wave_mean(p.uv.y * repeat.y, box.y * std::abs(repeat.y));
     } else {

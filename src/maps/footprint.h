@@ -9,6 +9,9 @@ namespace etendue {
 /// Where a map takes its coordinates from.
 enum class MapSpace : std::uint8_t { object, world, uv };
 
+// A footprint of zero, the default, asks a map for its own value at the point; any other (Renderer::map_filter) for the mean
+// over it. All maps keep to that one rule, and none has a filter of its own (decision 013).
+
 /// The ellipse a cone of a ray cuts out of the surface, by its two axes: vectors in the surface, in the coordinates of the
 /// scene the renderer sees, as long as the ellipse is wide [m]. Zero without a footprint.
 struct Footprint {
@@ -26,6 +29,8 @@ struct UvFootprint {
   Vector2 box() const;
 };
 UvFootprint uv_footprint(const SurfacePoint&);
+/// Its box; 0 by 0 without a footprint.
+inline Vector2 uv_box(const SurfacePoint& p) { return p.footprint > 0 ? uv_footprint(p).box() : Vector2{}; }
 
 /// dpdu and dpdv of a point, found when they are not there yet.
 void with_tangents(SurfacePoint&);

@@ -1,4 +1,4 @@
-// ImageMap: an image file on a surface, filtered.
+// ImageMap: an image file on a surface.
 
 #include "etendue/color.h"
 #include "etendue/object_map.h"
@@ -10,11 +10,14 @@
 namespace etendue {
 namespace {
 
-enum class Interpolation : std::uint8_t { nearest, bilinear, trilinear, anisotropic };
+enum class Interpolation : std::uint8_t { nearest, bilinear };
 
-// The image's numbers are decoded to linear ones before they are filtered; its smaller copies are averages of linear texels.
-// A filtered RGB value becomes a spectrum at each lookup. That is not the filtered spectrum of the texels, as the fit is
-// not linear, but it has the filtered colour, which is what an image says.
+// The image's numbers are decoded to linear ones before they are interpolated or averaged. A footprint asks for a mean over it:
+// that over the ellipse in which a pixel sees the surface. Squares that are wider than the ellipse is long are given as they
+// are.
+//
+// An RGB value becomes a spectrum at each lookup. That is not the spectrum between those of the texels, as the fit
+// is not linear, but it has the colour between theirs, which is what an image says.
 class ImageMap final : public ObjectMap {
  public:
   static void describe(Description<ImageMap>& d) {
@@ -24,11 +27,9 @@ class ImageMap final : public ObjectMap {
                                  "square of u and v, from files with 1001 + u + 10 v in that place; black where there is none",
                                  required)
         .member<&ImageMap::interpolation>(
-            "filter", "",
-            "nearest: texels as squares; bilinear: between texels; trilinear: averaged as well, over a circle as wide as what "
-            "a "
-            "pixel sees is long; anisotropic: over the ellipse that it sees at a slant, up to 32 times as long as wide",
-            choices("nearest", "bilinear", "trilinear", "anisotropic"))
+            "interpolation", "",
+            "what is between the middles of texels: nearest: texels as squares; bilinear: mixtures of four",
+            choices("nearest", "bilinear"))
         .member<&ImageMap::wrap>("wrap", "", "what lies outside the unit square", choices("repeat", "mirror", "clamp", "black"))
         .member<&ImageMap::color_space>("color_space", "", "primaries and white of the image's RGB")
         .member<&ImageMap::transfer>("transfer", "", "how its numbers are encoded; auto: srgb for integers, linear for floats")
@@ -66,7 +67,7 @@ class ImageMap final : public ObjectMap {
   }
 
   FilePath file;
-  Interpolation interpolation = Interpolation::anisotropic;
+  Interpolation interpolation = Interpolation::bilinear;
   Wrap wrap = Wrap::repeat;
   std::string color_space = "srgb", transfer = automatic_transfer, channel;
   Vector2 repeat{1, 1};
@@ -117,18 +118,17 @@ class ImageMap final : public ObjectMap {
       v -= row;
       outside = Wrap::clamp;
     }
-    if (interpolation == Interpolation::nearest) {
-      texture->nearest({u, v}, outside, rgb);
-    } else if (interpolation == Interpolation::bilinear || !(p.footprint > 0)) {
-      texture->bilinear({u, v}, outside, rgb);
-    } else {
-      UvFootprint f = uv_footprint(p);
+    UvFootprint f;
+    if (p.footprint > 0) {
+      f = uv_footprint(p);
       for (Vector2* axis : {&f.longer, &f.shorter}) *axis = {axis->x * repeat.x, axis->y * repeat.y};
-      if (interpolation == Interpolation::trilinear)
-        texture->trilinear({u, v}, f, outside, rgb);
-      else
-        texture->anisotropic({u, v}, f, outside, rgb);
     }
+    if (p.footprint > 0 && (interpolation == Interpolation::bilinear || texture->texels_along(f) > 1))
+      texture->mean({u, v}, f, outside, rgb);
+    else if (interpolation == Interpolation::nearest)
+      texture->nearest({u, v}, outside, rgb);
+    else
+      texture->bilinear({u, v}, outside, rgb);
     if (texture->channels() == 1) rgb[1] = rgb[2] = rgb[0];
     return texture->channels();
   }

@@ -30,10 +30,10 @@ class ImageTexture {
   virtual void nearest(Point2 at, Wrap, float* out) const = 0;
   /// Between the four nearest texels.
   virtual void bilinear(Point2 at, Wrap, float* out) const = 0;
-  /// The mean over a circle of texels as wide as the footprint is long.
-  virtual void trilinear(Point2 at, const UvFootprint&, Wrap, float* out) const = 0;
   /// The mean over the footprint's ellipse, which is widened to no less than its length over `maximum_anisotropy`.
-  virtual void anisotropic(Point2 at, const UvFootprint&, Wrap, float* out) const = 0;
+  virtual void mean(Point2 at, const UvFootprint&, Wrap, float* out) const = 0;
+  /// How many texels the ellipse is long.
+  virtual float texels_along(const UvFootprint&) const = 0;
   static constexpr int maximum_anisotropy = 32;
 };
 

@@ -15,8 +15,7 @@ class RampMap final : public ObjectMap {
  public:
   static void describe(Description<RampMap>& d) {
     d.summary("Colours at positions along u, v or the number of another map.")
-        .member<&RampMap::along>("along", "", "u, v: surface coordinates, averaged over the footprint; input: the map below",
-                                 choices("u", "v", "input"))
+        .member<&RampMap::along>("along", "", "u, v: surface coordinates; input: the map below", choices("u", "v", "input"))
         .member<&RampMap::input>("input", "1", "the map whose number is looked up, when `along` is input")
         .member<&RampMap::positions>("positions", "1",
                                      "where the colours are, in increasing order; before the first and after "
@@ -66,10 +65,8 @@ class RampMap final : public ObjectMap {
       x = input->scalar(p);
     } else {
       x = along == Along::u ? p.uv.x : p.uv.y;
-      if (p.footprint > 0) {
-        const Vector2 box = uv_footprint(p).box();
-        width = along == Along::u ? box.x : box.y;
-      }
+      const Vector2 box = uv_box(p);
+      width = along == Along::u ? box.x : box.y;
     }
     const size_t last = positions.size() - 1;
     const float range = positions[last] - positions[0];

@@ -2,9 +2,10 @@
 
 #include "openimageio/cached_texture.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <map>
-#include <mutex>
 
 #include "etendue/error.h"
 #include "openimageio/image_cache.h"
@@ -57,6 +58,13 @@ class Halving {
   std::vector<float> row_;
 };
 
+/// Half of the machine's memory. Maps are looked up at full size and all over an image, and a texel that is no longer there
+/// costs reading a strip of its file again.
+float cache_megabytes() {
+  const double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  return float(std::max(2048.0, bytes / 2 / (1 << 20)));
+}
+
 }  // namespace
 
 OIIO::ImageCache& image_cache() {
@@ -65,7 +73,7 @@ OIIO::ImageCache& image_cache() {
     c->attribute("autotile", CachedTexture::tile_side);
     c->attribute("accept_untiled", 1);
     c->attribute("accept_unmipped", 1);
-    c->attribute("max_memory_MB", 2048.0f);
+    c->attribute("max_memory_MB", cache_megabytes());
     return c;
   }();
   return *cache;
@@ -94,10 +102,10 @@ std::shared_ptr<const CachedTexture> CachedTexture::open(const std::string& path
 
 void CachedTexture::read(const std::string& key) {
   OIIO::ImageCache& cache = image_cache();
-  const OIIO::ustring name(key);
+  name_ = OIIO::ustring(key);
   OIIO::ImageSpec spec;
-  if (!cache.add_file(name, make_linear_input) || !cache.get_imagespec(name, spec)) throw Error(cache.geterror());
-  handle_ = cache.get_image_handle(name);
+  if (!cache.add_file(name_, make_linear_input) || !cache.get_imagespec(name_, spec)) throw Error(cache.geterror());
+  handle_ = cache.get_image_handle(name_);
   channels_ = spec.nchannels;
   left_ = spec.full_x;
   top_ = spec.full_y;
@@ -109,23 +117,39 @@ void CachedTexture::read(const std::string& key) {
   const double area = double(width) * height;
   if (width < 1 || height < 1) throw Error("its display window is empty");
   if (area > 0x1p26 && area > 16.0 * pixels_x_ * pixels_y_) throw Error("its display window is far larger than what it shows");
+  levels_.reserve(32);  // as many as there can be: lookups in the first go on while the others are made
   levels_.push_back({width, height, {}});
+  // All of it, so that a damaged file is found now.
+  if (!read_rows([](int, int, const float*) {})) throw Error(cache.geterror());
+}
 
-  Halving half(width, height, channels_);
+template <class Use>
+bool CachedTexture::read_rows(Use use) const {
   constexpr int rows = 64;
-  const size_t row = size_t(pixels_x_) * size_t(channels_);
-  const int first = std::max(begin_x_, 0), last = std::min(begin_x_ + pixels_x_, width);  // in the display window
-  std::vector<float> strip(row * rows);
+  const int left = left_ + begin_x_, top = top_ + begin_y_;
+  std::vector<float> strip(size_t(pixels_x_) * size_t(channels_) * rows);
   for (int y = 0; y < pixels_y_; y += rows) {
     const int end = std::min(y + rows, pixels_y_);
-    if (!cache.get_pixels(name, 0, 0, spec.x, spec.x + pixels_x_, spec.y + y, spec.y + end, 0, 1, OIIO::TypeDesc::FLOAT,
-                          strip.data()))
-      throw Error(cache.geterror());
-    for (int i = y; i < end; ++i)
+    if (!image_cache().get_pixels(name_, 0, 0, left, left + pixels_x_, top + y, top + end, 0, 1, OIIO::TypeDesc::FLOAT,
+                                  strip.data()))
+      return false;
+    use(y, end, strip.data());
+  }
+  return true;
+}
+
+/// A file that was removed since it was opened is black from where it cannot be read.
+void CachedTexture::make_levels() const {
+  const int width = levels_[0].width, height = levels_[0].height;
+  Halving half(width, height, channels_);
+  const size_t row = size_t(pixels_x_) * size_t(channels_);
+  const int first = std::max(begin_x_, 0), last = std::min(begin_x_ + pixels_x_, width);  // in the display window
+  read_rows([&](int begin, int end, const float* strip) {
+    for (int i = begin; i < end; ++i)
       if (begin_y_ + i >= 0 && begin_y_ + i < height && first < last)
         half.add(begin_y_ + i, first, last - first,
-                 strip.data() + size_t(i - y) * row + size_t(first - begin_x_) * size_t(channels_));
-  }
+                 strip + size_t(i - begin) * row + size_t(first - begin_x_) * size_t(channels_));
+  });
   while (levels_.back().width > 1 || levels_.back().height > 1) {
     levels_.push_back({half.width, half.height, std::move(half.texels)});
     const Level& l = levels_.back();

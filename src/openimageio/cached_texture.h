@@ -4,6 +4,7 @@
 #include <OpenImageIO/imagecache.h>
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@
 namespace etendue {
 
 /// Its texels stay in OpenImageIO's cache, which reads them from the file again when memory is short; levels of averages, each
-/// half as wide and half as high as the one before, are kept.
+/// half as wide and half as high as the one before, are made when the first mean is asked for, and kept.
 class CachedTexture final : public ImageTexture {
  public:
   /// See ImageTexture::open; errors tell the reason alone.
@@ -22,8 +23,8 @@ class CachedTexture final : public ImageTexture {
   int channels() const override { return channels_; }
   void nearest(Point2 at, Wrap, float* out) const override;
   void bilinear(Point2 at, Wrap, float* out) const override;
-  void trilinear(Point2 at, const UvFootprint&, Wrap, float* out) const override;
-  void anisotropic(Point2 at, const UvFootprint&, Wrap, float* out) const override;
+  void mean(Point2 at, const UvFootprint&, Wrap, float* out) const override;
+  float texels_along(const UvFootprint&) const override;
 
   static constexpr int tile_side = 64;  ///< of the cache's tiles
 
@@ -35,6 +36,10 @@ class CachedTexture final : public ImageTexture {
   };
 
   void read(const std::string& key);
+  /// Passes over the pixels that are there, some rows at a time: use(first row, end, their numbers). False: the file is bad.
+  template <class Use>
+  bool read_rows(Use use) const;
+  void make_levels() const;
   /// The mean along a line of `length` texels, from -half_line to half_line, of what level `detail` shows.
   void line(Point2 at, Vector2 half_line, float length, float detail, Wrap, float* out) const;
 
@@ -43,7 +48,9 @@ class CachedTexture final : public ImageTexture {
   int left_ = 0, top_ = 0;           // of the display window, in the file's pixels
   int begin_x_ = 0, begin_y_ = 0;    // of the pixels that are there, in the display window
   int pixels_x_ = 0, pixels_y_ = 0;  // how many are there
-  std::vector<Level> levels_;
+  OIIO::ustring name_;               // of the file, in the cache
+  mutable std::once_flag levels_made_;
+  mutable std::vector<Level> levels_;  // the image itself; the others when they are asked for
 };
 
 }  // namespace etendue

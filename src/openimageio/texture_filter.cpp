@@ -165,14 +165,20 @@ void CachedTexture::nearest(Point2 at, Wrap wrap, float* out) const {
   reader.add(int(std::floor(at.x * reader.width())), int(std::floor((1 - at.y) * reader.height())), 1.0f);
 }
 
-void CachedTexture::bilinear(Point2 at, Wrap wrap, float* out) const { line(at, {}, 0, 0, wrap, out); }
-
-void CachedTexture::trilinear(Point2 at, const UvFootprint& f, Wrap wrap, float* out) const {
-  const Ellipse e = ellipse_of(f, float(levels_[0].width), float(levels_[0].height));
-  line(at, {}, 0, detail_of(e.longer), wrap, out);
+void CachedTexture::bilinear(Point2 at, Wrap wrap, float* out) const {
+  std::fill_n(out, channels_, 0.0f);
+  at = near(at, wrap);
+  if (!(at.x == at.x)) return;
+  TexelReader reader(*this, 0, wrap, out);
+  reader.add_between(at.x * reader.width() - 0.5f, (1 - at.y) * reader.height() - 0.5f, 1);
 }
 
-void CachedTexture::anisotropic(Point2 at, const UvFootprint& f, Wrap wrap, float* out) const {
+float CachedTexture::texels_along(const UvFootprint& f) const {
+  return ellipse_of(f, float(levels_[0].width), float(levels_[0].height)).longer;
+}
+
+void CachedTexture::mean(Point2 at, const UvFootprint& f, Wrap wrap, float* out) const {
+  std::call_once(levels_made_, [this] { make_levels(); });
   const float width = float(levels_[0].width), height = float(levels_[0].height);
   const Ellipse e = ellipse_of(f, width, height);
   const float shorter = std::max(e.shorter, e.longer / maximum_anisotropy);

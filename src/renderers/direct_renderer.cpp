@@ -109,7 +109,7 @@ class DirectRenderer final : public Renderer {
       add(2, direct);
       record_direct(sample.record, direct, 2, 1);
 
-      const auto straight = pass_straight(point, *scatter, sample.random, ray, media);
+      const auto straight = pass_straight(point, *scatter, ray, media);
       if (!straight) return radiance;
       throughput *= *straight;
     }
@@ -121,12 +121,12 @@ class DirectRenderer final : public Renderer {
   static constexpr Lobes bent_lobes = all_lobes & ~pass_through;
 
   /// Lets a ray go straight on through a surface. Returns the fraction that does; none when all is scattered or absorbed.
-  static std::optional<Spectrum> pass_straight(const SurfacePoint& point, const Scatter& scatter, const SampleStream& random,
-                                               Ray& ray, MediumStack* media) {
+  static std::optional<Spectrum> pass_straight(const SurfacePoint& point, const Scatter& scatter, Ray& ray,
+                                               MediumStack* media) {
     if (!scatter.has(pass_through)) return std::nullopt;
     const auto straight = scatter.sample(-ray.direction, 0, {}, Transport::radiance, pass_through);
     if (!straight || straight->weight.black()) return std::nullopt;
-    go_on(point, *straight, random, ray, media);
+    go_on(point, *straight, ray, media);
     return straight->weight;
   }
 
@@ -170,7 +170,7 @@ class DirectRenderer final : public Renderer {
       MediumStack inside;
       if (media) inside = *media;
       MediumStack* const around = media ? &inside : nullptr;
-      go_on(point, *next, sample.random, ray, around);
+      go_on(point, *next, ray, around);
 
       const auto weight = [&](const SurfacePoint& on_luminaire) {
         if (strategy == Strategy::shader || next->specular()) return 1.0f;
@@ -189,7 +189,7 @@ class DirectRenderer final : public Renderer {
           sum += throughput * met.object->emission->radiance(met, -ray.direction, wavelengths) * weight(met);
         if (!met.object->shader || !(met.object->shader->possible_lobes() & pass_through)) break;
         const Scatter* there = scattering_at(met, -ray.direction, wavelengths, sample.arena);
-        const auto straight = there ? pass_straight(met, *there, sample.random, ray, around) : std::nullopt;
+        const auto straight = there ? pass_straight(met, *there, ray, around) : std::nullopt;
         if (!straight) break;
         throughput *= *straight;
       }

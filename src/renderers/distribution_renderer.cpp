@@ -222,7 +222,7 @@ class DistributionRenderer final : public Renderer {
             int rays) const {
     if (next.dispersive) branch.throughput *= branch.wavelengths.drop_secondary();
     branch.eta_squared *= next.eta * next.eta;
-    go_on(place.point, next, sample.random, branch.ray, branch.around());
+    go_on(place.point, next, branch.ray, branch.around());
     if (!place.splits) record_scatter(sample.record, next);
     if (next.lobe == pass_through) return;  // as if nothing had been there
     ++branch.depth;

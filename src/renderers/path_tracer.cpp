@@ -109,7 +109,6 @@ class PathTracer final : public Renderer {
       return !throughput.black();
     };
 
-    const float rough = rough_spread(sample.random);
     const bool one_luminaire = scene.luminaires().size() == 1;
     Hit hit;
     SurfacePoint point;
@@ -257,7 +256,6 @@ class PathTracer final : public Renderer {
       ray.direction = next->direction;
       ray.maximum = infinity;
       ray.width = point.footprint;
-      if (!specular) ray.spread = std::max(ray.spread, rough);
     }
     return radiance;
   }

@@ -105,7 +105,7 @@ class WhittedRenderer final : public Renderer {
       if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();
       if (child.throughput.black() || !child.may_go_on(lobe)) continue;
       if (lobe != pass_through) ++child.depth;
-      go_on(point, *next, sample.random, child.ray, child.around());
+      go_on(point, *next, child.ray, child.around());
       if (!first) record_surface(sample.record, point, branch.throughput);  // each branch is told from its surface on
       first = false;
       record_scatter(sample.record, *next);

@@ -15,16 +15,18 @@ namespace {
 // shading normal, so bumps add to interpolated normals; tangents are taken as they lie in the plane across it.
 //
 // h_u and h_v are central differences of the map. The point is moved in all that maps look at: u and v, the position, and
-// the position in the object's own coordinates. The step is half of what a pixel sees, so that finer bumps are not sampled
-// at random heights; without a footprint it is a 4000th of the parameter's range, and never so small that rounding of the
-// coordinates shows.
+// the position in the object's own coordinates. The step is as short as floats allow: 1e-5 of the largest coordinate, 80 to 170
+// units in its last place, so that rounding of coordinates changes a slope by less than 1 %; and a 100000th of the parameter's
+// range where the coordinates are small. Steps of a height are thus walls without width, which nothing sees. Where maps are
+// averaged over a footprint, the step is half of that.
 class BumpShader final : public PerturbedNormalShader {
  public:
   static void describe(Description<BumpShader>& d) {
     d.summary("Bumps: tilts the normal that shading uses as if the surface were raised by a map. Its outline stays as it is.",
               "Blinn 1978, Simulation of wrinkled surfaces")
         .member<&BumpShader::shader>("shader", "", "the surface that gets the bumps", required)
-        .member<&BumpShader::height>("height", "m", "how high the surface is raised")
+        .member<&BumpShader::height>("height", "m",
+                                     "how high the surface is raised; only slopes show: one that rises in steps is flat")
         .member<&BumpShader::scale>("scale", "1", "multiplies the height");
   }
 
@@ -54,12 +56,11 @@ class BumpShader final : public PerturbedNormalShader {
  private:
   /// Change of height [m] per unit of the parameter whose tangent and direction in (u, v) are given.
   float slope(const SurfacePoint& p, const Vector3& tangent, const Vector2& direction, const Transform& placed_by) const {
-    const float length_of = length(tangent);
-    const float coordinate = std::max({std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)});
-    const float by_pixel = p.footprint > 0 ? 0.5f * p.footprint / length_of : 2.5e-4f;
-    const float by_rounding = 1e-5f * std::max({std::abs(p.uv.x), std::abs(p.uv.y), coordinate / length_of});
-    const float step = std::max(by_pixel, by_rounding);
     const Vector3 inner = placed_by.back(tangent);
+    const float length_of = length(tangent);
+    const float coordinate = std::max({1.0f, std::abs(p.uv.x), std::abs(p.uv.y), largest(p.position - Point3{}) / length_of,
+                                       largest(p.object_position - Point3{}) / length(inner)});
+    const float step = std::max(1e-5f * coordinate, 0.5f * p.footprint / length_of);
     const auto at = [&](float by) {
       SurfacePoint q = p;
       q.uv = q.uv + by * direction;
@@ -69,6 +70,8 @@ class BumpShader final : public PerturbedNormalShader {
     };
     return (at(step) - at(-step)) / (2 * step);
   }
+
+  static float largest(const Vector3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
   bool flat_ = true;
 };

@@ -140,8 +140,6 @@ class Walk {
     ray_.origin = v.point.exit(next.direction);
     ray_.direction = next.direction;
     ray_.width = v.point.footprint;
-    // A walk from a luminaire ends where the camera looks from near: maps are not filtered for it.
-    if (!v.specular && start_.transport == Transport::radiance) ray_.spread = std::max(ray_.spread, rough_spread(random_));
     return true;
   }
 

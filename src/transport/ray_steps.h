@@ -43,19 +43,14 @@ inline bool enters_body(const SurfacePoint& point, const ScatterSample& next) {
   return next.transmitted() && next.lobe != pass_through && point.object->shader->moves_exit();
 }
 
-/// Growth of the footprint after a rough reflection [per distance]: maps seen indirectly are filtered coarsely.
-inline float rough_spread(const SampleStream& random) { return 0.1f * filter_scale(random.key()); }
-
-/// Makes a ray go on from a point in a sampled direction; `media` are changed when it goes through the surface. Straight
-/// on, its footprint stays what it is.
-inline void go_on(const SurfacePoint& point, const ScatterSample& next, const SampleStream& random, Ray& ray,
-                  MediumStack* media) {
+/// Makes a ray go on from a point in a sampled direction; `media` are changed when it goes through the surface. Its cone
+/// goes on as from a plane mirror.
+inline void go_on(const SurfacePoint& point, const ScatterSample& next, Ray& ray, MediumStack* media) {
   if (media && next.transmitted()) cross_boundary(*media, *point.object, point.normal, next.direction);
   ray.origin = point.exit(next.direction);
   ray.direction = next.direction;
   ray.maximum = infinity;
   ray.width = point.footprint;
-  if (!next.specular()) ray.spread = std::max(ray.spread, rough_spread(random));
 }
 
 /// Light that a luminaire sends to a point, if nothing lies on the shadow ray.

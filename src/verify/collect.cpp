@@ -131,9 +131,8 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
     candidate.misses = missed(*candidate.renderer, traits);
     if (!candidate.misses.empty() && !(force && named))
       choice.left_out.push_back({candidate.name, "misses " + joined(candidate.misses)});
-    else if (!candidate.renderer->unbiased() && !named)
-      choice.left_out.push_back(
-          {candidate.name, "is exact only in the limit of many samples; --renderers compares it nevertheless"});
+    else if (const std::string bias = candidate.renderer->bias(); !bias.empty() && !named)
+      choice.left_out.push_back({candidate.name, "is biased: " + bias + "; --renderers compares it nevertheless"});
     else
       choice.candidates.push_back(std::move(candidate));
   }

@@ -75,7 +75,7 @@ std::string remark(const Measured& measured, const RendererRun& run, const Candi
   std::string text;
   const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
   for (const std::string& lost : candidate.misses) add("misses " + lost);
-  if (!candidate.renderer->unbiased()) add("exact only in the limit of many samples: it may differ by its bias");
+  if (const std::string bias = candidate.renderer->bias(); !bias.empty()) add("biased: " + bias);
   if (!measured.tells_lengths)
     add("does not tell path lengths apart, so only all lengths together are compared");
   else if (std::abs(run.length_share - 1) > 1e-3)
