@@ -207,7 +207,7 @@ TEST(Language, FileErrors) {
   const Folder folder;
   EXPECT_EQ(errors_of([&] { load_job(folder.path() + "/none.etd"); }),
             "cannot read '" + folder.path() + "/none.etd': No such file or directory");
-  EXPECT_EQ(errors_of([&] { load_job(folder.path()); }), "cannot read '" + folder.path() + "': Is a directory");
+  EXPECT_EQ(errors_of([&] { load_job(folder.path()); }), "cannot read '" + folder.path() + "': it is a folder");
   EXPECT_EQ(errors_of([&] { parse_component("include \"none.etd\"\nLanguagePart { count: unknown }", "text", folder.path()); }),
             "1:9: cannot read '" + folder.path() + "/none.etd': No such file or directory");
   EXPECT_NE(job_errors("plugin \"./none.so\"\n" + job_with("seed: 1")).find("1:8: "), std::string::npos);

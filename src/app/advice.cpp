@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "app/text.h"
+#include "component/guard.h"
 #include "etendue/registry.h"
 
 namespace etendue {
@@ -72,7 +73,7 @@ std::vector<std::string> renderers_that_find_all(const SceneTraits& traits) {
   std::vector<std::string> names;
   const ClassInfo* interface = Registry::instance().find("Renderer");
   for (const ClassInfo* info : Registry::instance().subclasses(*interface))
-    if (info != interface && ref_cast<Renderer>(info->create())->misses(traits).empty()) names.push_back(info->name);
+    if (info != interface && ref_cast<Renderer>(create(*info))->misses(traits).empty()) names.push_back(info->name);
   return names;
 }
 

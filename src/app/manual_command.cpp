@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/manual_examples.h"
 #include "app/text.h"
+#include "component/guard.h"
 #include "etendue/job.h"
 #include "etendue/language.h"
 #include "etendue/reflection.h"
@@ -60,9 +61,9 @@ int render_pictures(const ManualOptions& options) {
       if (!scene) continue;
       render_picture(*scene, info->name, (folder / picture_file(*info)).string(), options.samples);
       fmt::print("{}\n", picture_file(*info));
-    } catch (const std::exception& problem) {
+    } catch (...) {  // a plugin may throw anything
       ++failed;
-      fmt::print(stderr, "no picture of {}: {}\n", info->name, problem.what());
+      fmt::print(stderr, "no picture of {}: {}\n", info->name, thrown_text());
     }
     std::fflush(stdout);
   }

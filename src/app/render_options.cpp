@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "app/text.h"
+#include "component/guard.h"
 #include "etendue/language.h"
 #include "job/checkpoint.h"
 
@@ -205,7 +206,7 @@ Ref<Output> output_for(const std::string& file) {
   const std::string ending = lower(std::filesystem::path(file).extension().string());
   std::vector<std::string> known;
   for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Output"))) {
-    const Ref<Output> output = ref_cast<Output>(info->create());
+    const Ref<Output> output = ref_cast<Output>(create(*info));
     if (output->extension() == ending) return output;
     known.push_back(output->extension());
   }

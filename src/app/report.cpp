@@ -8,8 +8,10 @@
 #include <cstdio>
 #include <vector>
 
+#include "component/guard.h"
 #include "etendue/error.h"
 #include "etendue/language.h"
+#include "etendue/registry.h"
 
 namespace etendue {
 
@@ -22,6 +24,18 @@ void show_all(const std::vector<Error>& errors) {
     fmt::print(stderr, "{}", text);
   }
   fmt::print(stderr, "{} error{}\n", errors.size(), errors.size() == 1 ? "" : "s");
+}
+
+/// Who else may have failed: code of plugins runs in this program.
+std::string plugins_note() {
+  std::string text;
+  for (const std::string& file : Registry::instance().plugins()) {
+    text += text.empty() ? "classes of plugins are in use:" : ";";
+    for (const ClassInfo* info : Registry::instance().all())
+      if (info->provider == file) text += " " + info->name;
+    text += fmt::format(" of '{}'", file);
+  }
+  return text.empty() ? text : text + "\n";
 }
 
 const CLI::App* innermost_command(const CLI::App* app) {
@@ -57,8 +71,8 @@ int reporting_errors(const Run& run) {
     return exit_status::bad_input;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "etendue: out of memory\n");
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "etendue: unexpected failure: {}\n", error.what());
+  } catch (...) {
+    fmt::print(stderr, "etendue: unexpected failure: {}\n{}", thrown_text(), plugins_note());
   }
   return exit_status::failed;
 }

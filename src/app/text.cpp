@@ -10,10 +10,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 #include "etendue/error.h"
+#include "files/regular_file.h"
 
 namespace etendue {
 
@@ -91,11 +90,11 @@ void write_file(const std::string& path, const std::string& text) {
 }
 
 std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file) text << file.rdbuf();
-  if (!file || file.bad()) throw Error(fmt::format("cannot read '{}': {}", path, std::strerror(errno)));
-  return std::move(text).str();
+  try {
+    return read_regular_file(path);
+  } catch (const Error& e) {
+    throw Error(fmt::format("cannot read '{}': {}", path, e.what()));
+  }
 }
 
 }  // namespace etendue

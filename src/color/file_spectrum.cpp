@@ -1,16 +1,15 @@
 // Spectra from CSV and SPD files.
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "color/named.h"
 #include "color/table_spectrum.h"
 #include "etendue/color.h"
 #include "etendue/error.h"
+#include "files/regular_file.h"
 
 namespace etendue {
 
@@ -56,15 +55,13 @@ std::optional<double> number_of(std::string_view text) {
 class SpectrumFile {
  public:
   SpectrumFile(const FilePath& file, const std::string& column) : path_(file.resolved()), column_(column) {
-    std::ifstream stream(path_, std::ios::binary);
-    if (!stream) fail(0, std::strerror(errno));
+    std::istringstream stream(contents());
     std::string line;
     for (int number = 1; std::getline(stream, line); ++number) {
       if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
       const std::string_view text = trimmed(line);
       if (!text.empty() && text.front() != '#') take(text, number);
     }
-    if (stream.bad()) fail(0, "it cannot be read");
     if (wavelengths.empty()) fail(0, "it holds no numbers");
     if (wavelengths.size() < 2) fail(0, "it holds one wavelength, at least two are needed");
     if (wavelengths.back() < 10) fail(0, "wavelengths are expected in nm; these, all below 10, seem to be in micrometres");
@@ -73,6 +70,15 @@ class SpectrumFile {
   std::vector<float> wavelengths, values;
 
  private:
+  std::string contents() const {
+    constexpr std::uint64_t most = 64u << 20;  // bytes; real ones have some 10 kB
+    try {
+      return read_regular_file(path_, most);
+    } catch (const Error& e) {
+      fail(0, e.what());
+    }
+  }
+
   void take(std::string_view line, int number) {
     const std::vector<std::string_view> fields = fields_of(line);
     if (!index_) {

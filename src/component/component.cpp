@@ -5,6 +5,7 @@
 #include <set>
 #include <unordered_set>
 
+#include "component/guard.h"
 #include "etendue/registry.h"
 
 namespace etendue {
@@ -50,10 +51,9 @@ void prepare_once(Component& c, std::unordered_set<const Component*>& done) {
   }
   try {
     c.prepare();
-  } catch (const Error& e) {
+  } catch (...) {
     // Helpers that know nothing of components throw without a place; the component's own is the nearest.
-    if (e.location.known() || !c.origin) throw;
-    throw Error(e.what(), c.origin->location);
+    blame(c, "preparing");
   }
 }
 

@@ -1,15 +1,19 @@
 #pragma once
-// Shared libraries that bring classes.
 
+#include <functional>
 #include <string>
 
 namespace etendue {
 
-/// The file to open: a path as it is when it has a folder; else looked up in the folders of ETENDUE_PLUGIN_PATH
-/// (separated by ':'), then the working folder. Throws Error when there is none. Made canonical.
+/// The plugin's file: in the folders of ETENDUE_PLUGIN_PATH when the path has no folder, else relative to the working folder.
+/// Throws Error when there is none, or it is no regular file.
 std::string find_plugin(const std::string& path);
+
+/// Throws Error, with the remedy, when a library is no plugin, was built for another program or machine, or crashes. It is
+/// opened in a process of its own, for opening a library runs code of it; `use` takes in, there, what it has enlisted.
+void check_plugin(const std::string& file, const std::function<void()>& use);
+
+/// Opens the library; its classes enlist themselves.
 void* open_plugin(const std::string& file);
-/// Throws Error when the library was built against other interfaces than this program.
-void check_plugin_abi(void* handle, const std::string& file);
 
 }  // namespace etendue

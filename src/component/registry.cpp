@@ -8,6 +8,7 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "component/guard.h"
 #include "component/plugin.h"
 #include "etendue/description.h"
 
@@ -72,7 +73,8 @@ struct Registry::State {
   std::map<std::string, std::unique_ptr<ClassInfo>, std::less<>> by_name;
   std::unordered_map<std::type_index, const ClassInfo*> by_type;
   std::map<std::string, void*> plugins;
-  std::string provider;  // of what is adopted now
+  std::map<std::string, std::string> refused;  // plugins and the reason: opened once more, they would enlist nothing
+  std::string provider;                        // of what is adopted now
 };
 
 Registry::Registry() : s(new State) {}
@@ -106,9 +108,23 @@ void Registry::adopt() {
   if (!pending) return;
   const std::lock_guard lock(s->mutex);
   std::unordered_map<std::type_index, RegistrationNode*> waiting;
-  for (RegistrationNode* n = take_pending(); n; n = n->next) waiting[n->type] = n;
   std::vector<ClassInfo*> added;
   std::string faults;
+  const auto defined_twice = [&](const std::string& name, const std::string& first_provider) {
+    const auto where = [](const std::string& provider) {
+      return provider.empty() ? std::string("this program") : "'" + provider + "'";
+    };
+    faults += first_provider == s->provider
+                  ? fmt::format("\n  {}: {} defines this class twice", name, where(s->provider))
+                  : fmt::format("\n  {}: there already is a class of this name: both {} and {} define it", name,
+                                where(first_provider), where(s->provider));
+  };
+  for (RegistrationNode* n = take_pending(); n; n = n->next) {
+    if (const auto known = s->by_type.find(n->type); known != s->by_type.end())
+      defined_twice(known->second->name, known->second->provider);
+    else if (!waiting.try_emplace(n->type, n).second)
+      defined_twice(detail::bare_class_name(n->type), s->provider);
+  }
 
   // Parents before children: a class begins with its parent's members.
   const std::function<const ClassInfo*(const std::type_info&)> take = [&](const std::type_info& type) -> const ClassInfo* {
@@ -128,11 +144,16 @@ void Registry::adopt() {
         faults += fmt::format("\n  {}: its parent class {} is not registered", info->name,
                               detail::bare_class_name(node->second->parent));
     }
-    node->second->describe(*info);
+    try {
+      node->second->describe(*info);
+    } catch (...) {
+      faults += fmt::format("\n  {}: describe() failed: {}", info->name, thrown_text());
+      return nullptr;
+    }
     if (const std::string wrong = fault(*info); !wrong.empty()) faults += "\n  " + info->name + ": " + wrong;
     ClassInfo* raw = info.get();
     if (!s->by_name.try_emplace(info->name, std::move(info)).second) {
-      faults += "\n  " + detail::bare_class_name(type) + ": there already is a class of this name";
+      defined_twice(detail::bare_class_name(type), s->by_name.find(detail::bare_class_name(type))->second->provider);
       return nullptr;
     }
     s->by_type[type] = raw;
@@ -144,16 +165,20 @@ void Registry::adopt() {
   // Defaults come from a default-constructed object; such objects may hold others of the classes just added.
   for (ClassInfo* info : added) {
     if (info->abstract() || !faults.empty()) continue;
-    const Ref<Component> object = info->create();
-    for (Member& m : info->members) {
-      m.default_value = m.get(*object, m);
-      if (m.required) continue;
-      try {
-        const Ref<Component> scratch = info->create();
-        if (m.kind != Kind::component) m.store(*scratch, m, m.default_value);
-      } catch (const Error& e) {
-        faults += fmt::format("\n  {}.{}: its default is not allowed: {}", info->name, m.name, e.what());
+    try {
+      const Ref<Component> object = etendue::create(*info);
+      for (Member& m : info->members) {
+        m.default_value = m.get(*object, m);
+        if (m.required) continue;
+        try {
+          const Ref<Component> scratch = etendue::create(*info);
+          if (m.kind != Kind::component) m.store(*scratch, m, m.default_value);
+        } catch (const Error& e) {
+          faults += fmt::format("\n  {}.{}: its default is not allowed: {}", info->name, m.name, e.what());
+        }
       }
+    } catch (...) {
+      faults += fmt::format("\n  {}", thrown_text());
     }
   }
   if (faults.empty()) return;
@@ -202,7 +227,7 @@ Ref<Component> Registry::create(std::string_view name) const {
   if (!info) throw Error(fmt::format("there is no class '{}'{}", name, suggestion(std::string(name), known)));
   if (info->abstract())
     throw Error(fmt::format("'{}' is an interface; write one of its classes: {}", name, fmt::join(known, ", ")));
-  return info->create();
+  return etendue::create(*info);
 }
 
 std::vector<std::string> Registry::plugins() const {
@@ -213,22 +238,37 @@ std::vector<std::string> Registry::plugins() const {
 }
 
 void Registry::load_plugin(const std::string& path) {
-  const std::lock_guard lock(s->mutex);
   adopt();
   const std::string file = find_plugin(path);
-  if (s->plugins.contains(file)) return;
-  void* handle = open_plugin(file);  // its static nodes enlist themselves; nothing of them is called yet
-  try {
-    check_plugin_abi(handle, file);
-    s->provider = file;
-    adopt();
-  } catch (const Error& e) {
-    s->provider.clear();
-    take_pending();
-    throw Error("plugin '" + file + "': " + e.what());
+  {
+    const std::lock_guard lock(s->mutex);
+    if (s->plugins.contains(file)) return;
+    if (const auto known = s->refused.find(file); known != s->refused.end()) throw Error(known->second);
   }
-  s->provider.clear();
-  s->plugins[file] = handle;
+  const auto named = [&] { return Error("plugin '" + file + "': " + thrown_text()); };
+  try {
+    // Without the lock: the child process could not take it once more.
+    check_plugin(file, [&] {
+      s->provider = file;
+      adopt();
+    });
+  } catch (...) {
+    throw named();
+  }
+  const std::lock_guard lock(s->mutex);
+  s->provider = file;
+  try {
+    s->plugins[file] = open_plugin(file);  // its static nodes enlist themselves; nothing of them is called yet
+    adopt();
+    s->provider.clear();
+  } catch (...) {
+    s->provider.clear();
+    s->plugins.erase(file);
+    take_pending();
+    const Error reason = named();
+    s->refused[file] = reason.what();
+    throw reason;
+  }
 }
 
 Value get(const Component& c, std::string_view member) {
@@ -279,7 +319,7 @@ Value copy_value(const Value& v, Copies& made) {
 Ref<Component> copy_once(const Component& c, Copies& made) {
   if (const auto known = made.find(&c); known != made.end()) return known->second;
   const ClassInfo& info = c.class_info();
-  Ref<Component> out = info.create();
+  Ref<Component> out = create(info);
   made[&c] = out;
   for (const Member& m : info.members) m.store(*out, m, copy_value(m.get(c, m), made));
   if (c.origin) out->origin = std::make_unique<Component::Origin>(*c.origin);

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "component/guard.h"
 #include "conform/draw.h"
 
 namespace etendue::conform {
@@ -48,8 +49,8 @@ void run(Trial& trial, void (*check)(Trial&), const std::string& what) {
   std::optional<std::string> thrown;
   try {
     check(trial);
-  } catch (const std::exception& error) {
-    thrown = error.what();
+  } catch (...) {  // a part may throw anything
+    thrown = thrown_text();
   }
   trial.expect(!thrown, "nothing is thrown by the checks of a " + what, [&] { return *thrown; });
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "component/guard.h"
 #include "etendue/color.h"
 #include "etendue/language.h"
 #include "etendue/scene.h"
@@ -16,7 +17,7 @@ class Drawer {
 
   /// Not prepared.
   Ref<Component> with_defaults(const ClassInfo& info, bool fill_lists, bool with_files) {
-    const Ref<Component> c = info.create();
+    const Ref<Component> c = create(info);
     for (const Member& m : info.members) {
       if (m.required && m.kind == Kind::component)
         set(*c, m.name, m.list ? component_list(m, 2) : component_for(m, 2));
@@ -29,7 +30,7 @@ class Drawer {
   }
 
   Ref<Component> with_random(const ClassInfo& info, int depth, double change) {
-    const Ref<Component> c = info.create();
+    const Ref<Component> c = create(info);
     for (const Member& m : info.members) {
       if (!m.required && !(uniform() < change)) continue;
       if (m.kind == Kind::file) {
@@ -217,8 +218,8 @@ Drawn finished(F&& make) {
     drawn.refused = error.what();
   } catch (const Errors& errors) {
     drawn.refused = errors.what();
-  } catch (const std::exception& other) {  // a part may throw anything
-    drawn.refused = other.what();
+  } catch (...) {  // a part may throw anything
+    drawn.refused = thrown_text();
     drawn.part = {};
   }
   return drawn;
@@ -246,7 +247,7 @@ Drawn part_with_files(const ClassInfo& info, const Fixtures& fixtures, std::mt19
 
 Drawn draw_part(const ClassInfo& info, const Fixtures& fixtures, std::mt19937_64& random) {
   Drawer drawer(fixtures, random);
-  const std::string defaults = write_description(*info.create());
+  const std::string defaults = write_description(*create(info));
   Drawn drawn;
   constexpr int tries = 60;
   for (int i = 0; i < tries; ++i) {

@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "etendue/error.h"
+#include "files/regular_file.h"
 
 namespace etendue {
 namespace {
 
-constexpr std::uintmax_t largest_file = 32u << 20;  // bytes; real ones have some 10 kB
-constexpr int most_angles = 7201;                   // 0.05 degrees all around
+constexpr std::uint64_t largest_file = 32u << 20;  // bytes; real ones have some 10 kB
+constexpr int most_angles = 7201;                  // 0.05 degrees all around
 constexpr double degree = 3.14159265358979323846 / 180;
 
 /// Lines up to TILT, then numbers that are separated by blanks, commas and ends of lines.
@@ -240,17 +239,12 @@ IesDistribution parse_ies(std::string_view text, const std::string& name) {
 }
 
 IesDistribution read_ies_file(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw Error("'" + path + "' is a folder, not an IES file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error("cannot open '" + path + "'");
   std::string text;
-  char part[1 << 16];
-  while (in.read(part, sizeof part), in.gcount() > 0) {
-    text.append(part, size_t(in.gcount()));
-    if (text.size() > largest_file) throw Error("'" + path + "' is larger than 32 MB, which no IES file is");
+  try {
+    text = read_regular_file(path, largest_file);
+  } catch (const Error& e) {
+    throw Error("cannot read '" + path + "': " + e.what());
   }
-  if (in.bad()) throw Error("cannot read '" + path + "'");
   return parse_ies(text, path);
 }
 

@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include "etendue/color.h"
 #include "etendue/image_tools.h"
 #include "etendue/output.h"
+#include "files/regular_file.h"
 #include "images/image_library.h"
 #include "images/numpy_array.h"
 
@@ -64,20 +62,11 @@ Image spread_grey(const Image& image, size_t grey) {
   return out;
 }
 
-std::string read_bytes(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) refuse(path, std::generic_category().message(errno));
-  std::ostringstream bytes;
-  bytes << in.rdbuf();
-  if (!in || in.bad()) refuse(path, std::generic_category().message(errno));
-  return std::move(bytes).str();
-}
-
-Image read_numpy(const std::string& path, std::uintmax_t size) {
+Image read_numpy(const std::string& path, std::uint64_t size) {
   if (size / 8 > NumpyArray::most_numbers + 1024) refuse(path, "it is too large: at most 2^30 numbers are read");
-  const std::string bytes = read_bytes(path);
   try {
-    Image image = parse_numpy_array(bytes);
+    const FileContents file(path);
+    Image image = parse_numpy_array(file.text());
     return image.channels.size() == 1 ? spread_grey(image, 0) : image;
   } catch (const Error& e) {
     refuse(path, e.what());
@@ -92,18 +81,24 @@ StoredImage read_stored(const std::string& path) {
   }
 }
 
-}  // namespace
-
-Image read_image(const std::string& path) {
+/// The size of a file, which is there and holds something.
+std::uint64_t size_of(const std::string& path) {
   std::error_code code;
-  const auto status = std::filesystem::status(path, code);
-  if (status.type() == std::filesystem::file_type::not_found) refuse(path, "there is no such file");
-  if (!std::filesystem::exists(status)) refuse(path, code.message());
-  if (std::filesystem::is_directory(status)) refuse(path, "it is a folder");
-  const auto file_size = std::filesystem::file_size(path, code);
-  if (!code && file_size == 0) refuse(path, "it is empty");
-  if (!std::ifstream(path, std::ios::binary)) refuse(path, std::generic_category().message(errno));
-  if (lower_extension(path) == ".npy") return read_numpy(path, code ? 0 : file_size);
+  if (std::filesystem::status(path, code).type() == std::filesystem::file_type::not_found)
+    refuse(path, "there is no such file");
+  std::uint64_t size = 0;
+  try {
+    size = RegularFile(path).size();
+  } catch (const Error& e) {
+    refuse(path, e.what());
+  }
+  if (size == 0) refuse(path, "it is empty");
+  return size;
+}
+
+Image read_whole_image(const std::string& path) {
+  const std::uint64_t size = size_of(path);
+  if (lower_extension(path) == ".npy") return read_numpy(path, size);
 
   StoredImage stored = read_stored(path);
   const std::string transfer = encoding(stored);
@@ -127,6 +122,16 @@ Image read_image(const std::string& path) {
     image.metadata["transfer"] = "linear";
   }
   return image;
+}
+
+}  // namespace
+
+Image read_image(const std::string& path) {
+  try {
+    return read_whole_image(path);
+  } catch (const std::bad_alloc&) {
+    refuse(path, no_memory_to_read);
+  }
 }
 
 void write_any(const Image& image, const std::string& path) {

@@ -13,8 +13,8 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
+#include "files/regular_file.h"
 #include "job/checkpoint.h"
 #include "job/hash.h"
 #include "outputs/whole_file.h"
@@ -169,19 +169,15 @@ bool read_header(const Bytes& bytes, Checkpoint& c) {
   return before;
 }
 
-Checkpoint read(std::ifstream& file, bool states) {
-  file.seekg(0, std::ios::end);
-  const auto size = std::uint64_t(file.tellg());
-  file.seekg(0);
+Checkpoint read(RegularFile& file, bool states) {
+  const std::uint64_t size = file.size();
   Preamble p;
-  const auto get = [&](void* to, std::uint64_t bytes) {
-    if (!file.read(static_cast<char*>(to), std::streamsize(bytes))) throw Error("it cannot be read to its end");
-  };
+  const auto get = [&](void* to, std::uint64_t bytes) { file.read(to, bytes); };
   if (size < sizeof p.name) throw Error("it is no checkpoint");
   get(&p.name, sizeof p.name);
   if (p.name != name_of_format) throw Error("it is no checkpoint");
   if (size < sizeof p) throw Error(fmt::format("it is cut short, to {} bytes", size));
-  file.seekg(0);
+  file.seek(0);
   get(&p, sizeof p);
   if (p.version != version_of_format)
     throw Error(fmt::format("it is of format {}, this program reads {}", p.version, version_of_format));
@@ -217,13 +213,14 @@ Checkpoint read(const std::string& path, bool states) {
   const auto refuse = [&](const std::string& reason) {
     return Error(fmt::format("cannot use the checkpoint '{}': {}", path, reason));
   };
-  if (std::filesystem::is_directory(path, error)) throw refuse("it is a folder");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw refuse(errno == ENOENT ? "there is no such file" : std::strerror(errno));
+  if (!std::filesystem::exists(path, error) && !error) throw refuse("there is no such file");
   try {
+    RegularFile file(path);
     return read(file, states);
   } catch (const Error& e) {
     throw refuse(e.what());
+  } catch (const std::bad_alloc&) {
+    throw refuse(no_memory_to_read);
   }
 }
 

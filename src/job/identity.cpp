@@ -1,15 +1,15 @@
 // What determines a job's samples: its description and the contents of the files that names.
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
+#include "component/guard.h"
 #include "etendue/language.h"
 #include "etendue/registry.h"
+#include "files/regular_file.h"
 #include "job/checkpoint.h"
 #include "job/hash.h"
 #include "maps/udim_files.h"
@@ -31,25 +31,20 @@ std::string folder_of(const Job& job) {
 /// Reads a whole file; one that cannot be read has a size that none has.
 Identity::File content(const std::string& path) {
   Identity::File file{{}, std::uint64_t(-1), 0};
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return file;
-  ::posix_fadvise(descriptor, 0, 0, POSIX_FADV_SEQUENTIAL);
-  Hash hash;
-  std::uint64_t size = 0;
-  std::vector<std::byte> block(size_t(1) << 20);
-  for (;;) {
-    const ssize_t got = ::read(descriptor, block.data(), block.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) break;
-    if (got == 0) {
-      file.size = size;
-      file.hash = hash.value();
-      break;
+  try {
+    RegularFile from(path);
+    Hash hash;
+    std::uint64_t size = 0;
+    std::vector<std::byte> block(size_t(1) << 20);
+    while (const std::uint64_t got = from.read_some(block.data(), block.size())) {
+      hash.add({block.data(), size_t(got)});
+      size += got;
+      if (got < block.size()) break;
     }
-    hash.add({block.data(), size_t(got)});
-    size += std::uint64_t(got);
+    file.size = size;
+    file.hash = hash.value();
+  } catch (const Error&) {
   }
-  ::close(descriptor);
   return file;
 }
 
@@ -146,7 +141,7 @@ Identity identity_of(const Job& job) {
   const std::string folder = folder_of(job);
   const Ref<Job> bare = make<Job>();
   bare->renderer = ref_cast<Renderer>(copy(*job.renderer));
-  bare->renderer->samples = ref_cast<Renderer>(job.renderer->class_info().create())->samples;
+  bare->renderer->samples = ref_cast<Renderer>(create(job.renderer->class_info()))->samples;
   bare->camera = job.camera;
   bare->scene = job.scene;
   bare->image = job.image;

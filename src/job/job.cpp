@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "component/guard.h"
 #include "job/checkpoint.h"
 #include "job/pass_runner.h"
 
@@ -110,6 +111,16 @@ void require_continuable(const Checkpoint& from, const std::string& name, const 
   if (!reason.empty()) throw Error(fmt::format("cannot continue from '{}': {}", name, reason));
 }
 
+/// Does something in which any part of the job may throw: those of plugins whatever they like.
+template <class Step>
+auto rendering(const Job& job, Step step) {
+  try {
+    return step();
+  } catch (...) {
+    blame(job, "rendering");
+  }
+}
+
 }  // namespace
 
 Ended Job::run(const Checkpoint* from, const std::string& from_file) {
@@ -126,7 +137,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   stop_ = 0;
 
   image->clear();
-  renderer->begin(context);
+  rendering(*this, [&] { renderer->begin(context); });
   done_.clear();
   seconds_ = 0;
   if (from) {
@@ -212,7 +223,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
       kept.before_short_pass = Checkpoint::State{image->save_state(), renderer->save_state()};
     runner.begin = pass.begin;
     runner.end = pass.end;
-    renderer->pass(context, runner);
+    rendering(*this, [&] { renderer->pass(context, runner); });
     if (stop_.load() == 2) return Ended::aborted;
     require_independent_passes();
     insert(done_, pass);
@@ -257,11 +268,11 @@ Point2 Job::replay(int x, int y, std::uint32_t sample, PathRecord& record) {
   if (!image->area().contains(x, y))
     throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
   const RenderContext context = this->context();
-  renderer->begin(context);
+  rendering(*this, [&] { renderer->begin(context); });
   Arena arena;
   Renderer::Request request;
   request.record = &record;
-  return renderer->camera_sample(context, x, y, sample, arena, request).film;
+  return rendering(*this, [&] { return renderer->camera_sample(context, x, y, sample, arena, request); }).film;
 }
 
 }  // namespace etendue

@@ -65,9 +65,9 @@ void PassRunner::run(std::uint64_t count, Work work, void* self) {
           if (next == count || s.stop.load(std::memory_order_relaxed) == 2) flow.stop();
           return next++;
         }) & tbb::make_filter<std::uint64_t, ImageTile*>(tbb::filter_mode::parallel, [&](std::uint64_t item) {
-          ImageTile* tile = s.take();
+          std::unique_ptr<ImageTile> tile(s.take());
           work(self, item, *tile, s.arenas.local());
-          return tile;
+          return tile.release();
         }) & tbb::make_filter<ImageTile*, void>(tbb::filter_mode::serial_in_order, [&](ImageTile* tile) {
           s.image.merge(*tile);
           s.give(tile);

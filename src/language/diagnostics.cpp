@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -14,6 +11,7 @@
 #include <tuple>
 
 #include "etendue/language.h"
+#include "files/regular_file.h"
 #include "language/source.h"
 
 namespace etendue {
@@ -51,23 +49,13 @@ void Diagnostics::raise() {
 Error located(const Error& error, Location fallback) { return error.location.known() ? error : Error(error.what(), fallback); }
 
 std::string read_text_file(const std::string& path, Location at) {
-  const auto fail = [&] { throw Error(fmt::format("cannot read '{}': {}", path, std::strerror(errno)), at); };
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  if (!file) fail();
-  std::string text;
-  std::error_code ignored;
-  const auto size = std::filesystem::file_size(path, ignored);  // only a hint: pipes have none
-  size_t room = ignored ? 0 : size_t(size);
-  for (;;) {
-    room = std::max(room, size_t(1) << 16);
-    const size_t begin = text.size();
-    text.resize(begin + room);
-    errno = 0;
-    const size_t got = std::fread(text.data() + begin, 1, room, file.get());
-    text.resize(begin + got);
-    if (std::ferror(file.get())) fail();
-    if (got < room || std::feof(file.get())) return text;
-    room = 0;
+  constexpr std::uint64_t most = std::uint64_t(4) << 30;  // what is larger is data, not a description
+  try {
+    return read_regular_file(path, most);
+  } catch (const Error& e) {
+    throw Error(fmt::format("cannot read '{}': {}", path, e.what()), at);
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format("cannot read '{}': {}", path, no_memory_to_read), at);
   }
 }
 

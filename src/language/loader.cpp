@@ -168,9 +168,13 @@ Ref<Component> Loader::result(bool job) {
 namespace etendue {
 
 Ref<Job> load_job(const std::string& path, const LoadOptions& options) {
-  language::Loader loader(options);
-  loader.add_file(path);
-  return ref_cast<Job>(loader.result(true));
+  try {
+    language::Loader loader(options);
+    loader.add_file(path);
+    return ref_cast<Job>(loader.result(true));
+  } catch (const std::bad_alloc&) {
+    throw Error("there is not enough memory for what it describes", {intern(path), 0, 0});
+  }
 }
 
 Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder,

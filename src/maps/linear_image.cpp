@@ -4,6 +4,7 @@
 
 #include "etendue/color.h"
 #include "etendue/error.h"
+#include "files/regular_file.h"
 #include "images/image_library.h"
 #include "maps/image_texture.h"
 
@@ -17,6 +18,8 @@ auto reading(const std::string& path, Use use) {
     return use(image_library());
   } catch (const Error& e) {
     throw Error("cannot read '" + path + "': " + e.what());
+  } catch (const std::bad_alloc&) {
+    throw Error("cannot read '" + path + "': " + no_memory_to_read);
   }
 }
 
@@ -31,7 +34,12 @@ void check_transfer(const std::string& transfer) {
 }
 
 void check_channel(const std::string& path, const std::string& channel) {
-  if (!channel.empty()) image_library().check_channel(path, channel);
+  if (channel.empty()) return;
+  try {
+    image_library().check_channel(path, channel);
+  } catch (const std::bad_alloc&) {
+    throw Error("cannot read '" + path + "': " + no_memory_to_read);
+  }
 }
 
 LinearImage read_linear_image(const std::string& path, const std::string& transfer) {

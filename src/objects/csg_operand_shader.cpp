@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "csg.h"
+#include "transport/bound.h"
 
 namespace etendue {
 namespace {
@@ -31,7 +32,7 @@ const Scatter* OperandShader::bind(const SurfacePoint& p, const Wavelengths& w, 
   if (!solid) return nullptr;
   SurfacePoint* const there = arena.make<SurfacePoint>(p);  // a Scatter may look back at it
   const Shader* const shader = solid->operand_at(p, *there).shader.get();
-  return shader ? shader->bind(*there, w, arena) : nullptr;
+  return shader ? bound(*shader, *there, w, arena) : nullptr;
 }
 
 Lobes OperandShader::possible_lobes() const {

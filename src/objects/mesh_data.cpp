@@ -2,48 +2,15 @@
 
 #include "mesh_data.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-
 #include "etendue/component.h"
+#include "files/regular_file.h"
 #include "polygon_triangulation.h"
 
 namespace etendue {
 
-MappedFile::MappedFile(const std::string& path) {
-  const int handle = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (handle < 0) throw Error(std::string("cannot open: ") + std::strerror(errno));
-  struct stat status{};
-  if (::fstat(handle, &status) != 0 || !S_ISREG(status.st_mode)) {
-    const std::string reason = S_ISDIR(status.st_mode) ? "it is a folder" : "it is no regular file";
-    ::close(handle);
-    throw Error("cannot read: " + reason);
-  }
-  size_ = size_t(status.st_size);
-  if (size_ > 0) {
-    void* at = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, handle, 0);
-    const int reason = errno;
-    ::close(handle);
-    if (at == MAP_FAILED) throw Error(std::string("cannot read: ") + std::strerror(reason));
-    ::madvise(at, size_, MADV_SEQUENTIAL);
-    data_ = static_cast<const char*>(at);
-  } else {
-    ::close(handle);
-  }
-}
-
-MappedFile::~MappedFile() {
-  if (data_) ::munmap(const_cast<char*>(data_), size_);
-}
-
 MeshData read_mesh(const std::string& path) {
   try {
-    const MappedFile file(path);
+    const FileContents file(path);
     const std::string_view text = file.text();
     if (text.empty()) throw Error("the file is empty");
     if (text.starts_with("ply\n") || text.starts_with("ply\r")) return read_ply(text);
@@ -55,7 +22,7 @@ MeshData read_mesh(const std::string& path) {
   } catch (const Error& error) {
     throw Error("'" + path + "': " + error.what());
   } catch (const std::bad_alloc&) {
-    throw Error("'" + path + "': not enough memory");
+    throw Error("'" + path + "': " + no_memory_to_read);
   }
 }
 

@@ -28,20 +28,6 @@ struct MeshData {
   std::vector<VertexAttribute> attributes;  ///< "color" (linear sRGB) and whatever else a file tells of its vertices
 };
 
-/// A whole file in memory without copying. Throws Error with the system's reason.
-class MappedFile {
- public:
-  explicit MappedFile(const std::string& path);
-  ~MappedFile();
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-  std::string_view text() const { return {data_, size_}; }
-
- private:
-  const char* data_ = nullptr;
-  size_t size_ = 0;
-};
-
 // The readers take the file's contents. They throw Error("what is wrong"), with the line for text, without the file's name.
 // Indices are checked, positions are not: that is for drop_unusable.
 MeshData read_ply(std::string_view file);

@@ -1,5 +1,7 @@
 // PLY files: text and binary of both byte orders (Turk 1994, "The PLY polygon file format").
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cstring>
 
@@ -175,9 +177,7 @@ void read_faces(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polyg
   else
     mesh.triangles.reserve(size_t(e.count));
   const auto out_of_range = [&](std::uint64_t face, double index) {
-    body.error("face " + std::to_string(face) + " refers to vertex " +
-               std::to_string(std::int64_t(clamp(float(index), -9e18f, 9e18f))) + " of " + std::to_string(vertices) +
-               " (counting from 0)");
+    body.error(fmt::format("face {} refers to vertex {:.12g} of {} (counting from 0)", face, index, vertices));
   };
   const Property& list = e.properties[size_t(indices)];
   std::uint64_t face = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "etendue/component.h"
+#include "files/regular_file.h"
 #include "point_groups.h"
 
 namespace etendue {
@@ -27,7 +28,7 @@ void compact(std::vector<T>& values, const std::vector<std::uint32_t>& kept, siz
 
 PolygonMesh read_polygon_mesh(const std::string& path) {
   try {
-    const MappedFile file(path);
+    const FileContents file(path);
     const std::string_view text = file.text();
     if (text.empty()) throw Error("the file is empty");
     if (text.starts_with("ply\n") || text.starts_with("ply\r")) return read_ply_polygons(text);
@@ -39,7 +40,7 @@ PolygonMesh read_polygon_mesh(const std::string& path) {
   } catch (const Error& error) {
     throw Error("'" + path + "': " + error.what());
   } catch (const std::bad_alloc&) {
-    throw Error("'" + path + "': not enough memory");
+    throw Error("'" + path + "': " + no_memory_to_read);
   }
 }
 

@@ -1,9 +1,9 @@
 // SignedDistanceGrid: the surface where numbers given on a grid, and interpolated between, are 0.
 
 #include "bernstein.h"
+#include "files/regular_file.h"
 #include "images/numpy_array.h"
 #include "implicit_grid.h"
-#include "mesh_data.h"
 
 namespace etendue {
 namespace {
@@ -190,8 +190,8 @@ class SignedDistanceGrid final : public ImplicitObject {
   void read_file() {
     const std::string path = file.resolved();
     try {
-      const MappedFile mapped(path);
-      const NumpyArray array = parse_numpy_header(mapped.text());
+      const FileContents contents(path);
+      const NumpyArray array = parse_numpy_header(contents.text());
       if (array.shape.size() != 3 || *std::min_element(array.shape.begin(), array.shape.end()) < 2)
         throw Error("an array of shape (nz, ny, nx) with at least 2 numbers along each is needed");
       for (size_t k = 0; k < 3; ++k) points_[k] = int(array.shape[2 - k]);
@@ -199,6 +199,8 @@ class SignedDistanceGrid final : public ImplicitObject {
       for (size_t i = 0; i < values_.size(); ++i) values_[i] = float(array[i]);
     } catch (const Error& error) {
       fail("file", "'" + path + "': " + error.what());
+    } catch (const std::bad_alloc&) {
+      fail("file", "'" + path + "': " + no_memory_to_read);
     }
   }
 

@@ -1,14 +1,11 @@
 #include "openimageio/file_input.h"
 
 #include <OpenImageIO/imageio.h>
-#include <fmt/format.h>
 
-#include <cerrno>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <system_error>
+#include <string_view>
 
+#include "files/regular_file.h"
+#include "openimageio/checked_open.h"
 #include "openimageio/refuse.h"
 
 namespace etendue {
@@ -33,19 +30,10 @@ std::string transfer(const OIIO::ImageSpec& spec) {
   return spec.format.is_floating_point() ? "linear" : "srgb";
 }
 
-std::string read_bytes(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) refuse(std::generic_category().message(errno));
-  std::ostringstream bytes;
-  bytes << in.rdbuf();
-  if (!in || in.bad()) refuse(std::generic_category().message(errno));
-  return std::move(bytes).str();
-}
-
 /// Whether a TGA file holds all its pixels, which the image library does not notice: after a header of 18 bytes (their
 /// meaning: Truevision TGA File Format Specification 2.0), a text and a palette come the pixels, plain or in packets of
 /// 1 to 128, of which those with the top bit set hold one pixel to be repeated.
-bool complete_targa(const std::string& file) {
+bool complete_targa(std::string_view file) {
   const auto byte = [&](size_t i) { return size_t(static_cast<unsigned char>(file[i])); };
   const auto word = [&](size_t i) { return byte(i) | byte(i + 1) << 8; };
   if (file.size() < 18) return false;
@@ -64,18 +52,11 @@ bool complete_targa(const std::string& file) {
 }  // namespace
 
 StoredImage read_file(const std::string& path) {
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
-  if (!input) refuse(OIIO::geterror());
+  const std::unique_ptr<OIIO::ImageInput> input = open_checked(path);
   const OIIO::ImageSpec spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) refuse("it holds no pixels");
-  // No format packs better than this; a damaged header must not make us ask for all the memory there is.
-  const double values = double(spec.width) * double(spec.height) * double(spec.nchannels);
-  std::error_code code;
-  const auto file_size = std::filesystem::file_size(path, code);
-  if (!code && values > 1e6 && values / 65536 > double(file_size))
-    refuse(fmt::format("it claims {} x {} pixels, which its {} bytes cannot hold", spec.width, spec.height, file_size));
-
-  if (std::string_view(input->format_name()) == "targa" && !complete_targa(read_bytes(path))) refuse("it ends too early");
+  require_memory(double(spec.width) * double(spec.height) * double(spec.nchannels) * sizeof(double), "it");
+  if (std::string_view(input->format_name()) == "targa" && !complete_targa(FileContents(path).text()))
+    refuse("it ends too early");
 
   Image image(spec.width, spec.height, spec.channelnames);
   image.channels.resize(size_t(spec.nchannels));

@@ -4,7 +4,9 @@
 #include <filesystem>
 
 #include "etendue/color.h"
+#include "files/regular_file.h"
 #include "maps/linear_image.h"
+#include "openimageio/checked_open.h"
 #include "openimageio/refuse.h"
 
 namespace etendue {
@@ -73,17 +75,16 @@ class LinearInput final : public OIIO::ImageInput {
     }
     const auto part = [&](size_t i) { return key.substr(at[i], at[i + 1] - 1 - at[i]); };
     const std::string path = key.substr(at[4]);
-    file_ = OIIO::ImageInput::open(path);
-    if (!file_) {
-      errorfmt("{}", OIIO::geterror());
+    try {
+      file_ = open_checked(path);
+    } catch (const Error& e) {
+      errorfmt("{}", e.what());
+      return false;
+    } catch (const std::bad_alloc&) {
+      errorfmt("{}", no_memory_to_read);
       return false;
     }
     const OIIO::ImageSpec& native = file_->spec();
-    if (native.deep || native.nchannels < 1 || native.depth > 1) {
-      errorfmt("it is a deep or volume image");
-      file_.reset();
-      return false;
-    }
     channels_ = find_channels(native, part(2));
     if (channels_.empty()) {
       errorfmt("it has no channel '{}'", part(2));
@@ -169,10 +170,11 @@ class LinearInput final : public OIIO::ImageInput {
 }  // namespace
 
 void check_file_channel(const std::string& path, const std::string& channel) {
-  const auto file = OIIO::ImageInput::open(path);
-  if (!file) {
-    OIIO::geterror();  // whoever reads it will say so
-    return;
+  std::unique_ptr<OIIO::ImageInput> file;
+  try {
+    file = open_checked(path);
+  } catch (const Error&) {
+    return;  // whoever reads it will say so
   }
   const std::vector<std::string>& known = file->spec().channelnames;
   if (channel.find(separator) == std::string::npos && !find_channels(file->spec(), channel).empty()) return;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "etendue/error.h"
-#include "shaders/regular_file.h"
+#include "files/regular_file.h"
 
 namespace etendue {
 namespace {
@@ -33,11 +33,10 @@ Span span_around(float turn, int cells) {
 }  // namespace
 
 MerlTable::MerlTable(const std::string& path) {
-  std::uint64_t size = 0;
-  std::ifstream stream = open_regular_file(path, size);
+  RegularFile file(path);
+  const std::uint64_t size = file.size();
   std::int32_t cells[3] = {0, 0, 0};
-  stream.read(reinterpret_cast<char*>(cells), sizeof cells);
-  if (!stream) throw Error("it is too short for a MERL file");
+  if (file.read_some(cells, sizeof cells) < sizeof cells) throw Error("it is too short for a MERL file");
   const std::string shape = std::to_string(cells[0]) + " x " + std::to_string(cells[1]) + " x " + std::to_string(cells[2]);
   for (const std::int32_t n : cells)
     if (n < 1 || n > most_cells) throw Error("it is no MERL file, or of no size that makes sense: " + shape + " cells");
@@ -55,8 +54,7 @@ MerlTable::MerlTable(const std::string& path) {
   for (int channel = 0; channel < 3; ++channel) {
     size_t found = 0;
     for (size_t at = 0; at < count; at += row.size()) {
-      stream.read(reinterpret_cast<char*>(row.data()), std::streamsize(row.size() * sizeof(double)));
-      if (!stream) throw Error("it ends too early");
+      file.read(row.data(), row.size() * sizeof(double));
       for (size_t i = 0; i < row.size(); ++i) {
         if (!(std::abs(row[i]) <= most)) throw Error("it holds " + std::to_string(row[i]) + ", out of any range");
         measured[at + i] = row[i] >= 0;

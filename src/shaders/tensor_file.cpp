@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "etendue/error.h"
-#include "shaders/regular_file.h"
 
 namespace etendue {
 namespace {
@@ -29,14 +28,15 @@ const char* name_of(TensorFile::Type type) {
 
 }  // namespace
 
-TensorFile::TensorFile(const std::string& path) : stream_(open_regular_file(path, size_)) {
-  const auto number = [this]<class T>(T& value) { read(&value, sizeof(T)); };
+TensorFile::TensorFile(const std::string& path) : file_(path) {
+  const std::uint64_t size = file_.size();
+  const auto number = [this]<class T>(T& value) { file_.read(&value, sizeof(T)); };
   char magic[12];
-  if (size_ < 18) throw Error("it is too short for a tensor file");
-  read(magic, sizeof magic);
+  if (size < 18) throw Error("it is too short for a tensor file");
+  file_.read(magic, sizeof magic);
   if (std::memcmp(magic, "tensor_file", 12) != 0) throw Error("it is not a tensor file (those begin with 'tensor_file')");
   std::uint8_t version[2];
-  read(version, 2);
+  file_.read(version, 2);
   if (version[0] != 1)
     throw Error("it is a tensor file of version " + std::to_string(version[0]) + "." + std::to_string(version[1]) +
                 ", only version 1 is known");
@@ -51,7 +51,7 @@ TensorFile::TensorFile(const std::string& path) : stream_(open_regular_file(path
     number(length);
     if (length > longest_name) throw Error("the name of field " + std::to_string(i) + " is too long");
     field.name.resize(length);
-    read(field.name.data(), length);
+    file_.read(field.name.data(), length);
     for (char& c : field.name)
       if (c < 32 || c > 126) c = '?';
     const std::string name = "field '" + field.name + "'";
@@ -62,9 +62,9 @@ TensorFile::TensorFile(const std::string& path) : stream_(open_regular_file(path
     if (type == 0 || type > std::uint8_t(Type::float64))
       throw Error(name + " has numbers of unknown type " + std::to_string(type));
     field.type = Type(type);
-    if (field.offset > size_) throw Error(name + " lies behind the end of the file");
+    if (field.offset > size) throw Error(name + " lies behind the end of the file");
     // Divided, not multiplied: sizes may be anything.
-    std::uint64_t room = (size_ - field.offset) / size_of(field.type);
+    std::uint64_t room = (size - field.offset) / size_of(field.type);
     field.count = 1;
     for (std::uint16_t k = 0; k < dimensions; ++k) {
       std::uint64_t n = 0;
@@ -98,8 +98,8 @@ const TensorFile::Field& TensorFile::field(const std::string& name, Type type, s
 
 std::vector<float> TensorFile::floats(const Field& f) {
   std::vector<float> values(f.count);
-  stream_.seekg(std::streamoff(f.offset));
-  read(values.data(), f.count * sizeof(float));
+  file_.seek(f.offset);
+  file_.read(values.data(), f.count * sizeof(float));
   for (const float v : values)
     if (!(std::abs(v) <= most)) throw Error("field '" + f.name + "' holds " + std::to_string(v) + ", out of any range");
   return values;
@@ -107,14 +107,9 @@ std::vector<float> TensorFile::floats(const Field& f) {
 
 std::vector<std::uint8_t> TensorFile::bytes(const Field& f) {
   std::vector<std::uint8_t> values(f.count);
-  stream_.seekg(std::streamoff(f.offset));
-  read(values.data(), f.count);
+  file_.seek(f.offset);
+  file_.read(values.data(), f.count);
   return values;
-}
-
-void TensorFile::read(void* to, std::uint64_t size) {
-  stream_.read(static_cast<char*>(to), std::streamsize(size));
-  if (!stream_ || std::uint64_t(stream_.gcount()) != size) throw Error("it ends too early");
 }
 
 }  // namespace etendue

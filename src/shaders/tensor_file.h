@@ -6,9 +6,10 @@
 // data in the file and 64 bits for the size of each dimension. The last dimension runs fastest.
 
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <vector>
+
+#include "files/regular_file.h"
 
 namespace etendue {
 
@@ -47,10 +48,8 @@ class TensorFile {
 
  private:
   const Field* find(const std::string& name) const;
-  void read(void* to, std::uint64_t size);
 
-  std::uint64_t size_ = 0;  // of the file, in bytes; known once the stream is open
-  std::ifstream stream_;
+  RegularFile file_;
   std::vector<Field> fields_;
 };
 

@@ -2,6 +2,7 @@
 // Steps that renderers which follow rays from the camera have in common.
 
 #include "etendue/renderer.h"
+#include "transport/bound.h"
 #include "transport/media.h"
 #include "transport/medium_tracking.h"
 
@@ -35,7 +36,7 @@ inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& ou
   const SceneObject& object = *point.object;
   if (!object.shader) return nullptr;
   if (object.sides != Sides::both && (dot(point.normal, out) > 0) != (object.sides == Sides::front)) return nullptr;
-  return object.shader->bind(point, wavelengths, arena);
+  return bound(*object.shader, point, wavelengths, arena);
 }
 
 /// Whether a sampled direction leads into a body that light leaves elsewhere: who does not ask where loses the path.

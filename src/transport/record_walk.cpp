@@ -1,5 +1,6 @@
 #include "transport/record_walk.h"
 
+#include "transport/bound.h"
 #include "transport/medium_tracking.h"
 #include "transport/record.h"
 
@@ -40,7 +41,7 @@ void note_first_surface(const Scene& scene, const Ray& camera_ray, SampleContext
       hit = {};
       continue;
     }
-    const Scatter* scatter = shader ? shader->bind(point, sample.wavelengths, sample.arena) : nullptr;
+    const Scatter* scatter = shader ? bound(*shader, point, sample.wavelengths, sample.arena) : nullptr;
     note_features(*sample.features, scene, point, hit, scatter, -ray.direction, sample.wavelengths, crossed);
     return;
   }

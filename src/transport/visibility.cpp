@@ -1,5 +1,6 @@
 #include "transport/visibility.h"
 
+#include "transport/bound.h"
 #include "transport/media.h"
 #include "transport/medium_tracking.h"
 
@@ -35,7 +36,7 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
     if (!around) scene.locate(ray, hit, point);
     if (!hidden) {
       point.media = around ? &media : nullptr;
-      const Scatter* scatter = object.shader->bind(point, wavelengths, arena);
+      const Scatter* scatter = bound(*object.shader, point, wavelengths, arena);
       const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, transport, pass_through) : std::nullopt;
       if (!straight) return {};
       // Asked alone, the lobe is certain, and its weight the fraction that gets through.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "component/guard.h"
 #include "etendue/language.h"
 
 namespace etendue::verify {
@@ -118,7 +119,7 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
     const Registry& registry = Registry::instance();
     const ClassInfo* interface = registry.find("Renderer");
     for (const ClassInfo* info : registry.subclasses(*interface))
-      if (info != interface && info->name != own_class) all.push_back({info->name, ref_cast<Renderer>(info->create()), {}});
+      if (info != interface && info->name != own_class) all.push_back({info->name, ref_cast<Renderer>(create(*info)), {}});
   }
 
   const SceneTraits traits = scene_traits(*job.scene, *job.camera);

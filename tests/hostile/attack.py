@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""Runs Étendue on damaged files of every format it reads, and reports what must not happen.
+
+    tests/hostile/attack.py --program build/etendue --plugin build/tests/libhostile.so --count 20000
+
+Every input comes from a right file and the numbers --seed and its own (see seeds.py and mutations.py), so that any of them can be
+made again: --only N runs number N alone, tells what is said and keeps the file. The program has 4 GB of memory and 20 s. Reported are
+
+    crash     it was ended by a signal, or by a sanitizer
+    time      it took longer
+    memory    it used more than 2 GB, or ran out of memory, for an input below 1 MB
+    nameless  it failed without the name of the damaged file
+    odd       an exit status that is none of 0, 1, 2, or "unexpected failure"
+
+Exit status: 0 when nothing is reported. For a program with sanitizers give --sanitized: those need an address space without limit,
+so that its use is only looked at afterwards.
+"""
+import argparse
+import collections
+import concurrent.futures
+import os
+import pathlib
+import random
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+import mutations
+import seeds
+
+MEMORY = 4 << 30
+SECONDS = 20
+THREAD = threading.local()
+
+
+def run(arguments, command, folder):
+    """(status, text, seconds, peak memory [bytes]); status None: it took too long."""
+    text = folder / "said"
+    begun = time.monotonic()
+    with open(text, "wb") as out:
+        process = subprocess.Popen([arguments.program, *command], cwd=folder, stdin=subprocess.DEVNULL, stdout=out, stderr=out,
+                                   env=arguments.environment)
+        timer = threading.Timer(arguments.seconds, process.kill)
+        timer.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        late = not timer.is_alive()
+        timer.cancel()
+    seconds = time.monotonic() - begun
+    said = text.read_bytes().decode(errors="replace")
+    return None if late else process.returncode, said, seconds, usage.ru_maxrss * 1024
+
+
+def verdict(status, said, memory, seed, data, limit):
+    if status is None:
+        return "time"
+    if status < 0 or "AddressSanitizer" in said or "runtime error:" in said or "terminate called" in said:
+        return "crash"
+    short = any(word in said for word in ("bad_alloc", "not enough memory", "out of memory", "of memory there are"))
+    if len(data) < 1 << 20 and (memory > limit or (short and "bad_alloc" not in seed.format)):
+        return "memory"
+    if status not in (0, 1, 2) or "unexpected failure" in said:
+        return "odd"
+    name = seed.name if seed.name != "scene.etd" else "scene.etd"
+    if status != 0 and name not in said:
+        return "nameless"
+    return None
+
+
+def attack(arguments, all_seeds, number):
+    generator = random.Random(arguments.seed * 1000003 + number)
+    seed = all_seeds[number % len(all_seeds)]
+    data = mutations.damaged(seed, generator, all_seeds)
+    if not hasattr(THREAD, "folder"):
+        THREAD.folder = pathlib.Path(tempfile.mkdtemp(dir=arguments.folder))
+    folder = THREAD.folder
+    for name, content in seed.beside.items():
+        (folder / name).write_bytes(content)
+    (folder / seed.name).write_bytes(data)
+    command = generator.choice(seed.commands)
+    status, said, seconds, memory = run(arguments, command, folder)
+    problem = verdict(status, said, memory, seed, data, arguments.memory)
+    if problem or arguments.only is not None:
+        print(f"{problem or 'nothing'}: number {number}, {seed.format}, {len(data)} bytes: {' '.join(command)}: status {status}, "
+              f"{seconds:.1f} s, {memory >> 20} MB\n    " + "\n    ".join(said.strip().splitlines()[-12:])[:2000], flush=True)
+        if arguments.keep:
+            kept = pathlib.Path(arguments.keep) / f"{number}-{problem}"
+            shutil.copytree(folder, kept, dirs_exist_ok=True)
+    return seed.format, problem, status, seconds, memory
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--plugin", help="a right plugin, to be damaged")
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--first", type=int, default=0, help="the first number")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", type=int)
+    parser.add_argument("--format", help="only formats that begin so")
+    parser.add_argument("--keep", help="a folder for the inputs that something is reported of")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--seconds", type=float, default=SECONDS)
+    parser.add_argument("--sanitized", action="store_true")
+    arguments = parser.parse_args()
+    arguments.program = str(pathlib.Path(arguments.program).resolve())
+    arguments.memory = 2 << 30
+    arguments.environment = dict(os.environ)
+    if arguments.sanitized:
+        arguments.environment["ASAN_OPTIONS"] = "allocator_may_return_null=0:detect_leaks=0:hard_rss_limit_mb=4096:max_allocation_size_mb=4096"
+        arguments.environment["UBSAN_OPTIONS"] = "print_stacktrace=1"
+    else:
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, resource.RLIM_INFINITY))
+
+    with tempfile.TemporaryDirectory() as folder:
+        arguments.folder = folder
+        all_seeds = seeds.seeds(arguments.program, arguments.plugin, pathlib.Path(folder))
+        wrong = 0
+        for seed in all_seeds if arguments.only is None else []:  # what is not damaged must be read
+            for name, content in (*seed.beside.items(), (seed.name, seed.data)):
+                (pathlib.Path(folder) / name).write_bytes(content)
+            for command in seed.commands:
+                status, said, _, _ = run(arguments, command, pathlib.Path(folder))
+                if status != 0 and "found" not in seed.format and not seed.format.startswith("etd "):
+                    wrong += 1
+                    print(f"a right file is refused: {seed.format}: {' '.join(command)}: status {status}\n    {said.strip()}")
+        if arguments.format:
+            all_seeds = [s for s in all_seeds if s.format.startswith(arguments.format)]
+        numbers = [arguments.only] if arguments.only is not None else range(arguments.first, arguments.first + arguments.count)
+        with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+            results = list(pool.map(lambda n: attack(arguments, all_seeds, n), numbers))
+
+    problems = collections.Counter(p for _, p, *_ in results if p)
+    by_format = collections.Counter(f.split()[0] for f, *_ in results)
+    refused = sum(status not in (0, None) for _, _, status, *_ in results)
+    slowest, largest = max(r[3] for r in results), max(r[4] for r in results)
+    print(f"{len(results)} damaged inputs ({', '.join(f'{n} {f}' for f, n in sorted(by_format.items()))}): {refused} refused; "
+          f"slowest {slowest:.1f} s, most memory {largest >> 20} MB")
+    print("reported: " + (", ".join(f"{n} {p}" for p, n in problems.items()) or "nothing"))
+    return 1 if problems or wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
