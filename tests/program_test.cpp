@@ -118,9 +118,12 @@ TEST_F(ProgramTest, errors_are_located_and_counted) {
 }
 
 TEST_F(ProgramTest, a_picture_that_cannot_be_written_is_a_failure) {
-  std::filesystem::create_directory(folder / "taken.png");  // a folder where the file should be
-  EXPECT_EQ(run({"render", scene, "-o", "taken.png", "-o", "good.npy", "--quiet"}), 1);
-  EXPECT_TRUE(has(err, "taken.png")) << err;
+  Process process(program, {"render", scene, "-o", "taken.png", "-o", "good.npy", "--time", "1s", "--progress", "json"},
+                  folder);
+  ASSERT_TRUE(process.says("progress")) << process.err();
+  std::filesystem::create_directory(folder / "taken.png");  // a folder where the file should be, since a moment ago
+  EXPECT_EQ(process.wait(), 1);
+  EXPECT_TRUE(has(process.err(), "taken.png")) << process.err();
   EXPECT_TRUE(std::filesystem::exists(folder / "good.npy"));
 }
 

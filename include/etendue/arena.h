@@ -1,5 +1,5 @@
 #pragma once
-// Memory for what one sample needs: handed out in sequence, taken back all at once, never freed between.
+// Memory for what one sample needs: handed out in sequence, taken back in the opposite order or all at once.
 
 #include <cstddef>
 #include <memory>
@@ -22,9 +22,18 @@ class Arena {
     return new (allocate(sizeof(T), alignof(T))) T(std::forward<Args>(args)...);
   }
 
-  void reset() {
-    block_ = 0;
-    used_ = 0;
+  void reset() { rewind({}); }
+
+  /// How far the arena is used. A path notes it where it begins, and goes back to it at each vertex whose predecessors are no
+  /// longer needed: it then takes the memory of one vertex, however long it grows.
+  struct Mark {
+    size_t block = 0, used = 0;
+  };
+  Mark mark() const { return {block_, used_}; }
+  /// Takes back all that was handed out since the mark.
+  void rewind(const Mark& mark) {
+    block_ = mark.block;
+    used_ = mark.used;
   }
 
  private:
@@ -45,6 +54,19 @@ class Arena {
   };
   std::vector<std::unique_ptr<std::byte, Free>> blocks_;
   size_t block_ = 0, used_ = 0;
+};
+
+/// Takes back, at its end, what was handed out while it lived.
+class ArenaScope {
+ public:
+  explicit ArenaScope(Arena& arena) : arena_(arena), begun_(arena.mark()) {}
+  ~ArenaScope() { arena_.rewind(begun_); }
+  ArenaScope(const ArenaScope&) = delete;
+  ArenaScope& operator=(const ArenaScope&) = delete;
+
+ private:
+  Arena& arena_;
+  const Arena::Mark begun_;
 };
 
 }  // namespace etendue

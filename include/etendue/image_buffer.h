@@ -82,7 +82,8 @@ class ImageTile {
   static void keep_larger(std::vector<LargeSample>&, const LargeSample&, size_t most);
   void add_lengths(Point2 film, int px, int py, const Wavelengths&, float weight, std::span<const Spectrum> by_length);
   const ImageBuffer* buffer_ = nullptr;
-  PixelArea area_, extent_;  // the area and the area widened by the filter
+  PixelArea sampled_;        // the pixels whose samples these are,
+  PixelArea area_, extent_;  // those of them that are in the picture, and all in the picture they count for
   // X Y Z by the filter, and the weight of the pixel's own samples, per pixel of the extent
   std::vector<double> sums_;
   std::vector<double> moments_;   // count, sum Y, sum Y^2 of the samples in each pixel of the area
@@ -114,6 +115,11 @@ class ImageBuffer : public Component {
   void clear();
   /// The pixels to be rendered.
   const PixelArea& area() const { return area_; }
+  /// The pixels to take samples of: those, and around a crop as many as the filter reaches, so that its pixels are the same as
+  /// in the whole picture.
+  const PixelArea& sampled_area() const { return sampled_area_; }
+  /// How many pixels to each side a sample anywhere in a pixel may count for.
+  int reach() const;
   bool wants_features() const { return wants_features_; }
   bool wants(const std::string& layer) const;
 
@@ -158,7 +164,7 @@ class ImageBuffer : public Component {
   double filter_integral() const;
   size_t index(int x, int y) const { return size_t(y - area_.y0) * size_t(area_.width()) + size_t(x - area_.x0); }
 
-  PixelArea area_;
+  PixelArea area_, sampled_area_;
   bool wants_features_ = false;
   int kept_lengths_ = 0;
   std::vector<double> sums_, moments_, features_;

@@ -73,10 +73,10 @@ class Job final : public Component {
   /// Goes on where a checkpoint of this job ended, with the passes that it lacks: to the same bits. Throws Error before
   /// anything changes when it is damaged or of something else.
   Ended resume(const std::string& checkpoint);
-  /// Asks a running render to stop: at the end of the pass (`finish`), or now, discarding the pass (`abort`). Safe in
-  /// signal handlers.
-  void finish() { stop_.store(1); }
-  void abort() { stop_.store(2); }
+  /// Asks the render that runs, or else the next one, to stop: at the end of the pass (`finish`), or now, within whatever
+  /// paths it is at, discarding the pass (`abort`). Safe in signal handlers.
+  void finish() { finish_.store(true); }
+  void abort() { abort_.store(true); }
 
   /// Why the state could not be written to `checkpoint_file` the last time; empty: it could. A render goes on without.
   const std::string& checkpoint_failure() const { return checkpoint_failure_; }
@@ -104,7 +104,7 @@ class Job final : public Component {
   IndexRange wanted_samples() const;
   Ended run(const Checkpoint* from, const std::string& from_file);
 
-  std::atomic<int> stop_{0};
+  std::atomic<bool> finish_{false}, abort_{false};
   std::vector<IndexRange> done_;
   double seconds_ = 0;
   std::string checkpoint_failure_;

@@ -18,6 +18,8 @@ class Output : public Component {
 
   /// The usual ending, with the dot.
   virtual std::string extension() const = 0;
+  /// Where the picture goes, if an output without a file goes to `stem` with the usual ending.
+  std::string path(const std::string& stem) const { return file.empty() ? stem + extension() : file.resolved(); }
   /// Whether the format is for looking at (bounded, tone mapped) or keeps the radiance itself.
   virtual bool for_display() const = 0;
   /// Writes the picture (R G B when for_display or tone mapped, else X Y Z, then layers) with its metadata to a path.

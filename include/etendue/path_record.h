@@ -31,11 +31,31 @@ struct PathRecord {
     Point2 film;           ///< where it falls
     bool splat = false;    ///< falls there by itself, not as part of the sample's own value
   };
+  /// Of endless paths this many vertices are kept, and as many contributions: all first ones, and the last.
+  static constexpr size_t most = 10000;
+  void add(Vertex v) {
+    add_to(vertices, std::move(v), [](Vertex& last) { last.note = "vertices before this one are left out"; });
+  }
+  void contribute(Contribution c) {
+    add_to(contributions, std::move(c), [](Contribution& last) { last.strategy += ", others before it left out"; });
+  }
+
   std::vector<Vertex> vertices;        ///< from the camera
   std::vector<Vertex> light_vertices;  ///< from a luminaire, when the renderer begins paths there
   std::vector<Contribution> contributions;
   Wavelengths wavelengths;
   Spectrum result;
+
+ private:
+  template <class T, class Mark>
+  static void add_to(std::vector<T>& list, T item, const Mark& mark) {
+    if (list.size() < most) {
+      list.push_back(std::move(item));
+    } else {
+      list.back() = std::move(item);
+      mark(list.back());
+    }
+  }
 };
 
 }  // namespace etendue

@@ -1,6 +1,8 @@
 #pragma once
 // Renderer (an integrator): an algorithm. It has no bookkeeping: the Job counts, shows progress, saves and stops.
 
+#include <atomic>
+
 #include "etendue/arena.h"
 #include "etendue/camera.h"
 #include "etendue/component.h"
@@ -41,6 +43,11 @@ struct SampleContext {
   PathRecord* record = nullptr;      ///< to be filled when not null: someone replays this sample
   std::span<Spectrum> lengths = {};  ///< radiance by path length, when someone wants it; see `note_length`
   std::vector<Splat>* splats = nullptr;
+  const std::atomic<bool>* abort = nullptr;  ///< whether nobody waits for the sample any more; null: somebody does
+
+  /// Whether the sample may be given up, with any result: it will not be looked at. A path or a tree of rays can take hours
+  /// (between white walls, with a large `max_depth`), so whatever goes round in one asks now and then.
+  bool aborted() const { return abort && abort->load(std::memory_order_relaxed); }
 
   /// Says that `value`, a part of the radiance returned, came by a path of so many segments (1: a luminaire seen by the
   /// camera). Renderers that call this for all they return can be compared length by length.
@@ -65,6 +72,9 @@ class Pass {
  public:
   virtual ~Pass() = default;
   std::uint32_t begin = 0, end = 1;
+  const std::atomic<bool>* abort = nullptr;  ///< whether the pass will be discarded; null: it will not
+
+  bool aborted() const { return abort && abort->load(std::memory_order_relaxed); }
 
   /// Runs `work(item, tile, arena)` for items 0 … count-1 on all threads and merges the tiles in the order of items.
   /// Returns early (with some items left out) when the render is cancelled: the pass is then discarded.
@@ -108,12 +118,13 @@ class Renderer : public Component {
     Spectrum value;
     Wavelengths wavelengths;
   };
-  /// `request` may name features, record, lengths and splats to be filled; its other parts are set by this call.
+  /// What of a sample is to be filled beside its value, and what may end it early: as in SampleContext.
   struct Request {
     Features* features = nullptr;
     PathRecord* record = nullptr;
     std::span<Spectrum> lengths = {};
     std::vector<Splat>* splats = nullptr;
+    const std::atomic<bool>* abort = nullptr;
   };
   CameraSample camera_sample(const RenderContext&, int x, int y, std::uint32_t sample, Arena&, const Request&) const;
   CameraSample camera_sample(const RenderContext& context, int x, int y, std::uint32_t sample, Arena& arena) const {

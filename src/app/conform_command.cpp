@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <map>
 
 #include "app/commands.h"
 #include "app/scene_options.h"
-#include "app/text.h"
 #include "conform/conformance.h"
+#include "files/output_files.h"
+#include "outputs/whole_file.h"
 
 namespace etendue {
 
@@ -94,6 +96,11 @@ void print(const std::vector<conform::Outcome>& outcomes, bool parts) {
 
 int run_conform(const ConformOptions& options) {
   for (const std::string& plugin : options.plugins) Registry::instance().load_plugin(plugin);
+  if (!options.report.empty()) {
+    OutputFiles files;
+    files.add(options.report, {intern("--report"), 0, 0});
+    files.raise();
+  }
   conform::Options asked;
   asked.classes = options.classes;
   asked.effort = options.quick      ? conform::Effort::quick
@@ -111,10 +118,14 @@ int run_conform(const ConformOptions& options) {
   const std::vector<conform::Outcome> outcomes = conform::conform(asked);
   if (show) fmt::print(stderr, "\r\x1b[K");
   print(outcomes, options.parts);
-  if (!options.report.empty()) write_file(options.report, conform::html_report(outcomes, options.command_line()));
-  for (const conform::Outcome& o : outcomes)
-    if (o.result == conform::Result::failed) return exit_status::failed;
-  return exit_status::done;
+  if (!options.report.empty()) write_whole_file(options.report, conform::html_report(outcomes, options.command_line()));
+  const auto any = [&](conform::Result result) {
+    return std::ranges::find(outcomes, result, &conform::Outcome::result) != outcomes.end();
+  };
+  if (any(conform::Result::failed)) return exit_status::failed;
+  if (any(conform::Result::passed)) return exit_status::done;
+  fmt::print(stderr, "nothing was tested, so nothing is known: no check is made of what was named, or none could be\n");
+  return exit_status::failed;
 }
 
 }  // namespace
@@ -129,7 +140,8 @@ void add_conform_command(CLI::App& program, Run& run) {
       "  etendue conform Shader --quick                         all shaders, a quick look\n"
       "  etendue conform GoldShader --plugin ./libgold.so --drawn 20\n"
       "  etendue conform --thorough --report conform.html\n"
-      "\nExit status: 0 nothing failed, 1 something did, 2 bad input. docs/conform.md tells what is tested.");
+      "\nExit status: 0 nothing failed, 1 something did or nothing was tested, 2 bad input. docs/conform.md tells what is "
+      "tested.");
   command->callback([options, &run] { run = [options] { return run_conform(*options); }; });
 }
 

@@ -9,6 +9,8 @@
 #include "etendue/image_tools.h"
 #include "etendue/language.h"
 #include "etendue/tone_map.h"
+#include "files/input_files.h"
+#include "files/output_files.h"
 
 namespace etendue {
 
@@ -137,6 +139,10 @@ int tone_map_picture(const ToneMapOptions& options) {
   if (!tone_map)
     throw Error("'" + options.tone_map + "' is no tone map; see etendue classes ToneMap", {intern("--tone-map"), 0, 0});
   prepare_tree(*tone_map);
+  note_input(options.in);
+  OutputFiles files;
+  files.add(options.out, {intern("OUT"), 0, 0});
+  files.raise();
   write_any(tone_map->apply(convert_color_space(read_image(options.in), "xyz")), options.out);
   return exit_status::done;
 }

@@ -9,6 +9,7 @@
 #include "app/render_options.h"
 #include "app/text.h"
 #include "etendue/language.h"
+#include "files/input_files.h"
 #include "job/checkpoint.h"
 
 namespace etendue {
@@ -37,17 +38,21 @@ void report_gaps(const Checkpoint& merged) {
 }
 
 int merge(const MergeOptions& options) {
+  for (const std::string& part : options.parts) note_input(part);
   const Checkpoint merged = merge_checkpoints(options.parts);
   if (merged.done.empty()) throw Error("the parts hold no samples");
   const Ref<Job> job = job_with_picture(merged);
   choose_outputs(*job, options.outputs);
-  check_output_folders(*job);
+  const auto file = merged.metadata.find("file");
+  const std::string stem = stem_of(file == merged.metadata.end() ? "merged" : file->second);
+  OutputFiles files;
+  add_outputs(*job, stem, files);
+  if (!options.checkpoint.empty()) files.add(options.checkpoint, {intern("--checkpoint"), 0, 0});
+  files.raise();
   report_gaps(merged);
 
   std::vector<Error> errors;
-  const auto file = merged.metadata.find("file");
-  const std::vector<std::string> written =
-      write_each_output(*job, stem_of(file == merged.metadata.end() ? "merged" : file->second), errors);
+  const std::vector<std::string> written = write_each_output(*job, stem, errors);
   if (!options.checkpoint.empty()) {
     try {
       write_checkpoint(merged, options.checkpoint);

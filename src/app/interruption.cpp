@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <string_view>
 
@@ -14,7 +15,8 @@ namespace {
 
 std::atomic<Job*> running{nullptr};
 std::atomic<int> requests{0};  // 1: finish, 2: abort
-static_assert(std::atomic<Job*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+static_assert(std::atomic<Job*>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
+              std::atomic<bool>::is_always_lock_free);
 
 void say(std::string_view text) { [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size()); }
 
@@ -22,6 +24,7 @@ void say(std::string_view text) { [[maybe_unused]] const auto written = write(ST
 void handle(int signal) {
   Job* job = running.load();
   if (!job) return;
+  const int error = errno;  // of whatever was interrupted
   int none = 0;
   if (requests.compare_exchange_strong(none, 1)) {
     say("\nfinishing this pass and writing what there is; Ctrl-C again aborts\n");
@@ -32,6 +35,7 @@ void handle(int signal) {
     job->abort();
     std::signal(SIGINT, SIG_DFL);
   }
+  errno = error;
 }
 
 void install(void (*handler)(int)) {
@@ -41,11 +45,14 @@ void install(void (*handler)(int)) {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // What nohup started is to survive its terminal.
+  struct sigaction old = {};
+  if (sigaction(SIGHUP, nullptr, &old) == 0 && old.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
 }  // namespace
 
-Interruption::Interruption(Job& job) : job_(job) {
+Interruption::Interruption(Job& job) {
   requests = 0;
   running = &job;
   install(handle);
@@ -54,12 +61,6 @@ Interruption::Interruption(Job& job) : job_(job) {
 Interruption::~Interruption() {
   install(SIG_DFL);
   running = nullptr;
-}
-
-void Interruption::remind() const {
-  const int asked = requests.load();
-  if (asked == 1) job_.finish();
-  if (asked == 2) job_.abort();
 }
 
 bool Interruption::asked() const { return requests.load() != 0; }

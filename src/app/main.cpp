@@ -1,7 +1,12 @@
 // The command line program.
 
+#include <fmt/format.h>
+
+#include <sstream>
+
 #include "app/commands.h"
 #include "app/report.h"
+#include "app/streams.h"
 
 using namespace etendue;
 
@@ -25,9 +30,20 @@ Help on one command: etendue render --help
 Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
 )";
 
-}  // namespace
+/// An empty value is what an unset variable of a shell leaves behind ("--checkpoint $FILE" in quotes). No option means anything
+/// by it, so none takes it.
+void refuse_empty_values(CLI::App& command) {
+  for (CLI::Option* option : command.get_options())
+    if (option->get_items_expected_max() > 0)
+      option->transform(CLI::Validator(  // comes before whatever else the value is checked for
+          [](std::string& value) {
+            return value.empty() ? std::string("the value is empty; was a variable not set?") : std::string();
+          },
+          ""));
+  for (CLI::App* inner : command.get_subcommands({})) refuse_empty_values(*inner);
+}
 
-int main(int argument_count, char** arguments) {
+int run_program(int argument_count, char** arguments) {
   CLI::App program(introduction, "etendue");
   program.footer(closing);
   program.set_version_flag("--version", "etendue " ETENDUE_VERSION, "Print the version");
@@ -46,10 +62,23 @@ int main(int argument_count, char** arguments) {
   add_verify_command(program, run);
   add_conform_command(program, run);
 
+  refuse_empty_values(program);
+
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? exit_status::done : exit_status::bad_input;
+    std::ostringstream out, err;
+    const int status = program.exit(error, out, err);
+    fmt::print("{}", out.str());
+    fmt::print(stderr, "{}", err.str());
+    return status == 0 ? exit_status::done : exit_status::bad_input;
   }
   return reporting_errors(run);
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  open_standard_streams();
+  return close_standard_streams(run_program(argument_count, arguments));
 }

@@ -12,6 +12,7 @@
 #include "etendue/job.h"
 #include "etendue/language.h"
 #include "etendue/reflection.h"
+#include "outputs/whole_file.h"
 
 namespace etendue {
 
@@ -105,7 +106,8 @@ int write_manual(const ManualOptions& options) {
   });
   if (std::filesystem::exists(std::filesystem::path(options.folder) / picture_folder))
     pages.push_back({"Pictures.md", "Pictures", pictures_page(options.folder)});
-  for (const ManualPage& page : pages) write_file((std::filesystem::path(options.folder) / page.file).string(), page.text);
+  for (const ManualPage& page : pages)
+    write_whole_file((std::filesystem::path(options.folder) / page.file).string(), page.text);
   fmt::print("{} pages in {}\n", pages.size(), options.folder);
   return failed > 0 ? exit_status::failed : exit_status::done;
 }
@@ -123,6 +125,7 @@ void add_manual_command(CLI::App& program, Run& run) {
   command->add_flag("--pictures", options->pictures, "Render a small picture of each class that can be seen; takes minutes");
   command->add_option("--samples", options->samples, "Samples per pixel of the pictures")
       ->type_name("N")
+      ->check(CLI::Range(1, 1 << 30).description(""))
       ->capture_default_str();
   command->footer("\nExamples\n  etendue manual | less\n  etendue manual -o manual --pictures");
   command->callback([options, &run] { run = [options] { return write_manual(*options); }; });

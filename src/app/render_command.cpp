@@ -12,6 +12,7 @@
 #include "app/replay.h"
 #include "app/text.h"
 #include "etendue/language.h"
+#include "files/input_files.h"
 #include "outputs/whole_file.h"
 
 namespace etendue {
@@ -21,7 +22,12 @@ namespace {
 int replay(Job& job, const RenderOptions& options) {
   int pixel[2];
   parse_integers(options.pixel, ',', 2, pixel, "--pixel", "X,Y");
-  if (!options.replay.empty()) check_folder(options.replay, {});
+  if (!options.replay.empty()) {
+    note_inputs_of(job);
+    OutputFiles files;
+    files.add(options.replay, {intern("--replay"), 0, 0});
+    files.raise();
+  }
   prepare_tree(job);
   const PixelReplay paths = options.sample ? replay_sample(job, pixel[0], pixel[1], *options.sample)
                                            : replay_pixel(job, pixel[0], pixel[1], size_t(options.paths));
@@ -87,7 +93,7 @@ void report_result(const Progress& progress, Ended ended, const std::vector<std:
                                    {"ended", name(ended)}};
     if (!job.checkpoint_file.empty()) json["checkpoint"] = job.checkpoint_file;
     if (job.passes) json["samples_per_pass"] = job.samples_per_pass();
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   } else if (!options.quiet) {
     for (const std::string& path : written) fmt::print("{}\n", path);
     fmt::print("{} samples per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, duration_text(progress.seconds),
@@ -95,6 +101,18 @@ void report_result(const Progress& progress, Ended ended, const std::vector<std:
     if (ended == Ended::interrupted && !job.checkpoint_file.empty()) fmt::print("to go on: {}\n", options.resume_command());
   }
   std::fflush(stdout);
+}
+
+/// All that will be written, before hours are spent on it.
+void require_outputs(const Job& job, const RenderOptions& options) {
+  note_inputs_of(job);
+  OutputFiles files;
+  add_outputs(job, stem_of(options.file), files);
+  const std::string checkpoint_option = !options.continue_file.empty() ? "--continue"
+                                        : options.checkpoint.empty()   ? "--resume"
+                                                                       : "--checkpoint";
+  if (!job.checkpoint_file.empty()) files.add(job.checkpoint_file, {intern(checkpoint_option), 0, 0}, options.resumed_file());
+  files.raise();
 }
 
 int render(const RenderOptions& options) {
@@ -107,11 +125,10 @@ int render(const RenderOptions& options) {
   choose_outputs(*job, options.outputs);
   if (no_outputs) job->outputs.clear();
   const std::vector<Ref<Output>> chosen = job->outputs;
+  require_outputs(*job, options);
   prepare_tree(*job);
-  check_output_folders(*job);
   advise(*job);
   if (options.fireflies > 0) job->image->keep_largest(size_t(options.fireflies));
-  if (!job->checkpoint_file.empty()) check_folder(job->checkpoint_file, {});
 
   const ProgressDisplay::Kind kind = ProgressDisplay::kind_for(options.progress, options.quiet);
   ProgressDisplay display(kind, options.open_ended());
@@ -121,10 +138,7 @@ int render(const RenderOptions& options) {
   std::vector<std::string> written;
   {
     const Interruption interruption(*job);
-    job->on_progress = [&](const Progress& progress) {
-      display.show(progress);
-      interruption.remind();
-    };
+    job->on_progress = [&](const Progress& progress) { display.show(progress); };
     job->outputs = described;
     ended = resumed.empty() ? job->render() : job->resume(resumed);
     job->outputs = chosen;

@@ -3,7 +3,6 @@
 #include "app/render_options.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include "app/text.h"
 #include "component/guard.h"
 #include "etendue/language.h"
+#include "files/input_files.h"
 #include "job/checkpoint.h"
 
 namespace etendue {
@@ -141,7 +141,10 @@ Ref<Job> RenderOptions::load() const {
   if (!every.empty()) interval = every == "0" || every == "0s" ? 0 : parse_duration(every, "--every");
   if (!every.empty() && checkpoint_file().empty())
     throw Error("there is no checkpoint to be written: give --checkpoint as well", {intern("--every"), 0, 0});
-  if (const std::string from = resumed_file(); !from.empty()) read_checkpoint_header(from);
+  if (const std::string from = resumed_file(); !from.empty()) {
+    note_input(from);
+    read_checkpoint_header(from);
+  }
   Ref<Job> job = SceneOptions::load();
   std::vector<Error> errors;
   for (const Override& override : list) {
@@ -153,6 +156,9 @@ Ref<Job> RenderOptions::load() const {
       errors.push_back(Error(fmt::format("{}: {}", override.option, error_.what())));
     }
   }
+  if (!error.empty() && errors.empty() && !(job->error_limit > 0))
+    errors.emplace_back(fmt::format("an error of {} is no limit: give one that a picture can reach, such as 0.01", error),
+                        Location{intern("--error"), 0, 0});
   if (!errors.empty()) throw Errors(std::move(errors));
   job->threads = threads;
   job->checkpoint_file = checkpoint_file();
@@ -248,17 +254,12 @@ std::vector<std::string> write_each_output(Job& job, const std::string& stem, st
   return written;
 }
 
-void check_folder(const std::string& path, Location at) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  if (!std::filesystem::is_directory(folder))
-    throw Error(fmt::format("cannot write '{}': there is no folder '{}'", path, folder.string()), at);
-  if (access(folder.c_str(), W_OK) != 0)
-    throw Error(fmt::format("cannot write '{}': the folder '{}' cannot be written to", path, folder.string()), at);
-}
-
-void check_output_folders(const Job& job) {
-  for (const Ref<Output>& output : job.outputs)
-    if (output) check_folder(output->file.empty() ? "./" : output->file.resolved(), output->location_of("file"));
+void add_outputs(const Job& job, const std::string& stem, OutputFiles& files) {
+  for (const Ref<Output>& output : job.outputs) {
+    if (!output) continue;  // preparing the job says so
+    const Location at = output->location_of("file");
+    files.add(output->path(stem), at.known() ? at : Location{intern("--output"), 0, 0});
+  }
 }
 
 }  // namespace etendue

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/scene_options.h"
+#include "files/output_files.h"
 
 namespace etendue {
 
@@ -57,8 +58,7 @@ void choose_outputs(Job&, const std::vector<std::string>& files);
 /// written. Returns what was written.
 std::vector<std::string> write_each_output(Job&, const std::string& stem, std::vector<Error>& errors);
 
-/// Throws an Error now if a folder to be written to is not there, rather than after the render.
-void check_output_folders(const Job&);
-void check_folder(const std::string& path, Location);
+/// Adds the files of all outputs, with file names from `stem` for those without.
+void add_outputs(const Job&, const std::string& stem, OutputFiles&);
 
 }  // namespace etendue

@@ -16,7 +16,7 @@
 namespace etendue {
 
 double splat_weight(const ImageBuffer& image) {
-  const PixelArea& area = image.area();
+  const PixelArea& area = image.sampled_area();
   return double(image.width) * double(image.height) / (double(area.width()) * double(area.height()));
 }
 
@@ -85,7 +85,7 @@ ReplayedPath replay(const RenderContext& context, const Renderer& renderer, int 
 }
 
 PixelReplay begin(Job& job, int x, int y) {
-  if (!job.image->area().contains(x, y)) throw Error(fmt::format("there is no pixel {},{} in the picture", x, y));
+  if (!job.image->sampled_area().contains(x, y)) throw Error(fmt::format("there is no pixel {},{} in the picture", x, y));
   job.renderer->begin(context_of(job));
   PixelReplay result;
   result.x = x;

@@ -5,8 +5,10 @@
 #include <filesystem>
 
 #include "app/scene_options.h"
-#include "app/text.h"
 #include "etendue/language.h"
+#include "files/input_files.h"
+#include "files/output_files.h"
+#include "outputs/whole_file.h"
 
 namespace etendue {
 
@@ -23,8 +25,14 @@ int save(const SaveOptions& options) {
     fmt::print("{}", write_description(*job, options.all));
     return exit_status::done;
   }
-  const std::filesystem::path folder = std::filesystem::absolute(options.output).parent_path();
-  write_file(options.output, write_description(*job, options.all, folder.string()));
+  note_inputs_of(*job);
+  OutputFiles files;
+  files.add(options.output, {intern("--output"), 0, 0});
+  files.raise();
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::absolute(options.output, error).parent_path();
+  if (error) throw Error(fmt::format("cannot write '{}': {}", options.output, error.message()), {intern("--output"), 0, 0});
+  write_whole_file(options.output, write_description(*job, options.all, folder.string()));
   return exit_status::done;
 }
 

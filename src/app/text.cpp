@@ -3,7 +3,6 @@
 #include "app/text.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
@@ -66,27 +65,6 @@ void parse_integers(const std::string& text, char separator, int count, int* out
     if (last ? after != end : after == end || *after != separator) throw wrong();
     at = last ? end : after + 1;
   }
-}
-
-void write_file(const std::string& path, const std::string& text) {
-  const std::string beside = fmt::format("{}.{}.part", path, getpid());
-  std::FILE* file = std::fopen(beside.c_str(), "wb");
-  bool good = file != nullptr;
-  int reason = errno;
-  if (good) {
-    good = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-    if (!good) reason = errno;
-    if (std::fclose(file) != 0 && good) {
-      good = false;
-      reason = errno;
-    }
-    if (good && std::rename(beside.c_str(), path.c_str()) != 0) {
-      good = false;
-      reason = errno;
-    }
-    if (!good) std::remove(beside.c_str());
-  }
-  if (!good) throw Error(fmt::format("cannot write '{}': {}", path, std::strerror(reason)));
 }
 
 std::string read_file(const std::string& path) {

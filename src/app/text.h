@@ -16,8 +16,6 @@ double parse_duration(const std::string& text, const std::string& option);
 void parse_integers(const std::string& text, char separator, int count, int* out, const std::string& option,
                     const std::string& form);
 
-/// Writes a text file beside its place and moves it there when whole. Throws Error naming the file and the reason.
-void write_file(const std::string& path, const std::string& text);
 /// A whole file. Throws Error naming the file and the reason.
 std::string read_file(const std::string& path);
 

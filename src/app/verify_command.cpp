@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <filesystem>
-
 #include "app/interruption.h"
 #include "app/scene_options.h"
 #include "app/text.h"
 #include "app/verify_text.h"
 #include "etendue/language.h"
+#include "files/input_files.h"
+#include "files/output_files.h"
 #include "outputs/whole_file.h"
 #include "verify/report.h"
 
@@ -136,25 +136,20 @@ verify::Collected collect(Job& job, const verify::Choice& choice, const VerifyOp
     }
     return !interruption.asked();
   };
-  job.on_progress = [&](const Progress&) { interruption.remind(); };
   verify::Collected collected =
       verify::collect(job, choice.candidates, options.tile > 0 ? options.tile : verify::default_tile(*job.image), collecting);
-  job.on_progress = nullptr;
   if (show) fmt::print(stderr, "\r\x1b[K");
   return collected;
 }
 
-void check_report(const std::string& path) {
-  if (path.empty()) return;
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
-    throw Error(fmt::format("cannot write '{}': there is no folder '{}' that can be written to", path, folder.string()),
-                {intern("--report"), 0, 0});
-}
-
 int verify_file(const VerifyOptions& options) {
-  check_report(options.report);
   const Ref<Job> job = options.load();
+  if (!options.report.empty()) {
+    note_inputs_of(*job);
+    OutputFiles files;
+    files.add(options.report, {intern("--report"), 0, 0});
+    files.raise();
+  }
   verify::prepare_picture(*job, options.lengths + 1);
   prepare_tree(*job);
 
@@ -180,7 +175,8 @@ int verify_file(const VerifyOptions& options) {
     write_whole_file(options.report, html.data(), html.size());
   }
   if (options.json)
-    fmt::print("{}\n", verify_json(choice, collected, agreement).dump(2));
+    fmt::print("{}\n",
+               verify_json(choice, collected, agreement).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   else if (!options.quiet)
     fmt::print("{}", verify_text(choice, collected, agreement));
   return agreement.disagrees() ? exit_status::failed : exit_status::done;

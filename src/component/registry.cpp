@@ -11,6 +11,7 @@
 #include "component/guard.h"
 #include "component/plugin.h"
 #include "etendue/description.h"
+#include "files/input_files.h"
 
 namespace etendue {
 
@@ -240,6 +241,7 @@ std::vector<std::string> Registry::plugins() const {
 void Registry::load_plugin(const std::string& path) {
   adopt();
   const std::string file = find_plugin(path);
+  note_input(file);
   {
     const std::lock_guard lock(s->mutex);
     if (s->plugins.contains(file)) return;

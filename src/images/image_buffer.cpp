@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "images/filter_window.h"
+#include "images/pixel_area.h"
 
 namespace etendue {
 namespace {
@@ -90,8 +91,12 @@ void ImageBuffer::prepare() {
   find_filter_shares();
   box_ =
       radius == 0.5f && std::all_of(filter_table_.begin(), filter_table_.end(), [&](float w) { return w == filter_table_[0]; });
+  sampled_area_ = intersection(widened(area_, reach()), {0, 0, width, height});
   if (!same) clear();
 }
+
+/// A sample at the edge of its pixel lies half a pixel from the centre, and counts for what is closer than the radius.
+int ImageBuffer::reach() const { return box_ ? 0 : filter_reach_; }
 
 void ImageBuffer::clear() {
   // Memory is taken when the first tile comes in: a picture that is only described costs nothing.

@@ -32,15 +32,15 @@ void ImageBuffer::find_filter_shares() {
 
 /// Whether a pixel's filter reaches nothing beside the film.
 bool ImageBuffer::within_reach(int x, int y) const {
-  const PixelArea& film = area_;
+  const PixelArea film{0, 0, width, height};
   const int r = filter_reach_;
   return x - r >= film.x0 && x + r < film.x1 && y - r >= film.y0 && y + r < film.y1;
 }
 
-/// The integral of a pixel's filter over the film that is sampled [pixel^2]; on request each pixel's share times the samples
-/// that belong to it.
+/// The integral of a pixel's filter over the film [pixel^2]; on request each pixel's share times the samples that belong to it.
+/// Around a crop each pixel has as many as this one.
 double ImageBuffer::filter_over_film(int x, int y, bool times_samples) const {
-  const PixelArea& film = area_;
+  const PixelArea film{0, 0, width, height};
   const int r = filter_reach_;
   double sum = 0;
   for (int j = std::max(y - r, film.y0); j <= std::min(y + r, film.y1 - 1); ++j)
@@ -61,8 +61,9 @@ double ImageBuffer::filter_integral() const {
   return sum;
 }
 
-// A pixel estimates the mean of the radiance on the film, weighted by the filter f around it, over the film F that is
-// rendered: I = int_F f L / int_F f. Let F_i be the integral of f over pixel i of F.
+// A pixel estimates the mean of the radiance on the film, weighted by the filter f around it, over the film F: I = int_F f L /
+// int_F f. F is that of the whole picture, in a crop as well, since samples are taken around it as far as f reaches. Let F_i
+// be the integral of f over pixel i of F.
 //   Samples of the camera, n_i of them, are spread evenly over each pixel i:   I ~ sum_k f(x_k) L_k / sum_i n_i F_i.
 //   Splats arrive with a density of their own, each already divided by it:     I ~ scale * sum_k f(x_k) s_k / sum_i F_i,
 // where the scale is the number of pixels of the whole picture (the film's area) over the number of paths. With samples of both

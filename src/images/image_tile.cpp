@@ -5,6 +5,7 @@
 
 #include "etendue/image_buffer.h"
 #include "images/filter_window.h"
+#include "images/pixel_area.h"
 
 namespace etendue {
 namespace {
@@ -76,20 +77,15 @@ bool regular(const Spectrum& s) {
 /// Also false for what is no number.
 bool ordinary(Point2 film) { return std::abs(film.x) < 1e7f && std::abs(film.y) < 1e7f; }
 
-PixelArea intersection(const PixelArea& a, const PixelArea& b) {
-  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-
 size_t pixels(const PixelArea& a) { return size_t(std::max(a.width(), 0)) * size_t(std::max(a.height(), 0)); }
 
 }  // namespace
 
 void ImageTile::begin(const ImageBuffer& buffer, const PixelArea& area) {
   buffer_ = &buffer;
+  sampled_ = intersection(area, buffer.sampled_area());
   area_ = intersection(area, buffer.area());
-  // A sample anywhere in a pixel reaches the centres of this many pixels to each side.
-  const int reach = buffer.box_ ? 0 : int(std::ceil(buffer.filter_radius_ - 0.5f));
-  extent_ = intersection({area.x0 - reach, area.y0 - reach, area.x1 + reach, area.y1 + reach}, buffer.area());
+  extent_ = intersection(widened(area, buffer.reach()), buffer.area());
   sums_.assign(4 * pixels(extent_), 0);
   moments_.assign(3 * pixels(area_), 0);
   features_.assign(buffer.wants_features() ? ImageBuffer::feature_values * pixels(area_) : 0, 0);
@@ -122,13 +118,15 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
   }
   if (buffer_->largest_wanted_ > 0) [[unlikely]]
     note_large({color.y * double(weight), px, py, sample, film, false});
-  if (!area_.contains(px, py)) [[unlikely]]
+  if (!sampled_.contains(px, py)) [[unlikely]]
     return;
 
-  double* moment = &moments_[3 * (size_t(py - area_.y0) * size_t(area_.width()) + size_t(px - area_.x0))];
-  moment[0] += 1;
-  moment[1] += color.y;
-  moment[2] += color.y * color.y;
+  if (area_.contains(px, py)) [[likely]] {  // beside a crop a sample counts for the pixels of the crop alone
+    double* moment = &moments_[3 * (size_t(py - area_.y0) * size_t(area_.width()) + size_t(px - area_.x0))];
+    moment[0] += 1;
+    moment[1] += color.y;
+    moment[2] += color.y * color.y;
+  }
 
   if (!lengths_.empty() && good) [[unlikely]]
     add_lengths(film, px, py, wavelengths, weight, by_length);
@@ -188,9 +186,9 @@ void ImageTile::note_large(const LargeSample& s) {
 
 void ImageTile::splat(Point2 film, int px, int py, std::uint32_t sample, const Spectrum& value, const Wavelengths& wavelengths,
                       int length) {
-  const PixelArea& all = buffer_->area();
-  // Light beside the rendered pixels is left out, as camera samples have none from there either: at the picture's edge
-  // both estimate the same mean over the part of the filter that lies inside.
+  const PixelArea& all = buffer_->sampled_area();
+  // Light beside the pixels that are sampled is left out, as camera samples have none from there either: at the picture's
+  // edge both estimate the same mean over the part of the filter that lies inside.
   if (!(film.x >= float(all.x0) && film.x < float(all.x1) && film.y >= float(all.y0) && film.y < float(all.y1))) return;
   Xyz color;
   BadKind kind = BadKind::not_a_number;

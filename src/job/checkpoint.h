@@ -25,6 +25,8 @@ struct Identity {
 
 /// Reads every file the description names, once.
 Identity identity_of(const Job&);
+/// The files that a component and its parts name to be read; outputs name none.
+std::vector<std::string> files_named_by(const Component&);
 /// What differs, in words for the user; empty: nothing. `whose` and `other_whose` say whose they are: "the checkpoint".
 std::string difference(const Identity&, const std::string& whose, const Identity& other, const std::string& other_whose);
 

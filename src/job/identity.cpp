@@ -55,6 +55,7 @@ class FileCollector {
 
   void visit(const Component& c) {
     if (!visited_.insert(&c).second) return;
+    if (dynamic_cast<const Output*>(&c)) return;  // what that names is written
     const ClassInfo& info = c.class_info();
     // The code of a plugin determines samples as well.
     if (!info.provider.empty()) add(info.provider);
@@ -62,6 +63,11 @@ class FileCollector {
       if (member.kind != Kind::component && member.kind != Kind::file && member.kind != Kind::color) continue;
       visit(member.get(c, member));
     }
+  }
+  std::vector<std::string> paths() const {
+    std::vector<std::string> list;
+    for (const auto& [name, path] : paths_) list.push_back(path);
+    return list;
   }
   std::vector<Identity::File> files() const {
     std::vector<Identity::File> list;
@@ -153,6 +159,12 @@ Identity identity_of(const Job& job) {
   files.visit(*bare);
   identity.files = files.files();
   return identity;
+}
+
+std::vector<std::string> files_named_by(const Component& component) {
+  FileCollector files({});
+  files.visit(component);
+  return files.paths();
 }
 
 std::string difference(const Identity& a, const std::string& whose, const Identity& b, const std::string& other_whose) {

@@ -65,14 +65,7 @@ void Job::prepare() {
 
 RenderContext Job::context() const { return {*scene, *camera, *image, *wavelengths, seed}; }
 
-// Few for large pictures, many for small ones. A function of the size alone, so that passes are the same however a render
-// is stopped or continued.
-std::uint32_t Job::samples_per_pass() const {
-  constexpr std::uint64_t wanted = std::uint64_t(1) << 19;
-  const PixelArea& area = image->area();
-  const auto pixels = std::uint64_t(area.width()) * std::uint64_t(area.height());
-  return std::uint32_t(std::bit_floor(std::clamp<std::uint64_t>(wanted / std::max<std::uint64_t>(pixels, 1), 1, 1 << 14)));
-}
+std::uint32_t Job::samples_per_pass() const { return etendue::samples_per_pass(image->area()); }
 
 IndexRange Job::wanted_samples() const {
   const auto samples = std::uint32_t(renderer->samples);
@@ -134,7 +127,11 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   if (from) require_continuable(*from, from_file, kept);
   if (keeps) remove_leftovers(checkpoint_file);
   checkpoint_failure_.clear();
-  stop_ = 0;
+  // What was asked of this render is not asked of the next one.
+  struct Forgotten {
+    std::atomic<bool>&finish, &abort;
+    ~Forgotten() { finish = abort = false; }
+  } const forgotten{finish_, abort_};
 
   image->clear();
   rendering(*this, [&] { renderer->begin(context); });
@@ -204,13 +201,13 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   const auto stopped = [&]() -> std::optional<Ended> {
     if (error_limit > 0) error = image->relative_error();
     if (missing(done_, part).empty()) return Ended::samples;
-    if (stop_.load() == 1) return Ended::interrupted;
+    if (finish_.load()) return Ended::interrupted;
     if (time_limit > 0 && seconds_ >= time_limit) return Ended::time;
     if (error_limit > 0 && error <= error_limit) return Ended::error;
     return {};
   };
 
-  PassRunner runner(*image, threads, stop_,
+  PassRunner runner(*image, threads, abort_,
                     [&](std::uint64_t done, std::uint64_t count) { report(double(done) / double(count), false); });
   std::optional<Ended> ended;
   if (from) ended = stopped();
@@ -224,7 +221,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     runner.begin = pass.begin;
     runner.end = pass.end;
     rendering(*this, [&] { renderer->pass(context, runner); });
-    if (stop_.load() == 2) return Ended::aborted;
+    if (abort_.load()) return Ended::aborted;
     require_independent_passes();
     insert(done_, pass);
     seconds_ = now() - begun;
@@ -256,7 +253,7 @@ std::vector<std::string> Job::write_outputs(const std::string& default_stem) con
   std::vector<std::string> written;
   for (const Ref<Output>& output : outputs) {
     const Ref<ToneMap>& tone = output->tone_map ? output->tone_map : (output->for_display() ? tone_map : output->tone_map);
-    const std::string path = output->file.empty() ? default_stem + output->extension() : output->file.resolved();
+    const std::string path = output->path(default_stem);
     output->write_image(tone ? tone->apply(radiance) : radiance, path);
     written.push_back(path);
   }
@@ -265,7 +262,7 @@ std::vector<std::string> Job::write_outputs(const std::string& default_stem) con
 
 Point2 Job::replay(int x, int y, std::uint32_t sample, PathRecord& record) {
   if (!prepared_) prepare_tree(*this);
-  if (!image->area().contains(x, y))
+  if (!image->sampled_area().contains(x, y))
     throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
   const RenderContext context = this->context();
   rendering(*this, [&] { renderer->begin(context); });

@@ -6,13 +6,19 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <bit>
 #include <mutex>
 
 namespace etendue {
 
+std::uint32_t samples_per_pass(const PixelArea& area) {
+  constexpr std::uint64_t wanted = std::uint64_t(1) << 19;
+  const auto pixels = std::uint64_t(area.width()) * std::uint64_t(area.height());
+  return std::uint32_t(std::bit_floor(std::clamp<std::uint64_t>(wanted / std::max<std::uint64_t>(pixels, 1), 1, 1 << 14)));
+}
+
 struct PassRunner::State {
   ImageBuffer& image;
-  const std::atomic<int>& stop;
   std::function<void(std::uint64_t, std::uint64_t)> tick;
   int threads;
   tbb::global_control limit;
@@ -40,17 +46,18 @@ namespace {
 int thread_count(int wanted) { return wanted > 0 ? wanted : tbb::info::default_concurrency(); }
 }  // namespace
 
-PassRunner::PassRunner(ImageBuffer& image, int threads, const std::atomic<int>& stop,
+PassRunner::PassRunner(ImageBuffer& image, int threads, const std::atomic<bool>& abort_,
                        std::function<void(std::uint64_t, std::uint64_t)> tick)
     : state_(new State{image,
-                       stop,
                        std::move(tick),
                        thread_count(threads),
                        tbb::global_control(tbb::global_control::max_allowed_parallelism, size_t(thread_count(threads))),
                        tbb::task_arena(thread_count(threads)),
                        {},
                        {},
-                       {}}) {}
+                       {}}) {
+  abort = &abort_;
+}
 
 PassRunner::~PassRunner() = default;
 
@@ -62,7 +69,7 @@ void PassRunner::run(std::uint64_t count, Work work, void* self) {
     tbb::parallel_pipeline(
         size_t(4 * s.threads),
         tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) -> std::uint64_t {
-          if (next == count || s.stop.load(std::memory_order_relaxed) == 2) flow.stop();
+          if (next == count || aborted()) flow.stop();
           return next++;
         }) & tbb::make_filter<std::uint64_t, ImageTile*>(tbb::filter_mode::parallel, [&](std::uint64_t item) {
           std::unique_ptr<ImageTile> tile(s.take());

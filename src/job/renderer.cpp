@@ -4,7 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+
+#include "images/pixel_area.h"
+#include "job/pass_runner.h"
 
 namespace etendue {
 
@@ -45,27 +49,62 @@ enum CameraDimension : std::uint32_t {
 
 /// How the picture and the samples of a pass are divided into items: tiles, and for small pictures parts of the sample
 /// range as well. Depends on nothing but the picture's size and the pass, so results do not depend on threads.
-struct Division {
-  PixelArea area;
-  int tile = 16, columns = 1, rows = 1;
-  std::uint32_t begin = 0, end = 1, chunk = 1, chunks = 1;
+///
+/// A crop is divided as the whole picture is, with what does not reach it left out. Each of its pixels is then the same sum, of
+/// the same parts in the same order, as in the whole picture. Its passes hold several of those of the whole picture, one after
+/// the other: a small crop has few tiles, and the more items the more threads find work.
+class Division {
+ public:
+  struct Item {
+    PixelArea area;
+    std::uint32_t first, last;  ///< samples, the last not included
+  };
 
-  Division(const PixelArea& a, const Pass& pass) : area(a), begin(pass.begin), end(pass.end) {
-    columns = (a.width() + tile - 1) / tile;
-    rows = (a.height() + tile - 1) / tile;
-    constexpr std::uint32_t enough = 64;
-    const std::uint32_t tiles = std::uint32_t(columns) * std::uint32_t(rows), n = end - begin;
-    const std::uint32_t wanted = std::clamp((enough + tiles - 1) / tiles, 1u, n);
-    chunk = (n + wanted - 1) / wanted;
-    chunks = (n + chunk - 1) / chunk;
+  Division(const ImageBuffer& image, const Pass& pass) : area_(image.sampled_area()) {
+    const PixelArea whole{0, 0, image.width, image.height};
+    column_ = area_.x0 / tile;
+    row_ = area_.y0 / tile;
+    columns_ = (area_.x1 + tile - 1) / tile - column_;
+    const int rows = (area_.y1 + tile - 1) / tile - row_;
+    tiles_ = std::uint64_t(columns_) * std::uint64_t(rows);
+
+    constexpr std::uint64_t enough = 64;
+    const auto along = [](int pixels) { return std::uint64_t((pixels + tile - 1) / tile); };
+    const std::uint64_t all_tiles = along(whole.width()) * along(whole.height());
+    const std::uint32_t step = samples_per_pass(whole);
+    for (std::uint32_t begin = pass.begin; begin < pass.end;) {
+      const std::uint32_t end = std::uint32_t(std::min<std::uint64_t>(pass.end, (std::uint64_t(begin) / step + 1) * step));
+      const std::uint32_t n = end - begin;
+      const auto wanted = std::uint32_t(std::clamp<std::uint64_t>((enough + all_tiles - 1) / all_tiles, 1, n));
+      const std::uint32_t chunk = (n + wanted - 1) / wanted, chunks = (n + chunk - 1) / chunk;
+      parts_.push_back({begin, end, chunk, chunks, count_});
+      count_ += tiles_ * chunks;
+      begin = end;
+    }
   }
-  std::uint64_t count() const { return std::uint64_t(columns) * std::uint64_t(rows) * chunks; }
-  PixelArea pixels(std::uint64_t item) const {
-    const int t = int(item / chunks), x = area.x0 + (t % columns) * tile, y = area.y0 + (t / columns) * tile;
-    return {x, y, std::min(x + tile, area.x1), std::min(y + tile, area.y1)};
+
+  std::uint64_t count() const { return count_; }
+
+  Item item(std::uint64_t number) const {
+    const Part& part = *(std::ranges::upper_bound(parts_, number, {}, &Part::first_item) - 1);
+    const std::uint64_t rest = number - part.first_item;
+    const int t = int(rest / part.chunks), x = (column_ + t % columns_) * tile, y = (row_ + t / columns_) * tile;
+    const std::uint32_t first = part.begin + std::uint32_t(rest % part.chunks) * part.chunk;
+    return {intersection({x, y, x + tile, y + tile}, area_), first, std::min(first + part.chunk, part.end)};
   }
-  std::uint32_t first(std::uint64_t item) const { return begin + std::uint32_t(item % chunks) * chunk; }
-  std::uint32_t last(std::uint64_t item) const { return std::min(first(item) + chunk, end); }
+
+ private:
+  static constexpr int tile = 16;
+  /// A pass of the whole picture.
+  struct Part {
+    std::uint32_t begin, end, chunk, chunks;
+    std::uint64_t first_item;
+  };
+
+  PixelArea area_;
+  int column_ = 0, row_ = 0, columns_ = 1;
+  std::uint64_t tiles_ = 1, count_ = 0;
+  std::vector<Part> parts_;
 };
 
 void record_camera(PathRecord& record, const Camera& camera, const Ray& ray) {
@@ -92,7 +131,8 @@ Renderer::CameraSample take_sample(const Renderer& renderer, const RenderContext
   SampleStream random(*sampler, key);
   random.jump(path_dimension);
 
-  SampleContext sample{s.wavelengths, random, arena, request.features, request.record, request.lengths, request.splats};
+  SampleContext sample{s.wavelengths,  random,          arena,          request.features,
+                       request.record, request.lengths, request.splats, request.abort};
   Ray ray = camera.ray(s.film, lens, time);
   ray.width *= renderer.map_filter;
   ray.spread *= renderer.map_filter;
@@ -110,20 +150,20 @@ Renderer::CameraSample take_sample(const Renderer& renderer, const RenderContext
 }  // namespace
 
 void Renderer::pass(const RenderContext& context, Pass& pass) const {
-  const Division division(context.image.area(), pass);
+  const Division division(context.image, pass);
   const bool wants_features = context.image.wants_features();
   const size_t path_lengths = size_t(context.image.path_lengths);
   pass.run(division.count(), [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
-    const PixelArea area = division.pixels(item);
+    const auto [area, first, last] = division.item(item);
     tile.begin(context.image, area);
     std::vector<Splat> splats;
     std::vector<Spectrum> lengths(path_lengths);
     Features features;
-    const Request request{wants_features ? &features : nullptr, nullptr, lengths, &splats};
-    const std::uint32_t first = division.first(item), last = division.last(item);
+    const Request request{wants_features ? &features : nullptr, nullptr, lengths, &splats, pass.abort};
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x)
         for (SampleKey key(context.seed, x, y, first); key.sample < last; ++key.sample) {
+          if (pass.aborted()) return;
           if (request.features) features = {};
           splats.clear();
           for (Spectrum& light : lengths) light = {};

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
 #include "etendue/error.h"
 
@@ -32,27 +33,75 @@ int write_all(int descriptor, std::span<const std::span<const std::byte>> pieces
   return 0;
 }
 
+/// Where the bytes go.
+struct Place {
+  std::filesystem::path target;  ///< a link is followed: it stays, and its file is replaced
+  std::filesystem::path folder;
+  bool existed = false;
+  struct stat old{};
+
+  bool plain() const { return !existed || S_ISREG(old.st_mode); }
+  /// The new file, until it is whole.
+  std::string beside() const { return (folder / fmt::format(".{}.part-{}", target.filename().string(), ::getpid())).string(); }
+};
+
+/// Throws when nothing can be written there.
+Place place_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  if (path.empty()) refuse(path, "the file has no name");
+  Place place;
+  std::error_code code;
+  place.target = path;
+  if (fs::exists(place.target, code)) place.target = fs::canonical(place.target, code);
+  if (code) refuse(path, code.message());
+  place.existed = ::stat(place.target.c_str(), &place.old) == 0;
+  if (!place.target.has_filename() || (place.existed && S_ISDIR(place.old.st_mode))) refuse(path, "it is a folder");
+  if (place.existed && ::access(place.target.c_str(), W_OK) != 0) refuse(path, reason(errno));
+  place.folder = place.target.has_parent_path() ? place.target.parent_path() : fs::path(".");
+  if (place.plain() && !fs::exists(place.folder, code))
+    refuse(path, fmt::format("there is no folder '{}'", place.folder.string()));
+  return place;
+}
+
+int open_beside(const Place& place, const std::string& path) {
+  const int descriptor = ::open(place.beside().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) refuse(path, reason(errno));
+  return descriptor;
+}
+
 }  // namespace
+
+void require_writable(const std::string& path) {
+  const Place place = place_of(path);
+  int failure = 0;
+  if (place.plain()) {
+    const int descriptor = open_beside(place, path);
+    ::unlink(place.beside().c_str());
+    // A block is more than what file systems find room for beside a file's name.
+    const std::vector<std::byte> block(4096);
+    const std::span<const std::byte> piece(block);
+    failure = write_all(descriptor, std::span(&piece, 1));
+    if (::close(descriptor) != 0 && !failure) failure = errno;
+  } else if (S_ISCHR(place.old.st_mode) || S_ISBLK(place.old.st_mode)) {  // of the others opening may wait, or be noticed
+    const int descriptor = ::open(place.target.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor < 0) refuse(path, reason(errno));
+    if (::write(descriptor, "", 0) < 0 && errno != EAGAIN) failure = errno;  // no bytes, but a full device says so
+    ::close(descriptor);
+  }
+  if (failure) refuse(path, reason(failure));
+}
 
 void write_whole_file(const std::string& path, const void* data, size_t size) {
   const std::span<const std::byte> piece(static_cast<const std::byte*>(data), size);
   write_whole_file(path, std::span(&piece, 1));
 }
 
-void write_whole_file(const std::string& path, std::span<const std::span<const std::byte>> pieces) {
-  namespace fs = std::filesystem;
-  if (path.empty()) refuse(path, "the file has no name");
-  std::error_code code;
-  fs::path target = path;
-  if (fs::exists(target, code)) target = fs::canonical(target, code);  // a link stays and its file is replaced
-  if (code) refuse(path, code.message());
-  struct stat old{};
-  const bool existed = ::stat(target.c_str(), &old) == 0;
-  if (existed && S_ISDIR(old.st_mode)) refuse(path, "it is a folder");
-  if (existed && ::access(target.c_str(), W_OK) != 0) refuse(path, reason(errno));
+void write_whole_file(const std::string& path, const std::string& text) { write_whole_file(path, text.data(), text.size()); }
 
-  if (existed && !S_ISREG(old.st_mode)) {
-    const int descriptor = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
+void write_whole_file(const std::string& path, std::span<const std::span<const std::byte>> pieces) {
+  const Place place = place_of(path);
+  if (!place.plain()) {
+    const int descriptor = ::open(place.target.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0) refuse(path, reason(errno));
     const int failure = write_all(descriptor, pieces);
     ::close(descriptor);
@@ -60,22 +109,19 @@ void write_whole_file(const std::string& path, std::span<const std::span<const s
     return;
   }
 
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  if (!fs::exists(folder, code)) refuse(path, fmt::format("there is no folder '{}'", folder.string()));
-  const std::string beside = (folder / fmt::format(".{}.part-{}", target.filename().string(), ::getpid())).string();
-  const int descriptor = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) refuse(path, reason(errno));
+  const std::string beside = place.beside();
+  const int descriptor = open_beside(place, path);
   int failure = write_all(descriptor, pieces);
-  if (!failure && existed && ::fchmod(descriptor, old.st_mode & 07777) != 0) failure = errno;
+  if (!failure && place.existed && ::fchmod(descriptor, place.old.st_mode & 07777) != 0) failure = errno;
   if (!failure && ::fsync(descriptor) != 0) failure = errno;
   if (::close(descriptor) != 0 && !failure) failure = errno;
-  if (!failure && ::rename(beside.c_str(), target.c_str()) != 0) failure = errno;
+  if (!failure && ::rename(beside.c_str(), place.target.c_str()) != 0) failure = errno;
   if (failure) {
     ::unlink(beside.c_str());
     refuse(path, reason(failure));
   }
   // The new name itself reaches the disk with its folder; not all file systems can say so, hence no error.
-  const int folder_descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int folder_descriptor = ::open(place.folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder_descriptor >= 0) {
     ::fsync(folder_descriptor);
     ::close(folder_descriptor);

@@ -57,7 +57,7 @@ class AmbientOcclusionRenderer final : public Renderer {
     const Frame frame(dot(point.shading_normal, point.normal) * side < 0 ? -point.shading_normal : point.shading_normal);
     float open = 0;
     Ray shadow;
-    for (int i = 0; i < rays; ++i) {
+    for (int i = 0; i < rays && !sample.aborted(); ++i) {
       const Vector3 direction = frame.to_world(warp::cosine_hemisphere(sample.random.next_pair()));
       if (!(dot(point.normal, direction) * side > 0)) continue;
       point.leave(direction, shadow);

@@ -31,7 +31,10 @@ class BidirectionalPathTracer final : public Renderer {
     d.summary("Paths from the luminaires and from the camera, connected in all ways and weighted by how well each does.",
               "Lafortune & Willems 1993; Veach & Guibas 1994; Veach 1997, chapter 10")
         .member<&BidirectionalPathTracer::max_depth>(
-            "max_depth", "1", "longest path, in segments: 1 shows luminaires only, 2 adds direct light", at_least(1))
+            "max_depth", "1",
+            "longest path, in segments: 1 shows luminaires only, 2 adds direct light. Both walks are kept as a whole while "
+            "they are connected, which takes up to 1 kB for each segment and thread, hence the limit",
+            range(1, longest_kept_walk))
         .member<&BidirectionalPathTracer::roulette_depth>(
             "roulette_depth", "1", "segments of either walk before Russian roulette may end it", at_least(1))
         .member<&BidirectionalPathTracer::heuristic>("heuristic", "", "how strategies are weighted",
@@ -73,23 +76,23 @@ class BidirectionalPathTracer final : public Renderer {
       if (shows(0, length + 1)) add(s, length, 0, length + 1, 1, value);
     };
     std::function<void()> crossed = [&] { meet(s, int(camera.size())); };
-    walk_from_camera(context, camera_ray, parallel_, {max_depth + 1, roulette_depth}, sample.wavelengths, sample.random,
-                     sample.arena, camera, &emitted, &crossed);
+    walk_from_camera(context, camera_ray, parallel_, {max_depth + 1, roulette_depth, &sample}, sample.wavelengths,
+                     sample.random, sample.arena, camera, &emitted, &crossed);
     sample.random.jump(light_dimension);
     EmittedLight emitted_light;
-    walk_from_luminaire(context.scene, *light_sampler, camera_ray.time, {max_depth, roulette_depth}, s.light_wavelengths,
-                        sample.random, sample.arena, light, emitted_light);
+    walk_from_luminaire(context.scene, *light_sampler, camera_ray.time, {max_depth, roulette_depth, &sample},
+                        s.light_wavelengths, sample.random, sample.arena, light, emitted_light);
     if (light.size() > 1) s.direct = sampled_density(*light_sampler, light[1], light[0], light[1].out);
 
-    for (int t = 2; t <= int(camera.size()); ++t) {
+    for (int t = 2; t <= int(camera.size()) && !sample.aborted(); ++t) {
       const Vertex& z = camera[size_t(t - 1)];
       meet(s, t);
       if (!z.connectable()) continue;
       if (t <= max_depth) sample_luminaire(s, t);
-      for (int n = 2; n <= int(light.size()) && n + t - 1 <= max_depth; ++n)
+      for (int n = 2; n <= int(light.size()) && n + t - 1 <= max_depth && !sample.aborted(); ++n)
         if (light[size_t(n - 1)].connectable()) connect(s, n, t);
     }
-    for (int n = 2; n <= int(light.size()) && n <= max_depth; ++n)
+    for (int n = 2; n <= int(light.size()) && n <= max_depth && !sample.aborted(); ++n)
       if (light[size_t(n - 1)].connectable()) connect_to_lens(s, n);
 
     if (sample.record) {
@@ -280,8 +283,8 @@ class BidirectionalPathTracer final : public Renderer {
   void note(Sample& s, int length, int n, int t, float weight, const Spectrum& light, Point2 film, bool splat) const {
     if (!s.at.record) [[likely]]
       return;
-    s.at.record->contributions.push_back({std::to_string(n) + " from the luminaire, " + std::to_string(t) + " from the camera",
-                                          length, weight, light, film, splat});
+    s.at.record->contribute({std::to_string(n) + " from the luminaire, " + std::to_string(t) + " from the camera", length,
+                             weight, light, film, splat});
   }
 
   /// The density of a walk's vertex before its last, `count` vertices long, had a walk come from `from` through the last.

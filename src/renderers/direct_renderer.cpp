@@ -78,6 +78,7 @@ class DirectRenderer final : public Renderer {
       sample.note_length(length, light);
     };
     for (int crossings = 0; crossings <= most_crossings; ++crossings) {  // goes round where light passes straight on
+      const ArenaScope memory(sample.arena);
       if (!meet_surface(scene, ray, media, hit, point)) {
         for (const SceneObject* far : scene.infinite_luminaires()) {
           far->surface_point(ray, hit, point);
@@ -135,7 +136,7 @@ class DirectRenderer final : public Renderer {
     const float n = float(light_samples);
     Spectrum sum;
     LuminaireSample light;
-    for (int i = 0; i < light_samples; ++i) {
+    for (int i = 0; i < light_samples && !sample.aborted(); ++i) {
       // Choices in equal strata over all samples: together they still choose luminaires as one choice does.
       const float choice = std::min((float(i) + sample.random.next()) / n, one_minus_epsilon);
       const Point2 u = sample.random.next_pair();
@@ -159,7 +160,7 @@ class DirectRenderer final : public Renderer {
     Spectrum sum;
     Hit hit;
     SurfacePoint met;
-    for (int i = 0; i < shader_samples; ++i) {
+    for (int i = 0; i < shader_samples && !sample.aborted(); ++i) {
       const float choice = std::min((float(i) + sample.random.next()) / n, one_minus_epsilon);
       const auto next = scatter.sample(out, choice, sample.random.next_pair(), Transport::radiance, bent_lobes);
       if (!next || enters_body(point, *next)) continue;
@@ -178,6 +179,7 @@ class DirectRenderer final : public Renderer {
         return heuristic_weight(heuristic, n * next->density, float(light_samples) * density);
       };
       for (int crossings = 0; crossings <= most_crossings; ++crossings) {
+        const ArenaScope memory(sample.arena);
         if (!meet_surface(scene, ray, around, hit, met)) {
           for (const SceneObject* far : scene.infinite_luminaires()) {
             far->surface_point(ray, hit, met);

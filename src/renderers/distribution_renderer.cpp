@@ -129,6 +129,8 @@ class DistributionRenderer final : public Renderer {
     Hit hit;
     SurfacePoint point;
     for (;;) {
+      const ArenaScope memory(sample.arena);
+      if (sample.aborted()) return;
       if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
         for (const SceneObject* far : scene.infinite_luminaires()) {
           far->surface_point(branch.ray, hit, point);
@@ -157,8 +159,8 @@ class DistributionRenderer final : public Renderer {
       // What goes straight on is no longer for it, so the last segment may do that.
       const Lobes lobes = last ? Lobes(pass_through) : followed();
       if (place.splits) {
-        split(tree, branch, place, lobes);
-        return;
+        if (!split(tree, branch, place, lobes)) return;
+        continue;
       }
       const float choice = sample.random.next();
       const auto next = scatter->sample(out, choice, sample.random.next_pair(), Transport::radiance, lobes);
@@ -175,8 +177,9 @@ class DistributionRenderer final : public Renderer {
     }
   }
 
-  /// Follows each kind of lobe with as many branches as it gets.
-  void split(RayTree& tree, const Branch& branch, const Place& place, Lobes lobes) const {
+  /// Follows each kind of lobe with as many branches as it gets. What passes straight on goes on as the branch itself, since
+  /// that may happen a thousand times one after the other; returns whether anything does.
+  bool split(RayTree& tree, Branch& branch, const Place& place, Lobes lobes) const {
     struct Kind {
       Lobes lobes, rivals;
       int count, rival_count;
@@ -187,11 +190,11 @@ class DistributionRenderer final : public Renderer {
                           {specular_transmission, no_lobes, specular_samples, 0},
                           {pass_through, no_lobes, 1, 0}};
     SampleContext& sample = tree.sample;
-    bool first = true;
+    bool first = true, goes_on = false;
     for (const Kind& kind : kinds) {
       if (!place.scatter.has(kind.lobes & lobes)) continue;
       const int rivals = place.scatter.has(kind.rivals) ? kind.rival_count : 0;
-      for (int i = 0; i < kind.count; ++i) {
+      for (int i = 0; i < kind.count && !sample.aborted(); ++i) {
         const float choice = (float(i) + sample.random.next()) / float(kind.count);
         const auto next = place.scatter.sample(place.out, std::min(choice, one_minus_epsilon), sample.random.next_pair(),
                                                Transport::radiance, kind.lobes);
@@ -212,9 +215,15 @@ class DistributionRenderer final : public Renderer {
         if (!first) record_surface(sample.record, place.point, branch.throughput);  // each branch from its surface on
         first = false;
         record_scatter(sample.record, *next);
-        follow(tree, child);
+        if (kind.lobes == pass_through) {
+          branch = child;
+          goes_on = true;
+        } else {
+          follow(tree, child);
+        }
       }
     }
+    return goes_on;
   }
 
   /// Sends a branch on in a sampled direction; its throughput holds the sample's weight already.
@@ -253,7 +262,7 @@ class DistributionRenderer final : public Renderer {
     SampleContext& sample = tree.sample;
     Spectrum sum;
     LuminaireSample light;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < count && !sample.aborted(); ++i) {
       // Choices in equal strata over all rays: together they still choose luminaires as one choice does.
       const float choice = std::min((float(i) + sample.random.next()) / float(count), one_minus_epsilon);
       const Point2 u = sample.random.next_pair();

@@ -23,7 +23,9 @@ class LightTracer final : public Renderer {
     d.summary("Paths from the luminaires, connected to the lens at every vertex: best for caustics on what is seen directly.",
               "Arvo 1986, Backward ray tracing; Dutré, Lafortune & Willems 1993; Veach 1997, section 10.1")
         .member<&LightTracer::max_depth>("max_depth", "1",
-                                         "longest path, in segments: 1 shows luminaires only, 2 adds direct light", at_least(1))
+                                         "longest path, in segments: 1 shows luminaires only, 2 adds direct light. A walk is "
+                                         "kept as a whole, which takes up to 1 kB for each segment and thread, hence the limit",
+                                         range(1, longest_kept_walk))
         .member<&LightTracer::roulette_depth>("roulette_depth", "1", "segments before Russian roulette may end a path",
                                               at_least(1));
   }
@@ -50,11 +52,11 @@ class LightTracer final : public Renderer {
     if (sample.features) note_first_surface(scene, camera_ray, sample);
     EmittedLight light;
     static thread_local std::vector<Vertex> path;
-    walk_from_luminaire(scene, *light_sampler, camera_ray.time, {max_depth, roulette_depth}, sample.wavelengths, sample.random,
-                        sample.arena, path, light);
+    walk_from_luminaire(scene, *light_sampler, camera_ray.time, {max_depth, roulette_depth, &sample}, sample.wavelengths,
+                        sample.random, sample.arena, path, light);
 
     // Each vertex keeps its dimensions whatever the walk used.
-    for (size_t i = 0; i < path.size(); ++i) {
+    for (size_t i = 0; i < path.size() && !sample.aborted(); ++i) {
       sample.random.jump(lens_dimension + 2 * std::uint32_t(i));
       if (path[i].connectable()) connect(context, path, i, light, sample);
     }
@@ -97,7 +99,7 @@ class LightTracer final : public Renderer {
     if (value.black()) return;
     const int length = int(i) + 1;
     sample.splat(lens->film, value, sample.wavelengths, length);
-    if (sample.record) sample.record->contributions.push_back({"light path to the lens", length, 1, value, lens->film, true});
+    if (sample.record) sample.record->contribute({"light path to the lens", length, 1, value, lens->film, true});
   }
 };
 

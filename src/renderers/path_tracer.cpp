@@ -114,7 +114,10 @@ class PathTracer final : public Renderer {
     SurfacePoint point;
     DirectLight direct;
     bool awaits_light = false, goes_on = true;
+    const Arena::Mark memory = sample.arena.mark();
     for (int depth = 1;; ++depth) {
+      sample.arena.rewind(memory);                                 // of earlier vertices nothing is needed any more
+      if ((depth & 62) == 0 && sample.aborted()) return radiance;  // twice in 64 segments: subsurface scattering takes two
       // The last vertex's shadow ray and the ray on from it need nothing of each other: the processor traces both at once.
       const bool lit = awaits_light && !(clear && scene.any(direct.shadow));
       const bool found = goes_on && scene.nearest(ray, hit);

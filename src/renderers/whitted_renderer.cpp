@@ -58,7 +58,16 @@ class WhittedRenderer final : public Renderer {
   }
 
  private:
+  /// What passes straight on goes on as the branch itself, since that may happen a thousand times one after the other; mirrored
+  /// and refracted rays, at most `max_depth` deep, are branches of their own.
   void follow(RayTree& tree, RayBranch& branch) const {
+    while (!tree.sample.aborted() && to_next_surface(tree, branch)) {
+    }
+  }
+
+  /// Returns whether anything passes straight on there.
+  bool to_next_surface(RayTree& tree, RayBranch& branch) const {
+    const ArenaScope memory(tree.sample.arena);
     const Scene& scene = tree.scene;
     SampleContext& sample = tree.sample;
     Hit hit;
@@ -71,7 +80,7 @@ class WhittedRenderer final : public Renderer {
         record_escape(sample.record, *far, branch.ray, branch.throughput);
         record_emission(sample.record, light, branch.depth, 1);
       }
-      return;
+      return false;
     }
     const Vector3 out = -branch.ray.direction;
     record_surface(sample.record, point, branch.throughput);
@@ -85,7 +94,7 @@ class WhittedRenderer final : public Renderer {
       note_features(*sample.features, scene, point, hit, scatter, out, branch.wavelengths);
       sample.features = nullptr;  // of the first surface only
     }
-    if (!scatter) return;
+    if (!scatter) return false;
     const bool last = branch.depth >= max_depth;
     if (!last && scatter->has(smooth_lobes)) {
       const Spectrum direct = branch.throughput * direct_light(scene, point, *scatter, out, branch.wavelengths, sample.arena);
@@ -93,7 +102,7 @@ class WhittedRenderer final : public Renderer {
       record_direct(sample.record, direct, branch.depth + 1, 1);
     }
 
-    bool first = true;
+    bool first = true, goes_on = false;
     for (const Lobe lobe : {specular_reflection, specular_transmission, pass_through}) {
       // What goes straight on is no longer for it, so the last segment may do that.
       if (!scatter->has(lobe) || (last && lobe != pass_through)) continue;
@@ -109,8 +118,14 @@ class WhittedRenderer final : public Renderer {
       if (!first) record_surface(sample.record, point, branch.throughput);  // each branch is told from its surface on
       first = false;
       record_scatter(sample.record, *next);
-      follow(tree, child);
+      if (lobe == pass_through) {
+        branch = child;
+        goes_on = true;
+      } else {
+        follow(tree, child);
+      }
     }
+    return goes_on;
   }
 
   /// The sum over all luminaires without extent.

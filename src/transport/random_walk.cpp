@@ -25,8 +25,8 @@ class Walk {
         track_(scene.has_interiors()) {}
 
   void run() {
-    while (int(path_.size()) < start_.longest && step() && roulette()) {
-    }
+    while (int(path_.size()) < start_.longest && step() && roulette())
+      if (path_.size() % 64 == 0 && start_.sample && start_.sample->aborted()) return;
   }
 
  private:
@@ -58,10 +58,14 @@ class Walk {
         continue;
       }
       const Vector3 out = -ray_.direction;
+      const Arena::Mark before = arena_.mark();
       if (track_) point.media = arena_.make<MediumStack>(media_);
       const Scatter* scatter = scattering_at(point, out, wavelengths_, arena_);
 
-      if (scatter && scatter->has(pass_through) && passes(*scatter, out, point, edge)) continue;
+      if (scatter && scatter->has(pass_through) && passes(*scatter, out, point, edge)) {
+        arena_.rewind(before);  // no vertex was made that would need it
+        continue;
+      }
       std::optional<ScatterSample> next;
       if (scatter) {
         const float choice = scatter->has_choice() ? random_.next() : (random_.skip(), 0.0f);

@@ -15,8 +15,9 @@ struct WalkStart {
   Spectrum throughput{1.0f};
   float direction_density = 0;  ///< [1/sr] of the ray's direction, seen from the first vertex
   Transport transport = Transport::radiance;
-  int longest = 64;        ///< vertices, the first included
-  int roulette_depth = 5;  ///< segments before Russian roulette may end the walk
+  int longest = 64;                       ///< vertices, the first included
+  int roulette_depth = 5;                 ///< segments before Russian roulette may end the walk
+  const SampleContext* sample = nullptr;  ///< asked whether the walk may be given up; null: it may not
   /// Called for light that media themselves send towards the camera: its length in segments, and what it brings.
   std::function<void(int length, const Spectrum&)>* emitted = nullptr;
   /// Called for luminaires whose surface passes light straight on, while they are the path's last vertex for a moment.

@@ -32,7 +32,7 @@ void record_surface_slowly(PathRecord& record, const SurfacePoint& p, const Spec
   v.position = p.position;
   v.normal = p.normal;
   v.throughput = throughput;
-  record.vertices.push_back(std::move(v));
+  record.add(std::move(v));
 }
 
 void record_volume_slowly(PathRecord& record, const Point3& position, const Spectrum& throughput) {
@@ -40,7 +40,7 @@ void record_volume_slowly(PathRecord& record, const Point3& position, const Spec
   v.kind = "volume";
   v.position = position;
   v.throughput = throughput;
-  record.vertices.push_back(std::move(v));
+  record.add(std::move(v));
 }
 
 void record_escape_slowly(PathRecord& record, const SceneObject& far, const Ray& ray, const Spectrum& throughput) {
@@ -50,7 +50,7 @@ void record_escape_slowly(PathRecord& record, const SceneObject& far, const Ray&
   v.position = ray.origin;
   v.normal = Normal3(ray.direction);
   v.throughput = throughput;
-  record.vertices.push_back(std::move(v));
+  record.add(std::move(v));
 }
 
 void record_scatter_slowly(PathRecord& record, const ScatterSample& s) {

@@ -25,14 +25,14 @@ inline void record_emission(PathRecord* r, const Spectrum& light, int length, fl
   if (!r || light.black()) [[likely]]
     return;
   r->vertices.back().emitted += light;
-  r->contributions.push_back({"luminaire met", length, weight, light, {}, false});
+  r->contribute({"luminaire met", length, weight, light, {}, false});
 }
 /// Light of a luminaire sampled from the path's last vertex, and its weight against being met.
 inline void record_direct(PathRecord* r, const Spectrum& light, int length, float weight) {
   if (!r) [[likely]]
     return;
   r->vertices.back().direct = light;
-  r->contributions.push_back({"luminaire sampled", length, weight, light, {}, false});
+  r->contribute({"luminaire sampled", length, weight, light, {}, false});
 }
 inline void record_scatter(PathRecord* r, const ScatterSample& s) {
   if (r) [[unlikely]]

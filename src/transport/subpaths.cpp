@@ -31,6 +31,7 @@ void walk_from_camera(const RenderContext& context, const Ray& ray, bool paralle
   start.direction_density = camera_direction_density(context.camera, parallel, ray);
   start.longest = limits.longest;
   start.roulette_depth = limits.roulette_depth;
+  start.sample = limits.sample;
   start.emitted = emitted;
   start.crossed = crossed;
   random_walk(context.scene, start, media, wavelengths, random, arena, path);
@@ -59,6 +60,7 @@ bool walk_from_luminaire(const Scene& scene, const LightSampler& lights, float t
   start.transport = Transport::importance;
   start.longest = limits.longest;
   start.roulette_depth = limits.roulette_depth;
+  start.sample = limits.sample;
   random_walk(scene, start, media, wavelengths, random, arena, path);
   return true;
 }

@@ -12,9 +12,14 @@ namespace etendue {
 
 /// How long walks are.
 struct WalkLimits {
-  int longest = 64;        ///< vertices, the first included
-  int roulette_depth = 5;  ///< segments before Russian roulette may end a walk
+  int longest = 64;                       ///< vertices, the first included
+  int roulette_depth = 5;                 ///< segments before Russian roulette may end a walk
+  const SampleContext* sample = nullptr;  ///< asked whether a walk may be given up; null: it may not
 };
+
+/// The longest paths of algorithms that keep a walk as a whole, in segments. A vertex takes about a kilobyte with what lies
+/// around it and how it scatters, so a walk as long as this takes 100 MB for each thread.
+inline constexpr int longest_kept_walk = 100000;
 
 /// A camera whose rays are all parallel gives directions by places.
 bool has_parallel_rays(const Camera&, int film_width);

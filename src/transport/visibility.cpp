@@ -15,6 +15,7 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
   Spectrum fraction(1.0f);
   SurfacePoint point;
   for (int crossings = 0; crossings <= most_crossings; ++crossings) {
+    const ArenaScope memory(arena);
     Hit hit;
     const bool found = scene.nearest(ray, hit);
     if (around)

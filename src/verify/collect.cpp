@@ -126,7 +126,13 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
   Choice choice;
   for (Candidate& candidate : all) {
     if (candidate.renderer != job.renderer) {
-      take_over(*candidate.renderer, *job.renderer);
+      try {
+        take_over(*candidate.renderer, *job.renderer);
+      } catch (const Error& error) {  // paths longer than it can keep
+        choice.left_out.push_back(
+            {candidate.name, std::string("cannot take over what the file's renderer has: ") + error.what()});
+        continue;
+      }
       prepare_tree(*candidate.renderer);
     }
     candidate.misses = missed(*candidate.renderer, traits);

@@ -23,7 +23,8 @@ class StudentTracer final : public Renderer {
     Spectrum light, throughput(1.0f);
     Ray ray = camera_ray;
     bool sampled = false;  // whether luminaires were already asked for the light that comes along the ray
-    for (int length = 1; length <= max_depth; ++length) {
+    for (int length = 1; length <= max_depth && !sample.aborted(); ++length) {
+      const ArenaScope memory(sample.arena);  // the next vertex needs nothing of this one
       const auto gather = [&](const Spectrum& value) {
         light += value;
         sample.note_length(length, value);

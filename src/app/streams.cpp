@@ -1,0 +1,85 @@
+// Standard output and standard error of the program.
+//
+// Both become streams of ours (fopencookie) that hand their bytes to the descriptor and report success to whoever prints, so
+// that no print in the program needs to expect failure. The first error is kept and told at the end.
+
+#include "app/streams.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <system_error>
+
+#include "app/commands.h"
+
+namespace etendue {
+
+namespace {
+
+struct StandardStream {
+  int descriptor;
+  int error = 0;  ///< the first
+};
+StandardStream standard_output{STDOUT_FILENO}, standard_error{STDERR_FILENO};
+
+/// Writes all, or notes why not.
+ssize_t write_to(void* cookie, const char* data, size_t size) {
+  auto& stream = *static_cast<StandardStream*>(cookie);
+  size_t done = 0;
+  while (done < size && stream.error == 0) {
+    const ssize_t written = ::write(stream.descriptor, data + done, size - done);
+    if (written > 0) {
+      done += size_t(written);
+    } else if (written < 0 && errno == EAGAIN) {  // whoever shares a terminal may have made it so
+      pollfd ready{stream.descriptor, POLLOUT, 0};
+      ::poll(&ready, 1, 1000);
+    } else if (written < 0 && errno != EINTR) {
+      stream.error = errno;
+    }
+  }
+  return ssize_t(size);
+}
+
+/// None when there is no memory for it: then the stream stays what it was.
+std::FILE* stream_to(StandardStream& stream, int buffering) {
+  std::FILE* file = fopencookie(&stream, "w", {nullptr, write_to, nullptr, nullptr});
+  if (file) std::setvbuf(file, nullptr, buffering, BUFSIZ);
+  return file;
+}
+
+/// Where a descriptor is closed, opens something that fails as it would: reading from what is open for writing alone, and the
+/// other way round.
+void occupy(int descriptor) {
+  if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) return;
+  int opened = ::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  if (opened < 0) opened = ::open("/", O_RDONLY | O_DIRECTORY);
+  // The lowest that is free is taken, and those below are in use.
+  if (opened >= 0 && opened != descriptor) {
+    ::dup2(opened, descriptor);
+    ::close(opened);
+  }
+}
+
+}  // namespace
+
+void open_standard_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) occupy(descriptor);
+  std::signal(SIGPIPE, SIG_IGN);
+  if (std::FILE* file = stream_to(standard_output, isatty(STDOUT_FILENO) ? _IOLBF : _IOFBF)) stdout = file;
+  if (std::FILE* file = stream_to(standard_error, _IONBF)) stderr = file;
+}
+
+int close_standard_streams(int status) {
+  std::fflush(stdout);
+  const int error = standard_output.error;
+  if (error == 0 || error == EPIPE) return status;
+  fmt::print(stderr, "etendue: cannot write to standard output: {}\n", std::generic_category().message(error));
+  return status == exit_status::done ? exit_status::failed : status;
+}
+
+}  // namespace etendue

@@ -1,0 +1,55 @@
+#include "files/input_files.h"
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <mutex>
+#include <set>
+
+#include "job/checkpoint.h"
+
+namespace etendue {
+namespace {
+
+struct Noted {
+  std::mutex mutex;
+  std::set<std::string> paths;
+};
+
+Noted& noted() {
+  static auto* all = new Noted;  // never destroyed: files are read until the end
+  return *all;
+}
+
+/// Of plain files: a terminal or a pipe may be read and written.
+bool plain(const std::string& path, struct stat& status) {
+  return ::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode);
+}
+
+}  // namespace
+
+void note_input(const std::string& path) {
+  if (path.empty()) return;
+  std::error_code error;
+  const std::filesystem::path full = std::filesystem::absolute(path, error);  // the working folder may change
+  Noted& all = noted();
+  const std::lock_guard lock(all.mutex);
+  all.paths.insert(error ? path : full.string());
+}
+
+void note_inputs_of(const Component& component) {
+  for (const std::string& path : files_named_by(component)) note_input(path);
+}
+
+std::string input_at(const std::string& path) {
+  struct stat wanted{}, other{};
+  if (!plain(path, wanted)) return {};
+  Noted& all = noted();
+  const std::lock_guard lock(all.mutex);
+  // Looked at now, not when they were noted: a file that is gone leaves its number to another one.
+  for (const std::string& input : all.paths)
+    if (plain(input, other) && other.st_dev == wanted.st_dev && other.st_ino == wanted.st_ino) return input;
+  return {};
+}
+
+}  // namespace etendue
