@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "component/words.h"
 #include "etendue/reflection.h"
 
 namespace etendue {
@@ -23,11 +24,7 @@ int show_classes(const ClassesOptions& options) {
     return exit_status::done;
   }
   const ClassInfo* info = registry.find(options.name);
-  if (!info) {
-    std::vector<std::string> known;
-    for (const ClassInfo* other : registry.all()) known.push_back(other->name);
-    throw Error("there is no class '" + options.name + "'" + suggestion(options.name, known));
-  }
+  if (!info) throw Error("there is no class '" + options.name + "'" + meant_class(options.name));
   fmt::print("{}{}", options.json ? class_json(*info) : class_text(*info), options.json ? "\n" : "");
   return exit_status::done;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "component/guard.h"
+#include "component/words.h"
 #include "etendue/error.h"
 #include "etendue/language.h"
 #include "etendue/registry.h"
@@ -51,7 +52,8 @@ std::string meant(const CLI::App* command, const std::string& given) {
     for (const CLI::Option* option : command->get_options())
       for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
     if (std::ranges::find(known, bare) != known.end()) return " before the command; write it after";
-    return suggestion(bare, known);
+    const std::string near = suggestion(bare, known), elsewhere = translation(bare, foreign_options());
+    return elsewhere.empty() ? near : elsewhere;
   }
   for (const CLI::App* other : command->get_subcommands({})) known.push_back(other->get_name());
   return suggestion(given, known);

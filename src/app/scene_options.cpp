@@ -19,7 +19,7 @@ std::pair<std::string, std::string> split(const std::string& option, const std::
 }  // namespace
 
 void SceneOptions::add_to(CLI::App& command) {
-  command.add_option("FILE", file, "The render description (.etd)")->required()->type_name("");
+  command.add_option("FILE", file, "The render description (.etd, or .json)")->required()->type_name("");
   command.add_option("-D,--define", defines, "Replace the value of a param of the file; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);

@@ -5,6 +5,7 @@
 #include <set>
 #include <unordered_set>
 
+#include "component/expansion.h"
 #include "component/guard.h"
 #include "etendue/registry.h"
 
@@ -31,45 +32,46 @@ void Component::fail(std::string_view member, const std::string& message) const 
   throw Error(who + ": " + message, location_of(member));
 }
 
-namespace {
-
-void components_in(const Value& value, std::vector<Component*>& out) {
-  if (const auto* c = value.as<Ref<Component>>()) {
-    if (*c) out.push_back(c->get());
-  } else if (const auto* list = value.as<Value::List>()) {
-    for (const Value& item : *list) components_in(item, out);
-  }
-}
-
-void prepare_once(Component& c, std::unordered_set<const Component*>& done) {
-  if (!done.insert(&c).second) return;
-  for (const Member& m : c.class_info().members) {
-    if (m.kind != Kind::component) continue;
-    std::vector<Component*> children;
-    components_in(m.get(c, m), children);
-    for (Component* child : children) prepare_once(*child, done);
-  }
-  try {
-    c.prepare();
-  } catch (...) {
-    // Helpers that know nothing of components throw without a place; the component's own is the nearest.
-    blame(c, "preparing");
-  }
-}
-
-}  // namespace
-
 void prepare_tree(Component& root) {
-  std::unordered_set<const Component*> done;
-  prepare_once(root, done);
+  // Depth-first with a stack of its own: nothing here needs more room for a longer chain.
+  struct Step {
+    Component* component;
+    std::vector<Component*> rest;
+  };
+  std::unordered_set<const Component*> seen;
+  std::vector<Step> way;
+  Expansion expansion;
+  const auto visit = [&](Component& c) {
+    if (seen.insert(&c).second) way.push_back({&c, components_of(c)});
+  };
+  visit(root);
+  while (!way.empty()) {
+    Step& step = way.back();
+    if (!step.rest.empty()) {
+      Component* next = step.rest.back();
+      step.rest.pop_back();
+      visit(*next);
+      continue;
+    }
+    Component& c = *step.component;
+    way.pop_back();
+    expansion.check(c);
+    try {
+      c.prepare();
+    } catch (...) {
+      // Helpers that know nothing of components throw without a place; the component's own is the nearest.
+      blame(c, "preparing");
+    }
+  }
 }
 
 void warn(const std::string& message, Location at) {
   static std::mutex mutex;
   static std::set<std::string> said;
   const std::lock_guard lock(mutex);
-  std::string text =
-      at.known() ? std::string(at.file) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " : "";
+  std::string text = at.known() ? std::string(at.file) + ":" : "";
+  if (at.line > 0) text += std::to_string(at.line) + ":" + std::to_string(at.column) + ":";
+  if (!text.empty()) text += " ";
   text += "warning: " + message + "\n";
   if (said.insert(text).second) std::fputs(text.c_str(), stderr);
 }
@@ -97,19 +99,28 @@ size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
+std::string small_letters(std::string text) {
+  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 }  // namespace
 
 std::string suggestion(const std::string& given, const std::vector<std::string>& known) {
   if (given.size() > 100) return {};
   const std::string* best = nullptr;
-  size_t best_distance = std::max<size_t>(1, given.size() / 3) + 1;
+  const size_t most = std::max<size_t>(1, given.size() / 3);
+  size_t best_rank = 1000;
   for (const std::string& name : known) {
     if (name.size() > 100) continue;
-    size_t distance = edit_distance(given, name);
-    // "Path" for "PathTracer": a beginning is as good as two slips.
-    if (given.size() >= 3 && name.size() > given.size() && name.compare(0, given.size(), given) == 0)
-      distance = std::min<size_t>(distance, 2);
-    if (distance < best_distance) best_distance = distance, best = &name;
+    const size_t distance = edit_distance(given, name);
+    size_t rank = distance <= most ? distance : 1000;
+    // Else a beginning, as "Path" of "PathTracer", or a part, as "depth" of "max_depth", or a whole with something about it.
+    const std::string a = small_letters(name), b = small_letters(given);
+    const std::string &longer = a.size() > b.size() ? a : b, &shorter = a.size() > b.size() ? b : a;
+    if (shorter.size() >= 3 && longer.starts_with(shorter)) rank = std::min<size_t>(rank, 2);
+    if (shorter.size() >= 4 && longer.find(shorter) != std::string::npos) rank = std::min<size_t>(rank, 100);
+    if (rank < best_rank) best_rank = rank, best = &name;
   }
   return best ? " (did you mean '" + *best + "'?)" : std::string();
 }

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "etendue/color.h"
 #include "etendue/description.h"
 
 namespace etendue::detail {
@@ -29,7 +32,13 @@ double in_member_unit(double value, Dimension dimension, const Member& m, Locati
 
 void check_range(double x, const Member& m, Location at) {
   if (!std::isfinite(x)) throw Error("must be a finite number", at);
-  if (std::abs(x) > double(std::numeric_limits<float>::max())) throw Error("is too large", at);
+  if (m.range && std::isfinite(m.range->high) && !m.range->contains(x)) {
+    // Its own range tells more than that of all floats.
+  } else if (std::abs(x) > double(std::numeric_limits<float>::max())) {
+    throw Error(fmt::format("must be at most {:.6g} in size, not {:.9g}", double(std::numeric_limits<float>::max()), x), at);
+  }
+  if (m.range && m.range->open_low && x > m.range->low && !(float(x) > float(m.range->low)))
+    throw Error(fmt::format("must be {}, and {:.9g} is {:.9g} in single precision", m.range->text(), x, float(x)), at);
   if (m.range && !m.range->contains(x)) {
     const std::string unit = m.unit == "1" || m.unit.empty() ? "" : " " + m.unit;
     throw Error(fmt::format("must be {}{}, not {:.9g}{}", m.range->text(), unit, x, unit), at);
@@ -46,6 +55,19 @@ double unit_factor(const Member& m, Dimension& dimension) {
   const Unit* unit = find_unit(m.unit);
   dimension = unit ? unit->dimension : Dimension::none;
   return unit ? unit->factor : 1;
+}
+
+/// The call that takes a text such as "#ff8000", "paint.csv", "Au", "D65" or "N-BK7" for a colour; "" for any other.
+std::string color_call(const std::string& text) {
+  if (text.starts_with("#")) return "srgb";
+  for (const char* ending : {".csv", ".spd", ".txt"})
+    if (text.ends_with(ending)) return "spectrum";
+  const auto known = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), text) != names.end();
+  };
+  if (known(metal_names())) return "metal";
+  if (known(illuminant_names())) return "illuminant";
+  return known(glass_names()) ? "glass" : "";
 }
 
 }  // namespace
@@ -67,6 +89,8 @@ std::int64_t to_integer(const Value& v, const Member& m, std::int64_t low, std::
   if (x != std::floor(x)) throw Error(fmt::format("expects a whole number, not {:.9g}", x), v.location);
   if (x < double(low) || x > double(high))
     throw Error(fmt::format("must be from {} to {}, not {:.17g}", low, high, x), v.location);
+  // Numbers are doubles on their way here, which are 2^53 whatever whole number next to it was written.
+  if (std::abs(x) >= 0x1p53) throw Error(fmt::format("must be less than 2^53 = {:.0f}", 0x1p53), v.location);
   return std::int64_t(x);
 }
 
@@ -101,6 +125,10 @@ Color to_color(const Value& v, const Member& m) {
   if (const auto* c = v.as<Color>()) return *c;
   if (const auto* n = v.as<Number>()) return flat_spectrum(float(checked(n->value, n->dimension, m, v.location)));
   if (v.none()) return nullptr;
+  const auto* text = v.as<std::string>();
+  const std::string call = text ? color_call(*text) : std::string();
+  if (!call.empty())
+    throw Error(fmt::format("expects a colour or spectrum, not a string: write {}(\"{}\")", call, *text), v.location);
   mismatch("a colour or spectrum", v);
 }
 
@@ -194,6 +222,8 @@ const Value::List& to_list(const Value& v, Value::List& scratch) {
     }
     return scratch;
   }
+  if (const auto* c = v.as<Ref<Component>>(); c && *c)
+    throw Error(fmt::format("expects a list, even of one: write [ {} {{ … }} ]", (*c)->class_info().name), v.location);
   mismatch("a list", v);
 }
 

@@ -10,6 +10,7 @@
 
 #include "component/guard.h"
 #include "component/plugin.h"
+#include "component/words.h"
 #include "etendue/description.h"
 #include "files/input_files.h"
 
@@ -221,11 +222,9 @@ std::vector<const ClassInfo*> Registry::subclasses(const ClassInfo& of) const {
 Ref<Component> Registry::create(std::string_view name) const {
   const ClassInfo* info = find(name);
   std::vector<std::string> known;
-  if (!info || info->abstract()) {
-    for (const ClassInfo* c : all())
-      if (!c->abstract() && (!info || c->is_a(*info))) known.push_back(c->name);
-  }
-  if (!info) throw Error(fmt::format("there is no class '{}'{}", name, suggestion(std::string(name), known)));
+  if (info && info->abstract())
+    for (const ClassInfo* c : subclasses(*info)) known.push_back(c->name);
+  if (!info) throw Error(fmt::format("there is no class '{}'{}", name, meant_class(std::string(name))));
   if (info->abstract())
     throw Error(fmt::format("'{}' is an interface; write one of its classes: {}", name, fmt::join(known, ", ")));
   return etendue::create(*info);
@@ -276,23 +275,14 @@ void Registry::load_plugin(const std::string& path) {
 Value get(const Component& c, std::string_view member) {
   const ClassInfo& info = c.class_info();
   const Member* m = info.find(member);
-  if (!m) {
-    std::vector<std::string> known;
-    for (const Member& other : info.members) known.push_back(other.name);
-    throw Error(fmt::format("{} has no member '{}'{}", info.name, member, suggestion(std::string(member), known)));
-  }
+  if (!m) throw Error(no_member(info, std::string(member)));
   return m->get(c, *m);
 }
 
 void set(Component& c, std::string_view member, const Value& value) {
   const ClassInfo& info = c.class_info();
   const Member* m = info.find(member);
-  if (!m) {
-    std::vector<std::string> known;
-    for (const Member& other : info.members) known.push_back(other.name);
-    throw Error(fmt::format("{} has no member '{}'{}", info.name, member, suggestion(std::string(member), known)),
-                value.location);
-  }
+  if (!m) throw Error(no_member(info, std::string(member)), value.location);
   try {
     m->store(c, *m, value);
   } catch (const Error& e) {

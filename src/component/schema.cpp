@@ -52,8 +52,10 @@ Json as_json(const ClassInfo& info) {
 
 Json reference(const std::string& definition) { return {{"$ref", "#/$defs/" + definition}}; }
 
-/// What fits the member as a single value, its list left aside.
-Json item_schema(const Member& member) {
+Json either(const Json& one, const Json& other) { return {{"anyOf", Json::array({one, other})}}; }
+
+/// The value itself.
+Json plain_item_schema(const Member& member) {
   Json json;
   switch (member.kind) {
     case Kind::boolean: json["type"] = "boolean"; break;
@@ -86,12 +88,35 @@ Json item_schema(const Member& member) {
   return json;
 }
 
+/// What fits the member as a single value, its list left aside: the value, or an expression that gives it, where a string is
+/// not the value itself.
+Json item_schema(const Member& member) {
+  const Json json = plain_item_schema(member);
+  switch (member.kind) {
+    case Kind::string:
+    case Kind::file:
+    case Kind::color:
+    case Kind::transform:
+    case Kind::component: return json;  // a text, or expressions are among what is referred to
+    case Kind::choice: return either(json, {{"type", "string"}, {"description", "The name of a param."}});
+    default: return either(json, reference("expression"));
+  }
+}
+
+/// Rows may also be written flat.
+bool is_row(const Member& member) {
+  return member.kind == Kind::vector2 || member.kind == Kind::vector3 || member.kind == Kind::point3 ||
+         member.kind == Kind::normal3;
+}
+
 Json member_schema(const Member& member) {
   Json json = item_schema(member);
-  if (member.list)
-    json = {{"type", "array"}, {"items", json}};
-  else if (member.default_value.none() && (member.kind == Kind::component || member.kind == Kind::color))
-    json = {{"anyOf", Json::array({json, {{"type", "null"}}})}};  // may stay without one
+  if (member.list) {
+    json = {{"type", "array"}, {"items", is_row(member) ? either(json, {{"type", "number"}}) : json}};
+    if (member.kind != Kind::string && member.kind != Kind::file) json = either(json, reference("expression"));
+  } else if (member.kind == Kind::component || member.kind == Kind::color) {
+    json = either(json, {{"type", "null"}});
+  }
   json["description"] = member.text;
   if (!unit_text(member).empty()) json["x-unit"] = member.unit;
   json["x-effect"] = std::string(name(member.effect));
@@ -124,7 +149,35 @@ Json any_schema(const ClassInfo& info) {
     if (const Member* member = other->find(other->literal)) any.push_back(member_schema(*member));
   }
   if (any.empty()) return {{"not", Json::object()}, {"description", "No class of this interface is known."}};
+  any.push_back(reference("expression"));
   return {{"description", info.summary}, {"anyOf", any}};
+}
+
+/// A Job, and what stands beside it in a file.
+Json root_schema() {
+  const ClassInfo* job = Registry::instance().find("Job");
+  Json root = job ? class_schema(*job) : Json{{"type", "object"}};
+  root.erase("description");
+  const Json texts = {{"type", "array"}, {"items", {{"type", "string"}}}};
+  const auto table = [](const std::string& description) {
+    Json anything = Json::array(
+        {reference("expression"), {{"type", "number"}}, {{"type", "boolean"}}, {{"type", "array"}}, {{"type", "null"}}});
+    for (const ClassInfo* info : described_classes())
+      if (!info->abstract()) anything.push_back(reference(info->name));
+    return Json{{"type", "object"},
+                {"description", description},
+                {"propertyNames", {{"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}},
+                {"additionalProperties", {{"anyOf", anything}}}};
+  };
+  Json& properties = root["properties"];
+  properties["$schema"] = {{"type", "string"}};
+  properties["$include"] = texts;
+  properties["$include"]["description"] = "Descriptions whose names become known here.";
+  properties["$plugin"] = texts;
+  properties["$plugin"]["description"] = "Shared libraries whose classes become known here.";
+  properties["$params"] = table("Names that -D replaces.");
+  properties["$names"] = table("Names for components and values, shared by reference wherever an expression says the name.");
+  return root;
 }
 
 }  // namespace
@@ -139,23 +192,36 @@ std::string classes_json() {
 
 std::string json_schema() {
   Json definitions;
-  const Json text = {{"type", "string"}, {"description", "An expression of the render description language."}};
+  definitions["expression"] = {
+      {"type", "string"},
+      {"minLength", 1},
+      {"description",
+       "An expression of the render description language: a name of \"$names\" or \"$params\", a number with its unit such as "
+       "\"10 cm\", a call such as \"blackbody(2856 K)\", or arithmetic."}};
   const auto numbers = [](int count) {
     return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", count}, {"maxItems", count}};
   };
   definitions["color"] = {
-      {"description", "A number for all wavelengths, linear RGB, or an expression such as blackbody(2856 K)."},
-      {"anyOf", Json::array({{{"type", "number"}}, numbers(3), text})}};
-  definitions["transform"] = {{"description", "A 3x4 matrix, row by row, or an expression such as translate(0, 1 m, 0)."},
-                              {"anyOf", Json::array({numbers(12), text})}};
+      {"description", "A number for all wavelengths, linear sRGB, or an expression such as blackbody(2856 K)."},
+      {"anyOf", Json::array({{{"type", "number"}}, numbers(3), reference("expression")})}};
+  definitions["transform"] = {
+      {"description", "A matrix of 3 rows of 4, row by row, or an expression such as translate(0, 1 m, 0)."},
+      {"anyOf", Json::array({numbers(12), reference("expression")})}};
   for (const ClassInfo* info : described_classes()) {
     if (!info->abstract()) definitions[info->name] = class_schema(*info);
     definitions[info->name + ".any"] = any_schema(*info);
   }
   Json schema;
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
-  schema["title"] = "Étendue render description";
-  schema["$ref"] = "#/$defs/Job";
+  schema["$id"] = "urn:etendue:scene:" ETENDUE_VERSION;
+  schema["title"] = "Étendue " ETENDUE_VERSION " render description (JSON)";
+  schema["description"] =
+      "A scene as JSON, which etendue check, render, verify and save read from files that end in .json, and which etendue save "
+      "-o "
+      "FILE.json writes. The root is the Job. Numbers without a unit are in the unit of \"x-unit\". What a schema cannot say "
+      "is "
+      "checked when the scene is read: that files are there, names known, and expressions right.";
+  schema.update(root_schema());
   schema["$defs"] = std::move(definitions);
   return schema.dump(2);
 }

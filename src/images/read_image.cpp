@@ -9,6 +9,7 @@
 #include "files/regular_file.h"
 #include "images/image_library.h"
 #include "images/numpy_array.h"
+#include "images/stated_encoding.h"
 
 namespace etendue {
 namespace {
@@ -96,12 +97,14 @@ std::uint64_t size_of(const std::string& path) {
   return size;
 }
 
-Image read_whole_image(const std::string& path) {
+/// `stored_as`: how the file's numbers were encoded.
+Image read_whole_image(const std::string& path, std::string& stored_as) {
   const std::uint64_t size = size_of(path);
+  stored_as = "linear";
   if (lower_extension(path) == ".npy") return read_numpy(path, size);
 
   StoredImage stored = read_stored(path);
-  const std::string transfer = encoding(stored);
+  const std::string transfer = stored_as = encoding(stored);
   Image image = std::move(stored.image);
   const auto has = [&](const char* name) {
     return std::find(image.channels.begin(), image.channels.end(), name) != image.channels.end();
@@ -124,14 +127,19 @@ Image read_whole_image(const std::string& path) {
   return image;
 }
 
-}  // namespace
-
-Image read_image(const std::string& path) {
+Image read_image(const std::string& path, std::string& stored_as) {
   try {
-    return read_whole_image(path);
+    return read_whole_image(path, stored_as);
   } catch (const std::bad_alloc&) {
     refuse(path, no_memory_to_read);
   }
+}
+
+}  // namespace
+
+Image read_image(const std::string& path) {
+  std::string ignored;
+  return read_image(path, ignored);
 }
 
 void write_any(const Image& image, const std::string& path) {
@@ -159,7 +167,16 @@ void write_any(const Image& image, const std::string& path) {
   throw Error(fmt::format("cannot write '{}': no output has this ending; known are {}", path, list));
 }
 
-std::string describe_image(const std::string& path) { return fmt::format("{}\n{}", path, describe_image(read_image(path))); }
+std::string describe_image(const std::string& path) {
+  std::string stored_as;
+  const Image image = read_image(path, stored_as);
+  std::string text = path + "\n";
+  const std::vector<std::string> said = stated_encoding(path);
+  for (const std::string& line : said) text += "  the file says " + line + "\n";
+  if (said.empty()) text += "  the file says nothing of its colours' encoding\n";
+  text += fmt::format("  stored as {}; the values below are linear\n", stored_as);
+  return text + describe_image(image);
+}
 
 std::string describe_image(const Image& image) {
   std::string text = fmt::format("  {} x {} pixels, {} channels\n", image.width, image.height, image.channels.size());

@@ -15,7 +15,7 @@ namespace {
   throw Error(fmt::format("cannot {} {} {} {}", verb, a.kind(), preposition, b.kind()), at);
 }
 
-std::string words(Dimension d) { return d == Dimension::none ? "a plain number" : "a " + std::string(name(d)); }
+std::string words(Dimension d) { return d == Dimension::none ? "a plain number" : with_article(name(d)); }
 
 double finite(double x, Location at) {
   if (!std::isfinite(x)) throw Error("the result is too large for a number", at);
@@ -100,6 +100,19 @@ Value divide(const Value& a, const Value& b, Location at) {
   const auto* color = a.as<Color>();
   if (!color || y->dimension != Dimension::none) meaningless("divide", "by", a, b, at);
   return Value(scaled_spectrum(finite(1 / y->value, at), *color));
+}
+
+Value power(const Value& base, const Value& exponent, Location at) {
+  const auto *x = base.as<Number>(), *y = exponent.as<Number>();
+  if (!x || !y) throw Error(fmt::format("cannot raise {} to the power of {}", base.kind(), exponent.kind()), at);
+  if (x->dimension != Dimension::none || y->dimension != Dimension::none)
+    throw Error(
+        fmt::format("cannot raise {} to the power of {}: both must be plain numbers", words(x->dimension), words(y->dimension)),
+        at);
+  const double result = std::pow(x->value, y->value);
+  if (!std::isfinite(result))
+    throw Error(fmt::format("{:.9g} to the power of {:.9g} is no finite number", x->value, y->value), at);
+  return Value(Number{result});
 }
 
 Value negate(const Value& a, Location at) {

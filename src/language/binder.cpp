@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "component/words.h"
 #include "language/evaluator.h"
 
 namespace etendue::language {
@@ -36,10 +37,7 @@ bool Evaluator::set_members(Component& made, Node& node) {
     const Location at = child.at;
     const Member* member = info.find(label.text);
     if (!member) {
-      std::vector<std::string> known;
-      for (const Member& m : info.members) known.push_back(m.name);
-      diagnostics_.add(
-          Error(fmt::format("{} has no member '{}'{}", info.name, label.text, suggestion(label.text, known)), label.at));
+      diagnostics_.add(Error(no_member(info, label.text), label.at));
       evaluate(child, {nullptr, false, true});
       good = false;
       continue;
@@ -52,6 +50,7 @@ bool Evaluator::set_members(Component& made, Node& node) {
     });
     if (!stored) good = false;
   }
+  if (node.damaged) return false;  // what it needs may be in the part that could not be read
   for (const Member& member : info.members) {
     const auto wrote = [&](const Label& label) { return label.text == member.name; };
     if (!member.required || std::any_of(node.labels.begin(), node.labels.end(), wrote)) continue;

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "component/words.h"
+
 namespace etendue::language {
 
 void Arguments::wrong_count() const {
@@ -24,11 +26,20 @@ void Arguments::fail(size_t i, const std::string& message) const {
   throw Error(message, i < values_.size() ? values_[i].location : at_);
 }
 
+void Arguments::too_large(size_t i, double x) const {
+  constexpr double most = double(std::numeric_limits<float>::max());
+  out_of_range(i, x, -most, most);
+}
+
+void Arguments::out_of_range(size_t i, double x, double low, double high) const {
+  fail(i, fmt::format("{}: argument {} must be from {:.6g} to {:.6g}, not {:.9g}", usage_, i + 1, low, high, x));
+}
+
 double Arguments::number(size_t i, Dimension dimension) const {
   const auto* n = as<Number>(i);
   const std::string expected = dimension == Dimension::none ? "a plain number" : "a " + std::string(name(dimension));
   if (!n || (n->dimension != Dimension::none && n->dimension != dimension)) wrong(i, expected);
-  if (std::abs(n->value) > double(std::numeric_limits<float>::max())) fail(i, "is too large");
+  if (std::abs(n->value) > double(std::numeric_limits<float>::max())) too_large(i, n->value);
   return n->value;
 }
 
@@ -57,7 +68,7 @@ Vector3 Arguments::vector(size_t i, Dimension dimension) const {
   if (!n || n->width != 1 || n->values.size() != 3 || (n->dimension != Dimension::none && n->dimension != dimension))
     wrong(i, expected);
   for (const double x : n->values)
-    if (std::abs(x) > double(std::numeric_limits<float>::max())) fail(i, "is too large");
+    if (std::abs(x) > double(std::numeric_limits<float>::max())) too_large(i, x);
   return {float(n->values[0]), float(n->values[1]), float(n->values[2])};
 }
 
@@ -86,7 +97,10 @@ Value call(const std::string& function, const std::vector<Value>& values, Locati
   std::vector<std::string> known;
   for (const auto& functions : {color_functions(), transform_functions(), math_functions()})
     for (const Function& f : functions) known.emplace_back(f.name);
-  throw Error(fmt::format("there is no function '{}'{}", function, suggestion(function, known)), at);
+  std::string meant = translation(function, foreign_functions());
+  if (meant.empty()) meant = suggestion(function, known);
+  if (meant.empty() && !(meant = translation(function, foreign_classes())).empty()) meant += ", which is a class";
+  throw Error(fmt::format("there is no function '{}'{}", function, meant), at);
 }
 
 }  // namespace etendue::language

@@ -28,6 +28,11 @@ class Arguments {
   /// Throws Error with any message at an argument.
   [[noreturn]] void fail(size_t i, const std::string& message) const;
 
+  /// For a number that the call does not take, in the unit of the message.
+  [[noreturn]] void out_of_range(size_t i, double x, double low, double high) const;
+  /// For one that is not a float.
+  [[noreturn]] void too_large(size_t i, double x) const;
+
   /// A number without or with this dimension, in base units. Any use as a float must fit one.
   double number(size_t i, Dimension = Dimension::none) const;
   /// An angle [rad]; a plain number is in degrees.

@@ -54,7 +54,7 @@ Value named(const Arguments& a, Color (*make)(const std::string&)) {
 std::vector<float> floats(const Arguments& a, size_t i, double scale) {
   std::vector<float> result;
   for (const double x : a.numbers(i).values) {
-    if (!(std::abs(x * scale) <= double(std::numeric_limits<float>::max()))) a.fail(i, "is too large");
+    if (!(std::abs(x * scale) <= double(std::numeric_limits<float>::max()))) a.too_large(i, x * scale);
     result.push_back(float(x * scale));
   }
   return result;

@@ -64,7 +64,7 @@ Value matrix(const Arguments& a) {
     m = list->values;
     if (m.size() != 12 && m.size() != 16) a.wrong(0, "a list of 12 or 16 plain numbers");
     for (const double x : m)
-      if (std::abs(x) > double(std::numeric_limits<float>::max())) a.fail(0, "is too large");
+      if (std::abs(x) > double(std::numeric_limits<float>::max())) a.too_large(0, x);
   } else {
     if (a.count() != 12 && a.count() != 16) a.wrong_count();
     for (size_t i = 0; i < a.count(); ++i) m.push_back(a.number(i));

@@ -12,6 +12,7 @@
 
 #include "etendue/language.h"
 #include "files/regular_file.h"
+#include "language/json.h"
 #include "language/source.h"
 
 namespace etendue {
@@ -120,13 +121,26 @@ std::optional<Excerpt> excerpt(const Location& at, Next next) {
   return found;
 }
 
-std::optional<Excerpt> excerpt(const Location& at) {
-  std::shared_ptr<const std::string> text;
-  {
-    const std::lock_guard lock(texts().mutex);
-    const auto found = texts().by_name.find(std::string_view(at.file));
-    if (found != texts().by_name.end()) text = found->second;
+std::shared_ptr<const std::string> remembered(const Location& at) {
+  const std::lock_guard lock(texts().mutex);
+  const auto found = texts().by_name.find(std::string_view(at.file));
+  return found == texts().by_name.end() ? nullptr : found->second;
+}
+
+/// The way through the objects and lists of a JSON text, with a colon behind it; else "".
+std::string path_in_json(const Location& at) {
+  if (!is_json(at.file)) return {};
+  try {
+    const auto text = remembered(at);
+    const std::string path = json_path(text ? *text : read_text_file(at.file, at), at);
+    return path.empty() ? path : path + ": ";
+  } catch (const Error&) {
+    return {};  // gone meanwhile
   }
+}
+
+std::optional<Excerpt> excerpt(const Location& at) {
+  const std::shared_ptr<const std::string> text = remembered(at);
   if (text) {
     size_t position = 0;
     return excerpt(at, [&] { return position < text->size() ? int(static_cast<unsigned char>((*text)[position++])) : -1; });
@@ -187,7 +201,7 @@ std::string show(const Error& error) {
   const Location& at = error.location;
   if (!at.known()) return error.what();
   if (at.line <= 0) return fmt::format("{}: {}", at.file, error.what());
-  std::string result = fmt::format("{}:{}:{}: {}", at.file, at.line, at.column, error.what());
+  std::string result = fmt::format("{}:{}:{}: {}{}", at.file, at.line, at.column, language::path_in_json(at), error.what());
   if (const auto found = language::excerpt(at)) {
     const std::string number = std::to_string(at.line);
     result += fmt::format("\n    {} | {}\n    {} | {}^", number, found->text, std::string(number.size(), ' '),

@@ -18,6 +18,7 @@ Value add(const Value&, const Value&, Location);
 Value subtract(const Value&, const Value&, Location);
 Value multiply(const Value&, const Value&, Location);
 Value divide(const Value&, const Value&, Location);
+Value power(const Value& base, const Value& exponent, Location);
 Value negate(const Value&, Location);
 /// A plain number or packed plain numbers in this unit.
 Value with_unit(Value, const Unit&, Location);
@@ -58,17 +59,26 @@ class Evaluator {
     Definition definition;
     State state = State::waiting;
     bool used = false;
-    int height = 0;  // of the tree of all that it is made of
+    bool replaced = false;  // by -D
+    bool pending = false;   // on the way from the name that is settled to what it needs first
+    int height = 0;         // of the tree of all that it is made of, where that remains: of components
     Value value;
   };
   // Bounds recursion here, and later wherever components are walked or destroyed.
   static constexpr int height_limit = 1000;
+  // Bounds what lists within lists hold, as each use of a name copies its list.
+  static constexpr size_t nested_limit = 1'000'000;
 
   std::optional<Value> value_of(Node&, const Context&);
   std::optional<Value> name(Node&, const Context&);
   std::optional<Value> named(Entry&, Location);
   void settle(Entry&);
+  void settle_with_all_it_needs(Entry&);
+  std::vector<Entry*> waiting_names(const Node&);
   std::optional<Value> list(Node&, const Context&);
+  std::optional<Value> json_text(Node&, const Context&);
+  std::optional<Value> json_numbers(Node&, const Member&);
+  void check_size(const Node&, const Value::List&) const;
   std::optional<Value> chain(Node&, const Context&);
   std::optional<Value> call_function(Node&, const Context&);
   std::optional<Value> component(Node&, const std::string& given_name);
@@ -94,6 +104,7 @@ class Evaluator {
   std::deque<Entry> entries_;
   std::unordered_map<std::string, Entry*> by_name_;
   std::vector<Entry*> active_;  // being evaluated, outermost first
+  bool circle_ = false;         // what is settled now is defined by itself
   std::unordered_map<const char*, std::string> folders_;
   std::deque<Source> replacements_;
   int depth_ = 0, reach_ = 0;  // nesting now, and the deepest within the definition being evaluated

@@ -27,11 +27,26 @@ Node Parser::sum() { return chain(NodeType::sum, '+', '-', &Parser::product); }
 Node Parser::product() { return chain(NodeType::product, '*', '/', &Parser::unary); }
 
 Node Parser::unary() {
-  if (!token_.is('-')) return postfix();
+  if (!token_.is('-')) return power();
   const Level level(*this, token_.at);
   Node node;
   node.type = NodeType::negation;
   node.at = take().at;
+  node.children.push_back(unary());
+  return node;
+}
+
+// Binds closer than a sign before it, and from the right: -2^2 is -(2^2), 2^3^2 is 2^(3^2), 2^-1 is a half.
+Node Parser::power() {
+  Node base = postfix();
+  if (!continues() || !token_.is('^')) return base;
+  const Level level(*this, token_.at);
+  Node node;
+  node.type = NodeType::power;
+  node.at = base.at;
+  node.labels.push_back({"^", token_.at});
+  node.children.push_back(std::move(base));
+  take();
   node.children.push_back(unary());
   return node;
 }
@@ -41,6 +56,11 @@ Node Parser::postfix() {
   const bool literal = token_.type == TokenType::number || token_.is('[') || token_.is('(');
   Node value = primary();
   if (!literal || token_.type != TokenType::name || token_.first_in_line) return value;
+  if (lexer_.followed_by(":") && !blocks_.empty() && open_.empty()) {
+    report(fmt::format("expected ',' or a new line before '{}'", token_.text), token_.at);
+    comma_told_ = true;
+    return value;
+  }
   Token unit = take();
   if (token_.is(':') || token_.is('=') || token_.is('{') || token_.is('('))
     fail(fmt::format("expected ',' or a new line before '{}'", unit.text), unit.at);
@@ -68,6 +88,8 @@ Node Parser::primary() {
     default: break;
   }
   if (token_.is('[')) return list();
+  // A bracket that closes too much follows from one that was lost before.
+  lost_ = lost_ || (wrong_ && (token_.is('}') || token_.is(']') || token_.is(')')));
   if (!token_.is('(')) unexpected("a value");
   const Level level(*this, token_.at);
   const Location opened = take().at;
@@ -85,6 +107,12 @@ Node Parser::named(const Token& name) {
   Node node;
   node.at = name.at;
   if (token_.is('{')) return component(name);
+  if (misses_brace(name.text)) return component_without_brace(name);
+  if (two_words(name)) {
+    node = component(name);
+    node.type = NodeType::bad;
+    return node;
+  }
   if (token_.is('(') && continues()) {
     const Level level(*this, token_.at);
     node.type = NodeType::call;
@@ -124,6 +152,7 @@ void Parser::items(Node& node, char close, const Location& opened) {
   const char opening = is_list ? '[' : '(';
   const Lines lines(*this, !is_list);
   open_ += opening;
+  bool whole = true;
   while (!token_.is(close)) {
     if (token_.type == TokenType::end) not_closed(opening, opened);
     node.children.push_back(expression());
@@ -132,11 +161,18 @@ void Parser::items(Node& node, char close, const Location& opened) {
     } else if (token_.type == TokenType::end) {
       not_closed(opening, opened);
     } else if (!token_.is(close) && !(is_list && token_.first_in_line)) {
-      unexpected(fmt::format("',' or '{}'", close));
+      bool item = token_.type == TokenType::name ? !lexer_.followed_by(":") : token_.type == TokenType::number;
+      if (token_.first_in_line) item = false;  // it is rather the ')' that is missing
+      lost_ = lost_ || !whole;
+      if (!item) unexpected(fmt::format("',' or '{}'", close));
+      // Goes on as if the comma were there; one is enough to be told of.
+      if (whole) report(fmt::format("expected ',' or '{}', not {}", close, token_.words()), token_.at);
+      whole = false;
     }
   }
   open_.pop_back();
   take();
+  if (!whole) node.type = NodeType::bad;
 }
 
 }  // namespace etendue::language

@@ -10,7 +10,7 @@ namespace {
 
 bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
-bool symbol(char c) { return c != 0 && std::string_view("{}[](),:;=+-*/").find(c) != std::string_view::npos; }
+bool symbol(char c) { return c != 0 && std::string_view("{}[](),:;=+-*/^").find(c) != std::string_view::npos; }
 
 }  // namespace
 
@@ -37,6 +37,7 @@ Lexer::Lexer(const Source& source, Diagnostics& diagnostics, size_t begin)
 }
 
 Location Lexer::location() {
+  if (!source_.columns.empty()) return {source_.name, source_.line, source_.columns[std::min(s_.position, text_.size())]};
   for (; s_.mark < s_.position; ++s_.mark)
     if ((static_cast<unsigned char>(text_[s_.mark]) & 0xC0) != 0x80) ++s_.mark_column;
   // The place may lie behind the last character, but never inside one.
@@ -91,10 +92,42 @@ Token Lexer::next() {
     const auto code = static_cast<unsigned char>(c);
     const std::string shown = code < 0x20 || code == 0x7F ? fmt::format("U+{:04X}", code)
                                                           : fmt::format("'{}'", text_.substr(begin, s_.position - begin));
-    diagnostics_.add(Error("unexpected character " + shown, token.at));
+    report("unexpected character " + shown, token.at);
     token.type = TokenType::bad;
   }
   return token;
+}
+
+size_t Lexer::after_blanks(size_t begin) const {
+  size_t i = begin;
+  for (; i < text_.size(); ++i) {
+    if (text_[i] == '#') {
+      i = std::min(text_.find('\n', i), text_.size() - 1);
+    } else if (text_[i] != ' ' && text_[i] != '\t' && text_[i] != '\r' && text_[i] != '\n') {
+      break;
+    }
+  }
+  return i;
+}
+
+bool Lexer::followed_by(std::string_view characters) const {
+  const size_t at = after_blanks(s_.position);
+  return at < text_.size() && characters.find(text_[at]) != std::string_view::npos;
+}
+
+bool Lexer::ends_line() const {
+  size_t at = s_.position;
+  while (at < text_.size() && (text_[at] == ' ' || text_[at] == '\t' || text_[at] == '\r')) ++at;
+  return at >= text_.size() || text_[at] == '\n' || text_[at] == '#';
+}
+
+std::string Lexer::following_member(int& closing) const {
+  size_t begin = after_blanks(s_.position);
+  for (closing = 0; begin < text_.size() && text_[begin] == '}'; ++closing) begin = after_blanks(begin + 1);
+  size_t end = begin;
+  while (end < text_.size() && (letter(text_[end]) || digit(text_[end]))) ++end;
+  const size_t behind = after_blanks(end);
+  return behind < text_.size() && text_[behind] == ':' ? text_.substr(begin, end - begin) : std::string();
 }
 
 void Lexer::read_number(Token& token) {
@@ -105,14 +138,14 @@ void Lexer::read_number(Token& token) {
   s_.position += size_t(end - begin);
   if (error == std::errc()) return;
   const std::string shown = token.text.size() <= 40 ? token.text : token.text.substr(0, 40) + "…";
-  diagnostics_.add(Error(fmt::format("the number {} is outside the range of double precision", shown), token.at));
+  report(fmt::format("the number {} is outside the range of double precision", shown), token.at);
   token.type = TokenType::bad;
 }
 
 void Lexer::read_string(Token& token) {
   token.type = TokenType::string;
   const auto bad = [&](const std::string& message, Location at) {
-    diagnostics_.add(Error(message, at));
+    report(message, at);
     token.type = TokenType::bad;
   };
   ++s_.position;

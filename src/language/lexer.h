@@ -39,6 +39,14 @@ class Lexer {
   Lexer(const Source&, Diagnostics&, size_t begin = 0);
 
   Token next();
+  /// Says nothing of bad tokens while this is true: where the parser is lost, they follow from what made it so.
+  void set_quiet(const bool* quiet) { quiet_ = quiet; }
+  /// Whether what follows the last token, blanks and comments aside, is one of these characters.
+  bool followed_by(std::string_view characters) const;
+  /// Whether nothing but blanks and comments stands behind the last token in its line.
+  bool ends_line() const;
+  /// The name that follows the last token and any '}' behind it, which are counted, if a ':' stands behind the name; else "".
+  std::string following_member(int& closing) const;
 
   /// Right after a '[': reads a list of plain numbers, or of rows of 2 to 4 plain numbers each, to its ']' into packed
   /// form. When the list holds anything else nothing is read. Lists of millions of numbers take this way.
@@ -54,9 +62,13 @@ class Lexer {
   };
 
   char peek(size_t ahead = 0) const { return s_.position + ahead < text_.size() ? text_[s_.position + ahead] : '\0'; }
+  size_t after_blanks(size_t begin) const;
   bool at_end() const { return s_.position >= text_.size(); }
   void skip_blanks();
   Location location();
+  void report(const std::string& message, Location at) const {
+    if (!quiet_ || !*quiet_) diagnostics_.add(Error(message, at));
+  }
   void read_string(Token&);
   void read_number(Token&);
   bool skip_separator();
@@ -66,6 +78,7 @@ class Lexer {
   const std::string& text_;
   Diagnostics& diagnostics_;
   State s_;
+  const bool* quiet_ = nullptr;
 };
 
 }  // namespace etendue::language

@@ -7,6 +7,7 @@
 
 #include "etendue/job.h"
 #include "files/input_files.h"
+#include "language/json.h"
 
 namespace etendue::language {
 
@@ -18,6 +19,14 @@ std::string canonical(const std::string& path) {
   std::error_code error;
   const auto found = std::filesystem::weakly_canonical(path, error);
   return error ? path : found.string();
+}
+
+/// Where a carriage return stands without the line feed that it belongs to: the rest of the line, or of the whole file, would
+/// count as part of a comment.
+std::optional<size_t> lone_carriage_return(const std::string& text) {
+  for (size_t at = text.find('\r'); at != std::string::npos; at = text.find('\r', at + 1))
+    if (at + 1 == text.size() || text[at + 1] != '\n') return at;
+  return std::nullopt;
 }
 
 Location start_of(const std::string& path) { return {intern(path), 0, 0}; }
@@ -82,13 +91,23 @@ void Loader::add(Source source) {
     if (first == 0 && before.starts_with("\xEF\xBB\xBF")) first = 3;
     const int column = 1 + int(std::count_if(before.begin() + long(first), before.end(), begins_character));
     const auto byte = static_cast<unsigned char>(source.text[*wrong]);
-    diagnostics_.add(Error(fmt::format("the text is not valid UTF-8: byte 0x{:02X}", byte), {source.name, line, column}));
+    const bool wide = source.text.starts_with("\xFF\xFE") || source.text.starts_with("\xFE\xFF");
+    diagnostics_.add(
+        Error(fmt::format("the text is not valid UTF-8: byte 0x{:02X}{}", byte, wide ? "; it seems to be UTF-16" : ""),
+              {source.name, line, column}));
+    whole_ = false;
+    return;
+  }
+  if (const auto lone = lone_carriage_return(source.text)) {
+    const int line = 1 + int(std::count(source.text.begin(), source.text.begin() + long(*lone), '\n'));
+    diagnostics_.add(
+        Error("a line ends with a carriage return alone: lines end with a line feed, or with both", {source.name, line, 1}));
     whole_ = false;
     return;
   }
   const std::string folder = source.folder;
   evaluator_.set_folder(source.name, folder);
-  Document document = parse_document(source, diagnostics_);
+  Document document = is_json(source.name) ? parse_json(source, diagnostics_) : parse_document(source, diagnostics_);
   source.text = {};  // may be as large as all that was made of it
   whole_ = whole_ && document.whole;
   for (const Label& plugin : document.plugins) open_plugin(plugin, folder);

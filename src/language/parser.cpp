@@ -9,7 +9,9 @@
 namespace etendue::language {
 
 Parser::Parser(const Source& source, Diagnostics& diagnostics, size_t begin)
-    : diagnostics_(diagnostics), lexer_(source, diagnostics, begin), token_(lexer_.next()) {}
+    : diagnostics_(diagnostics), lexer_(source, diagnostics, begin), token_(lexer_.next()) {
+  lexer_.set_quiet(&lost_);
+}
 
 Token Parser::take() {
   Token taken = std::move(token_);
@@ -17,18 +19,34 @@ Token Parser::take() {
   return taken;
 }
 
+void Parser::report(const std::string& message, const Location& at) {
+  if (!lost_) diagnostics_.add(Error(message, at));
+  lost_ = wrong_ = true;
+}
+
 void Parser::fail(const std::string& message, const Location& at) {
-  diagnostics_.add(Error(message, at));
+  report(message, at);
   throw Failed{};
 }
 
 void Parser::unexpected(const std::string& expected) {
-  if (token_.type == TokenType::bad) throw Failed{};
+  if (token_.type == TokenType::bad) {
+    lost_ = wrong_ = true;
+    throw Failed{};
+  }
   fail(fmt::format("expected {}, not {}", expected, token_.words()), token_.at);
 }
 
+// Where something else was wrong before, a bracket may well have been lost with it.
 void Parser::not_closed(char bracket, const Location& opened) {
-  diagnostics_.add(Error(fmt::format("'{}' is never closed", bracket), opened));
+  if (!wrong_ && stranger_ && bracket == '{')
+    diagnostics_.add(
+        Error(fmt::format("a '}}' is missing before '{}': {}, whose '{{' is at {}, has no such member, but {} has",
+                          stranger_->member, stranger_->inner, place(stranger_->inner_opened, stranger_->at), stranger_->outer),
+              stranger_->at));
+  else if (!wrong_)
+    diagnostics_.add(Error(fmt::format("'{}' is never closed", bracket), opened));
+  wrong_ = true;
   throw Abandoned{};
 }
 
@@ -70,11 +88,16 @@ Document Parser::document() {
       }
       const Location begin = token_.at;
       try {
+        const size_t before = document.definitions.size();
         statement(document);
+        const bool separated = token_.is(';') || token_.first_in_line || token_.type == TokenType::end;
+        // What goes on in its line was hardly meant as it was read.
+        if (!separated && document.definitions.size() > before) document.definitions.back().value.type = NodeType::bad;
         if (!token_.is(';')) require_separator("a new line or ';' after the statement");
       } catch (const Failed&) {
         if (token_.at == begin) take();  // never stand still
         recover(false);
+        blocks_.clear();
       }
     }
   } catch (const Abandoned&) {
@@ -85,17 +108,25 @@ Document Parser::document() {
 
 void Parser::statement(Document& document) {
   static constexpr const char* known = "a statement (name = value, param, include, plugin or a component)";
+  if (token_.is('}')) fail("this '}' closes nothing: there is one too many, or a '{' is missing", token_.at);
   if (token_.type != TokenType::name) unexpected(known);
+  if (lexer_.followed_by(":")) return go_on_with_last(document);
   Token name = take();
   if (token_.is('=')) return definition(document, std::move(name), false);
-  if (token_.is('{')) {
-    document.components.push_back(component(name));
+  if (token_.is('{') || misses_brace(name.text)) {
+    lost_ = lost_ && !token_.is('{');
+    document.components.push_back(token_.is('{') ? component(name) : component_without_brace(name));
     return;
   }
   if (name.text == "param") {
     if (token_.type != TokenType::name) unexpected("the name of the param");
     Token parameter = take();
-    if (!token_.is('=')) unexpected("'=' and the default of the param");
+    if (!token_.is('=')) {
+      // Its uses are right all the same.
+      document.definitions.push_back({{parameter.text, parameter.at}, true, {}});
+      document.definitions.back().value.type = NodeType::bad;
+      unexpected("'=' and the default of the param");
+    }
     return definition(document, std::move(parameter), true);
   }
   if (name.text == "include") {
@@ -117,6 +148,7 @@ void Parser::statement(Document& document) {
 
 void Parser::definition(Document& document, Token name, bool parameter) {
   take();  // '='
+  lost_ = false;
   Definition made{{name.text, name.at}, parameter, {}};
   for (const char* reserved : {"true", "false", "none", "pi"})
     if (name.text == reserved) {
@@ -141,6 +173,24 @@ Label Parser::path_statement(const char* what) {
   return {path.text, path.at};
 }
 
+// A member outside of any block: most likely the block ended too early, by a '}' too many. It is gone on with.
+void Parser::go_on_with_last(Document& document) {
+  Node* last = nullptr;
+  for (Node& node : document.components) last = !last || last->at.line < node.at.line ? &node : last;
+  for (Definition& definition : document.definitions)
+    if (definition.value.type == NodeType::component && (!last || last->at.line < definition.value.at.line))
+      last = &definition.value;
+  if (!last || !last_close_.known()) unexpected("'=' or '{' after '" + take().text + "'");
+  report(fmt::format("a '}}' too many: here {} ends, but '{}' follows at {}", last->text, token_.text,
+                     place(token_.at, last_close_)),
+         last_close_);
+  last->damaged = true;
+  Node rest;
+  rest.text = last->text;
+  const Lines lines(*this, false);
+  members(rest, token_.at);
+}
+
 // At the '{'.
 Node Parser::component(const Token& class_name) {
   const Location opened = token_.at;
@@ -151,46 +201,99 @@ Node Parser::component(const Token& class_name) {
   node.type = NodeType::component;
   node.at = class_name.at;
   node.text = class_name.text;
-  std::unordered_map<std::string, Location> seen;
   take();
+  members(node, opened);
+  open_ = std::move(outside);
+  return node;
+}
+
+// Behind the '{', to the '}'.
+void Parser::members(Node& node, const Location& opened) {
+  Seen seen;
+  blocks_.push_back({node.text, opened});
+  const size_t level = blocks_.size();
   while (!token_.is('}')) {
     if (token_.type == TokenType::end) not_closed('{', opened);
     const Location begin = token_.at;
     try {
       member(node, seen);
     } catch (const Failed&) {
+      blocks_.resize(level);
+      node.damaged = true;
       if (token_.at == begin) take();  // never stand still
       recover(true);
       if (token_.is(',') || token_.is(';')) take();
     }
   }
-  take();
-  open_ = std::move(outside);
-  return node;
+  last_close_ = take().at;
+  blocks_.pop_back();
 }
 
-void Parser::member(Node& component, std::unordered_map<std::string, Location>& seen) {
+void Parser::member(Node& component, Seen& seen) {
+  if (misses_bracket(component)) throw Failed{};
   if (token_.type != TokenType::name) unexpected("a member name or '}'");
   const Token name = take();
+  if (!token_.is(':')) {
+    // What it is to be is not known, but it counts as written.
+    if (seen.emplace(name.text, name.at).second) {
+      component.labels.push_back({name.text, name.at});
+      component.children.emplace_back().type = NodeType::bad;
+    }
+    unexpected(fmt::format("':' after the member name '{}'", name.text));
+  }
+  lost_ = comma_told_ = false;
+  take();
+  note_stranger(name);
   const auto [first, fresh] = seen.emplace(name.text, name.at);
   if (!fresh)
     diagnostics_.add(Error(fmt::format("'{}' is already set at {}", name.text, place(first->second, name.at)), name.at));
   Node value;
   value.type = NodeType::bad;
-  size_t index = component.children.size();
-  if (fresh) {  // counts as written even when its value cannot be read
-    component.labels.push_back({name.text, name.at});
-    component.children.push_back(std::move(value));
+  const size_t index = component.children.size();
+  component.labels.push_back({name.text, name.at});
+  component.children.push_back(std::move(value));
+  bool good = false;
+  const auto leave = [&] {
+    if (fresh) return;
+    component.labels.pop_back();
+    component.children.pop_back();
+  };
+  try {
+    good = member_value(component, index);
+  } catch (const Failed&) {
+    leave();
+    throw;
   }
-  if (!token_.is(':')) unexpected(fmt::format("':' after the member name '{}'", name.text));
-  take();
-  value = expression();
-  if (fresh) component.children[index] = std::move(value);
+  if (!good) component.children[index] = {}, component.children[index].type = NodeType::bad;
+  leave();
+}
+
+// The value of a member, which counts as written even when it cannot be read, and what separates it from the next. False: it
+// was read, but hardly as it was meant.
+bool Parser::member_value(Node& component, size_t index) {
+  Node value = expression();
+  component.children[index] = std::move(value);
   if (token_.is(',')) {
     take();
-  } else if (!token_.is('}')) {
-    require_separator("',' or a new line before the next member");
+  } else if (token_.is(']') || token_.is(')')) {
+    report(fmt::format("this '{}' closes nothing: is a '{}' missing before the value of '{}'?", token_.symbol,
+                       token_.is(']') ? '[' : '(', component.labels[index].text),
+           token_.at);
+    component.damaged = true;
+    skip_stray_bracket();
+    return false;
+  } else if (!token_.is('}') && !token_.first_in_line && token_.type != TokenType::end) {
+    component.damaged = true;
+    if (token_.type != TokenType::name || !lexer_.followed_by(":")) {
+      component.children[index] = {};
+      component.children[index].type = NodeType::bad;
+      require_separator("',' or a new line before the next member");
+    }
+    // The next member can be read as if the comma were there.
+    if (!comma_told_)
+      report(fmt::format("expected ',' or a new line before the next member, not {}", token_.words()), token_.at);
   }
+  return true;
 }
 
 Node Parser::lone_expression() {

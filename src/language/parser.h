@@ -1,6 +1,7 @@
 #pragma once
 // Tokens into statements and expressions, by recursive descent with one token of look-ahead.
 
+#include <memory>
 #include <unordered_map>
 
 #include "language/lexer.h"
@@ -26,12 +27,25 @@ class Parser {
 
   // parser.cpp: statements and blocks
   void statement(Document&);
+  void go_on_with_last(Document&);
   void definition(Document&, Token name, bool parameter);
   Label path_statement(const char* what);
+  using Seen = std::unordered_map<std::string, Location>;
   Node component(const Token& class_name);
-  void member(Node& component, std::unordered_map<std::string, Location>& seen);
+  void members(Node& component, const Location& opened);
+  void member(Node& component, Seen& seen);
+  bool member_value(Node& component, size_t index);
   void recover(bool in_block);
   void require_separator(const char* what);
+
+  // repair.cpp: what was probably meant where something is missing
+  bool misses_brace(const std::string& class_name);
+  bool misses_both_braces_but_one(const std::string& class_name);
+  bool two_words(const Token& class_name);
+  Node component_without_brace(const Token& class_name);
+  bool misses_bracket(Node& component);
+  void skip_stray_bracket();
+  void note_stranger(const Token& member);
 
   // expressions.cpp
   Node expression() { return sum(); }
@@ -39,6 +53,7 @@ class Parser {
   Node sum();
   Node product();
   Node unary();
+  Node power();
   Node postfix();
   Node primary();
   Node named(const Token&);
@@ -46,6 +61,8 @@ class Parser {
   void items(Node&, char close, const Location& opened);
 
   Token take();
+  /// Reports a syntax error, unless it only follows from another: nothing has made sense since.
+  void report(const std::string& message, const Location&);
   [[noreturn]] void fail(const std::string& message, const Location&);
   /// "expected …, not '…'" at the current token, or nothing more when the lexer has already complained of it.
   [[noreturn]] void unexpected(const std::string& expected);
@@ -66,6 +83,22 @@ class Parser {
   bool bracketed_ = false;
   std::string open_;  // '[' and '(' that are open in the innermost block, for going on after an error
 
+  bool lost_ = false;        // after an error, until something makes sense again
+  bool wrong_ = false;       // there was an error
+  bool comma_told_ = false;  // that a comma is missing here was reported
+  struct Block {
+    std::string class_name;
+    Location opened;
+  };
+  std::vector<Block> blocks_;  // that are open, outermost first
+  /// The first member that its block's class does not have, but one further out does: where a '}' may be missing.
+  struct Stranger {
+    std::string member, inner, outer;
+    Location at, inner_opened;
+  };
+  std::unique_ptr<Stranger> stranger_;
+  Location last_close_;  // of the last '}' that ended a block
+
   friend class Level;
 };
 
@@ -73,6 +106,7 @@ class Parser::Level {
  public:
   Level(Parser& parser, const Location& at) : parser_(parser) {
     if (parser_.depth_ >= depth_limit) {
+      parser_.wrong_ = true;
       parser_.diagnostics_.add(Error("too deeply nested: more than 256 levels of brackets", at));
       throw Abandoned{};
     }

@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "component/words.h"
 #include "etendue/language.h"
 #include "etendue/registry.h"
 #include "language/evaluator.h"
@@ -58,9 +59,7 @@ class Path {
 const Member& find_member(const Component& component, const Step& step) {
   const ClassInfo& info = component.class_info();
   if (const Member* member = info.find(step.name)) return *member;
-  std::vector<std::string> known;
-  for (const Member& m : info.members) known.push_back(m.name);
-  Path::fail(fmt::format("{} has no member '{}'{}", info.name, step.name, suggestion(step.name, known)), step.at);
+  Path::fail(no_member(info, step.name), step.at);
 }
 
 void check_place(const std::string& name, size_t count, size_t place, Location at) {
@@ -119,6 +118,11 @@ Value replaced(Value whole, const Value& entry, size_t place, const Step& step, 
   return whole;
 }
 
+std::string trimmed(const std::string& text) {
+  const size_t begin = text.find_first_not_of(" \t\r\n"), end = text.find_last_not_of(" \t\r\n");
+  return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
+}
+
 Value read_expression(const std::string& path, const std::string& expression, const char* source, const Member& member,
                       bool entry) {
   const Location at{source, 1, int(path.size()) + 2};
@@ -129,6 +133,16 @@ Value read_expression(const std::string& path, const std::string& expression, co
   if (text && begin != '"' && !(member.list && !entry && begin == '[')) return Value(expression, at);
   Diagnostics diagnostics;
   language::Evaluator evaluator(diagnostics, true);
+  // A class alone stands for one of it with its defaults: on a command line braces need quotes.
+  if (const std::string word = trimmed(expression);
+      member.kind == Kind::component && language::is_name(word) && word != "none") {
+    try {
+      Value made(Registry::instance().create(word), at);
+      return member.list && !entry ? Value(Value::List{made}, at) : made;
+    } catch (const Error& e) {
+      throw Error(e.what(), at);
+    }
+  }
   const language::Source whole{source, {}, path + "=" + expression};
   if (language::invalid_utf8(whole.text)) throw Error("the text is not valid UTF-8", at);
   const auto node = language::parse_expression(whole, diagnostics, path.size() + 1);

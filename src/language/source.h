@@ -14,6 +14,9 @@ struct Source {
   const char* name = "";  ///< interned; what messages call it
   std::string folder;     ///< that relative paths in it start from
   std::string text;
+  /// For an expression within another text: its line there, and the column of each byte and of the end. Else none.
+  int line = 0;
+  std::vector<int> columns = {};
 };
 
 /// Thrown when the limit of errors is reached.

@@ -24,7 +24,9 @@ enum class NodeType : std::uint8_t {
   negation,
   sum,
   product,
-  bad  ///< could not be read; reported already
+  power,
+  json_text,  ///< a string of JSON: a text or an expression, as its member has it
+  bad         ///< could not be read; reported already
 };
 
 /// A name and its place: of a member, of a unit, of an operator.
@@ -37,6 +39,8 @@ struct Node {
   NodeType type = NodeType::none;
   Location at;
   std::string text;                  ///< string, name, function or class
+  bool json = false;                 ///< a list or object of JSON
+  bool damaged = false;              ///< a component some of whose members could not be read
   double number = 0;                 ///< number, boolean
   std::unique_ptr<Numbers> numbers;  ///< a packed list
   std::vector<Node> children;        ///< items, arguments, member values, operands

@@ -124,31 +124,29 @@ std::string Writer::component(const Component& c, int indent, int column) {
   return result.append(size_t(indent), ' ') + "}";
 }
 
-// A class such as a constant map is written as its value alone, if that reads back as the same.
-bool Writer::literal(const Component& c, const Member* member, std::string& text, int indent, int column) {
+const Member* Writer::literal(const Component& c, const Member* member) const {
   const ClassInfo& info = c.class_info();
-  if (info.literal.empty() || !member) return false;
+  if (info.literal.empty() || !member) return nullptr;
   for (const Member& other : info.members)
-    if (other.name != info.literal && (all_ || !equal(other.get(c, other), other.default_value))) return false;
+    if (other.name != info.literal && (all_ || !equal(other.get(c, other), other.default_value))) return nullptr;
   const Member& only = *info.find(info.literal);
   const Value v = only.get(c, only);
-  if (v.none() || v.as<Ref<Component>>() || v.as<Value::List>()) return false;
+  if (v.none() || v.as<Ref<Component>>() || v.as<Value::List>()) return nullptr;
   try {
     const Ref<Component> read = detail::to_component(v, *member);
     if (!read || &read->class_info() != &info || !equal(read->class_info().find(info.literal)->get(*read, only), v))
-      return false;
+      return nullptr;
   } catch (const Error&) {
-    return false;
+    return nullptr;
   }
-  text = value(v, &only, indent, column);
-  return true;
+  return &only;
 }
 
 std::string Writer::part(const Component& c, const Member* member, int indent, int column) {
   const auto known = parts_.find(&c);
   if (known != parts_.end() && !known->second.name.empty()) return known->second.name;
-  std::string text;
-  return literal(c, member, text, indent, column) ? text : component(c, indent, column);
+  const Member* only = literal(c, member);
+  return only ? value(only->get(c, *only), only, indent, column) : component(c, indent, column);
 }
 
 std::string Writer::value(const Value& v, const Member* member, int indent, int column) {

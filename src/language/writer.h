@@ -27,7 +27,7 @@ class Writer {
   /// A value as it is written behind `column` characters in a line; further lines are indented by `indent` at least.
   std::string value(const Value&, const Member*, int indent, int column);
 
- private:
+ protected:
   struct Part {
     int uses = 0;
     std::string name;  // empty: written where it is used
@@ -38,7 +38,8 @@ class Writer {
   void choose_names();
   std::string component(const Component&, int indent, int column);
   std::string part(const Component&, const Member*, int indent, int column);
-  bool literal(const Component&, const Member*, std::string& text, int indent, int column);
+  /// The member that stands for a component such as a constant map, if its value alone reads back as the same; else null.
+  const Member* literal(const Component&, const Member*) const;
   std::string numbers(const Numbers&, const Member*, int indent, int column) const;
   std::string unit_suffix(Dimension, const Member*, double& factor) const;
 

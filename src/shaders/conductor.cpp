@@ -1,5 +1,7 @@
 // Conductor: a metal, polished or rough.
 
+#include <fmt/format.h>
+
 #include "etendue/color.h"
 #include "etendue/medium_stack.h"
 #include "etendue/scatter_model.h"
@@ -141,9 +143,11 @@ class Conductor final : public Shader {
     const Color k = ior->imaginary();
     for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
       const float real = ior->at(lambda, ColorUse::coefficient), imaginary = k ? k->at(lambda, ColorUse::coefficient) : 0;
-      if (!(real > 0 && real < 100) || !(imaginary >= 0 && imaginary < 100))
-        fail("ior", "the parts of an index of refraction lie between 0 and 100, and these are " + std::to_string(real) +
-                        " and " + std::to_string(imaginary) + " at " + std::to_string(int(lambda)) + " nm");
+      const bool n_good = real > 0 && real < 100, k_good = imaginary >= 0 && imaginary < 100;
+      if (n_good && k_good) continue;
+      const std::string n_wrong = fmt::format("n must be more than 0 and less than 100, and is {:.6g}", real),
+                        k_wrong = fmt::format("k must be at least 0 and less than 100, and is {:.6g}", imaginary);
+      fail("ior", fmt::format("{} at {:.0f} nm", n_good ? k_wrong : k_good ? n_wrong : n_wrong + "; " + k_wrong, lambda));
     }
     require_reflectance(*this, "color", color);
     require_roughness(*this, roughness, roughness_y);

@@ -112,7 +112,7 @@ class MixShader final : public Shader {
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     const float a = scalar_at(*amount, p);
-    if (a <= 0) return first->bind(p, w, arena);
+    if (a <= 0 || first == second) return first->bind(p, w, arena);
     if (a >= 1) return second->bind(p, w, arena);
     const Scatter* one = first->bind(p, w, arena);
     const Scatter* two = second->bind(p, w, arena);

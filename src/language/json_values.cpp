@@ -1,0 +1,70 @@
+// What strings and lists of numbers of JSON stand for, as the member has it that they are of.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "etendue/color.h"
+#include "language/evaluator.h"
+#include "language/json.h"
+
+namespace etendue::language {
+
+namespace {
+
+/// Whether a colour may stand for the member: it is one, or a component that a colour makes.
+bool takes_color(const Member& member) {
+  if (member.kind == Kind::color) return true;
+  const ClassInfo* wanted = member.kind == Kind::component ? Registry::instance().find(member.component_class) : nullptr;
+  if (!wanted) return false;
+  for (const ClassInfo* info : Registry::instance().subclasses(*wanted)) {
+    if (info->literal.empty()) continue;
+    return info->find(info->literal)->kind == Kind::color;
+  }
+  return false;
+}
+
+}  // namespace
+
+// A text where the member is one, else an expression.
+std::optional<Value> Evaluator::json_text(Node& node, const Context& context) {
+  const Member* member = context.member;
+  bool text = member && (member->kind == Kind::string || member->kind == Kind::file);
+  if (member && member->kind == Kind::choice) {
+    const auto& choices = member->choices;
+    text = std::find(choices.begin(), choices.end(), node.text) != choices.end() || !find(node.text);
+  }
+  if (text) {
+    Value value(node.text, node.at);
+    value.folder = folders_[node.at.file];
+    return value;
+  }
+  const std::unique_ptr<Node> expression = parse_json_string(node, diagnostics_);
+  return expression ? evaluate(*expression, context) : std::nullopt;
+}
+
+// Three numbers are linear sRGB where a colour is expected, and twelve or sixteen a matrix where a transform is.
+std::optional<Value> Evaluator::json_numbers(Node& node, const Member& member) {
+  const Numbers& numbers = *node.numbers;
+  const auto color = [&](size_t i) {
+    return rgb_color("srgb", numbers.values[i], numbers.values[i + 1], numbers.values[i + 2]);
+  };
+  if (takes_color(member) && !member.list && numbers.width == 1 && numbers.values.size() == 3)
+    return reporting(node.at, [&] { return Value(color(0), node.at); });
+  if (takes_color(member) && member.list && numbers.width == 3)
+    return reporting(node.at, [&] {
+      Value::List colors;
+      for (size_t i = 0; i < numbers.values.size(); i += 3) colors.emplace_back(color(i), node.at);
+      return Value(std::move(colors), node.at);
+    });
+  if (member.kind == Kind::transform)
+    return reporting(node.at, [&] {
+      Value flat(Numbers{numbers.values, 1, Dimension::none}, node.at);
+      Value value = call("matrix", {std::move(flat)}, node.at, allow_files_);
+      value.location = node.at;
+      return value;
+    });
+  return Value(std::move(*node.numbers), node.at);
+}
+
+}  // namespace etendue::language
