@@ -183,7 +183,8 @@ TEST(Table, LinearBetweenZeroOutside) {
 TEST(Table, FineLinesKeepTheirPower) {
   // A triangle of height 10 and half width 0.2 nm between two entries of the 1 nm table: area 2 nm.
   const Color line = table_spectrum({550.2f, 550.4f, 550.6f}, {0, 10, 0});
-  EXPECT_NEAR(line->at(550.3f, ColorUse::radiance), 5, 0.01f);  // a float's 550.3 is no better
+  EXPECT_NEAR(line->at(550.3f, ColorUse::coefficient), 5, 0.01f);  // a float's 550.3 is no better
+  EXPECT_NEAR(line->at(550, ColorUse::radiance), 2 * 0.6, 1e-3f);  // as light it is seen through a slit of 2 nm
   EXPECT_NEAR(light_color(line).y, 2 * observer(550.4f).y / observer_y_integral(), 2e-6);
 }
 

@@ -7,6 +7,27 @@
 
 namespace etendue {
 
+/// Whether light gets through a surface that stands for a sheet: a thin pane, thin paper.
+inline bool is_sheet(const Shader& shader) {
+  constexpr Lobes through_a_sheet = pass_through | diffuse_transmission;
+  return !shader.transmits() && !shader.moves_exit() && (shader.possible_lobes() & through_a_sheet);
+}
+
+/// Whether paths that go through the surface of an object enter or leave its inside: it has one, and its shader lets light in.
+/// A sheet bounds nothing of itself, and the medium that an object names as its
+/// interior all the same: a balloon full of smoke.
+inline bool enterable(const SceneObject& object) {
+  if (!object.shader || !object.closed()) return false;
+  return object.shader->transmits() || (object.interior && is_sheet(*object.shader));
+}
+
+/// Whether the index of what is inside differs from that around: light that only goes straight on, or through a sheet, does
+/// not change its way, so what it comes to has the index of what it left.
+inline bool has_own_index(const SceneObject& object) {
+  constexpr Lobes turned = transmission_lobes & ~pass_through;
+  return object.shader && object.shader->transmits() && (object.shader->possible_lobes() & turned);
+}
+
 /// A small set of objects, each entered some number of times. The effective medium is that of the highest priority; of
 /// equal ones, that entered last. More than `capacity` objects at one point: the deepest are forgotten.
 class MediumStack {
@@ -14,24 +35,25 @@ class MediumStack {
   static constexpr int capacity = 12;
 
   /// Null: the outside of everything.
-  const SceneObject* current() const { return top_excluding(nullptr); }
+  const SceneObject* current() const { return top_excluding(nullptr, false); }
 
   /// Whether a surface of the object matters here: it does not when the path is inside something of higher priority.
   bool visible(const SceneObject& object) const {
-    const SceneObject* top = top_excluding(&object);
+    const SceneObject* top = top_excluding(&object, false);
     return top == nullptr || object.priority >= top->priority;
   }
 
-  /// The medium on the other side of the object's boundary: what would be current without it. Where the path is about to
-  /// leave the object, what it enters or leaves in the same place counts as well.
+  /// What gives the index on the other side of the object's boundary: what would be current without it, leaving out what has
+  /// no index of its own. Where the path is about to leave the object, what it enters or leaves in the same place counts as
+  /// well.
   const SceneObject* outside_of(const SceneObject& object) const {
     // Between two bricks of one kind (one object in two scenes) there is no boundary.
     for (int i = 0; i < others_; ++i)
-      if (other_[i].object == &object) return &object;
-    if (others_ == 0 || !inside(object)) return top_excluding(&object);
+      if (other_[i].object == &object && has_own_index(object)) return &object;
+    if (others_ == 0 || !inside(object)) return top_excluding(&object, true);
     MediumStack beyond = *this;
     beyond.cross_others();
-    return beyond.top_excluding(&object);
+    return beyond.top_excluding(&object, true);
   }
 
   /// Boundaries that lie in the same place as the one the path has come to, in the direction it travels in: they are crossed
@@ -73,10 +95,12 @@ class MediumStack {
   }
 
  private:
-  const SceneObject* top_excluding(const SceneObject* skip) const {
+  const SceneObject* top_excluding(const SceneObject* skip, bool with_index) const {
     const SceneObject* top = nullptr;
     for (int i = 0; i < size_; ++i)
-      if (inside_[i] != skip && (top == nullptr || inside_[i]->priority >= top->priority)) top = inside_[i];
+      if (inside_[i] != skip && (top == nullptr || inside_[i]->priority >= top->priority) &&
+          (!with_index || has_own_index(*inside_[i])))
+        top = inside_[i];
     return top;
   }
 

@@ -22,6 +22,10 @@ class ObjectMap : public Component {
   /// The map's only colour when it is the same everywhere, else null: for what is computed once, before rendering.
   virtual Color constant() const { return nullptr; }
 
+  /// The largest number it was given as a whole (an image's texels; a constant's colour is asked itself). What is more than 1
+  /// shaders cut where they need a reflectance. 0: not known, or within.
+  virtual float largest() const { return 0; }
+
   Spectrum reflectance(const SurfacePoint& p, const Wavelengths& w) const { return color(p, w, ColorUse::reflectance); }
 };
 

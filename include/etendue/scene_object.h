@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "etendue/component.h"
 #include "etendue/description.h"
@@ -55,6 +57,13 @@ struct TriangleView {
 /// they are prepared, so that no names are compared while rendering.
 int attribute_number(const std::string& name);
 
+/// What is told to a user about an object, beside what its members say.
+struct ObjectNotes {
+  bool without_uv = false;              ///< of a mesh: it has no surface coordinates, so each triangle has its own
+  std::vector<std::string> attributes;  ///< names of what its vertices have for AttributeMap
+  std::vector<std::string> materials;   ///< names of materials that its file uses, and that are not read
+};
+
 class SceneObject : public Component {
  public:
   using Interface = SceneObject;
@@ -65,7 +74,7 @@ class SceneObject : public Component {
   Ref<Shader> shader;            ///< null: black
   Ref<EmissionShader> emission;  ///< null: no luminaire
   Ref<VolumeShader> interior;    ///< null: vacuum inside
-  Sides sides = Sides::both;     ///< which sides scatter light; the other absorbs it
+  Sides sides = Sides::both;     ///< which sides scatter light; the other lets what goes straight on pass, and absorbs the rest
   int priority = 0;              ///< where objects overlap, the one of highest priority fills the space
   ShadingNormals shading_normals = ShadingNormals::folded;  ///< what becomes of light they would send through the surface
 
@@ -130,6 +139,10 @@ class SceneObject : public Component {
   /// Up to four numbers at a point of this object, such as a mesh's colour there. `number` is attribute_number of their name.
   /// Returns how many; 0: the object has none by this name.
   virtual int attribute(int /*number*/, const SurfacePoint&, float* /*values*/) const { return 0; }
+
+  virtual ObjectNotes notes() const { return {}; }
+  /// Of a mesh: how many edges belong to one triangle alone, where its surface ends. Takes time.
+  virtual std::uint64_t open_edges() const { return 0; }
 
   /// The object the user wrote, when this one stands for it: in one of several places, or with another shader.
   virtual const SceneObject& original() const { return *this; }

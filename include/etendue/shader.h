@@ -163,9 +163,9 @@ class Scatter {
  private:
   template <class Model>
   friend class ScatterAnswers;
-  /// What an object of which one side absorbs leaves of its shader's lobes.
+  /// What an object of which one side absorbs leaves of its shader's lobes: what goes straight on meets no matter.
   static Lobes let_through(const SurfacePoint& p) {
-    return p.object && p.object->sides != Sides::both ? reflection_lobes : all_lobes;
+    return p.object && p.object->sides != Sides::both ? Lobes(reflection_lobes | pass_through) : all_lobes;
   }
   static Normals normals_of(const SurfacePoint& p, const Frame& frame) {
     if (frame.n == p.normal) return Normals::same;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <string>
+#include <vector>
 
 #include "etendue/ref.h"
 #include "etendue/spectrum.h"
@@ -31,6 +32,12 @@ class SpectralFunction {
   /// Of a complex refractive index n + i k (a metal's), whose values are n: k. Null for everything real.
   virtual Ref<const SpectralFunction> imaginary() const { return nullptr; }
 
+  /// Wavelengths [nm] other than whole ones where it has corners or steps. Between these and the whole ones its values are
+  /// linear, or smooth.
+  virtual std::vector<float> corners() const { return {}; }
+  /// Of a colour given by components: the largest. As a reflectance, what is more than 1 is cut. 0: it has none.
+  virtual float largest_component() const { return 0; }
+
   void reference() const { count_.fetch_add(1, std::memory_order_relaxed); }
   void release() const {
     if (count_.fetch_sub(1, std::memory_order_acq_rel) == 1) delete this;
@@ -46,6 +53,12 @@ class SpectralFunction {
 };
 
 using Color = Ref<const SpectralFunction>;
+
+/// The least and the largest value over 360-830 nm, and where they are [nm].
+struct ValueRange {
+  float least = 0, least_at = 0, most = 0, most_at = 0;
+};
+ValueRange range_of(const SpectralFunction&, ColorUse);
 
 /// The same value at every wavelength.
 Color flat_spectrum(float value);

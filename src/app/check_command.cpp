@@ -6,6 +6,7 @@
 
 #include "app/advice.h"
 #include "app/scene_options.h"
+#include "app/scene_warnings.h"
 #include "app/text.h"
 
 namespace etendue {
@@ -64,11 +65,9 @@ std::string amount_text(const Amount& amount) {
 
 /// What of the scene's light the job's renderer misses, and which renderers find all of it.
 void report_light(const Job& job, const SceneTraits& traits) {
-  if (job.scene->luminaires().empty() && traits.emissive_media.empty()) {
-    fmt::print("Nothing emits light: the picture will be black.\n");
-    return;
-  }
   std::fflush(stdout);  // warnings stand where they belong when both go to a terminal
+  show_warnings(scene_warnings(job));
+  if (job.scene->luminaires().empty() && traits.emissive_media.empty()) return;
   advise(job);
   const std::vector<std::string> renderers = renderers_that_find_all(traits);
   if (renderers.empty())
@@ -95,7 +94,11 @@ int check(const SceneOptions& options) {
   fmt::print("image       {}\n", size);
   fmt::print("samples     {} per pixel\n", job->renderer->samples);
   fmt::print("renderer    {}, {}\n", job->renderer->class_info().name, job->renderer->bias().empty() ? "unbiased" : "biased");
-  if (const std::string limits = job->renderer->limits(); !limits.empty()) fmt::print("left out    {}\n", limits);
+  // What a renderer leaves out in general says little of this scene: that is in the warnings, if there is any of it. Renderers
+  // of plugins may know no better.
+  const std::string limits = job->renderer->limits();
+  if (!limits.empty() && !job->renderer->class_info().provider.empty() && job->renderer->misses(traits).empty())
+    fmt::print("left out    {}\n", limits);
   report_light(*job, traits);
   fmt::print("{} is good\n", options.file);
   return exit_status::done;

@@ -73,7 +73,9 @@ int render_pictures(const ManualOptions& options) {
 
 /// All pictures side by side, by interface.
 std::string pictures_page(const std::filesystem::path& folder) {
-  std::string text = "# Pictures\n\nEach class that can be seen, with its defaults or as its page says.\n";
+  std::string text =
+      "# Pictures\n\nEach class that can be seen, with its defaults or as its page says. Objects carry a card of "
+      "8 x 8 squares over their surface coordinates, redder with u and greener with v.\n";
   for (const ClassInfo* interface : Registry::instance().all()) {
     if (interface->parent && interface->parent->parent) continue;
     std::string shown;

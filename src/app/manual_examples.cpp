@@ -164,7 +164,9 @@ std::string scene_text(const char* renderer, const char* camera, const char* ton
 
 /// Into the ball of radius 1 on the floor. Nothing for what has no size.
 std::optional<std::string> object_scene(const SceneObject& object) {
-  constexpr const char* shader = "Plastic { color: CheckerMap { first: srgb(0.8, 0.5, 0.2), second: 0.6, repeat: [8, 8, 1] } }";
+  // A card that tells u from v, and which way they grow: redder with u, greener with v, in 8 x 8 squares.
+  constexpr const char* shader =
+      "Plastic { color: MultiplyMap { first: UvMap {}, second: CheckerMap { first: 0.45, second: 0.9, repeat: [8, 8, 1] } } }";
   if (object.unbounded())
     return scene_text(
         path_tracer, close_camera, "NoToneMap {}",

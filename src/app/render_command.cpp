@@ -10,6 +10,7 @@
 #include "app/progress_display.h"
 #include "app/render_options.h"
 #include "app/replay.h"
+#include "app/scene_warnings.h"
 #include "app/text.h"
 #include "etendue/language.h"
 #include "files/input_files.h"
@@ -127,6 +128,7 @@ int render(const RenderOptions& options) {
   const std::vector<Ref<Output>> chosen = job->outputs;
   require_outputs(*job, options);
   prepare_tree(*job);
+  show_warnings(scene_warnings(*job));
   advise(*job);
   if (options.fireflies > 0) job->image->keep_largest(size_t(options.fireflies));
 
@@ -147,6 +149,7 @@ int render(const RenderOptions& options) {
   }
 
   if (!job->checkpoint_failure().empty()) errors.emplace_back(job->checkpoint_failure());
+  if (!written.empty()) show_warnings(picture_warnings(*job));
   report_bad_samples(*job->image, options);
   report_result(display.last(), ended, written, kind, *job, options);
   if (options.fireflies > 0 && ended != Ended::aborted)

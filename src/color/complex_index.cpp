@@ -19,6 +19,7 @@ class ComplexIndex final : public SpectralFunction {
   std::string expression() const override { return expression_; }
   bool varies() const override { return n_->varies() || k_->varies(); }
   Color imaginary() const override { return k_; }
+  std::vector<float> corners() const override { return n_->corners(); }
 
  private:
   Color n_, k_;

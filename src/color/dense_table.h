@@ -32,6 +32,7 @@ class DenseTable {
     return entry[0] + (x - float(i)) * (entry[1] - entry[0]);
   }
   float entry(int i) const { return values_[size_t(i)]; }
+  void set_entry(int i, float value) { values_[size_t(i)] = value; }
 
  private:
   using Four = float __attribute__((vector_size(16)));

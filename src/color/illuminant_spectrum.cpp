@@ -1,5 +1,5 @@
-#include "color/dense_table.h"
 #include "color/named.h"
+#include "color/stepped_table.h"
 #include "color/tables.h"
 #include "etendue/color.h"
 
@@ -11,24 +11,25 @@ namespace {
 class IlluminantSpectrum final : public SpectralFunction {
  public:
   explicit IlluminantSpectrum(const tables::Illuminant& data) : name_(data.name) {
-    const auto power = [&](double wavelength) {
-      const double x = (wavelength - data.low) / data.step;
-      const double last = double(data.power.size() - 1);
-      if (!(x >= 0 && x <= last)) return 0.0;
-      const size_t i = std::min(size_t(x), data.power.size() - 2);
-      return data.power[i] + (x - double(i)) * (data.power[i + 1] - data.power[i]);
-    };
+    std::vector<float> wavelengths, values;
+    for (size_t i = 0; i < data.power.size(); ++i) {
+      wavelengths.push_back(float(data.low + data.step * double(i)));
+      values.push_back(float(data.power[i]));
+    }
+    const SteppedTable relative(wavelengths, values);
     double y = 0;
-    for (int i = 0; i < tables::size; ++i) y += tables::observer[i][1] * power(double(wavelength_low) + i);
-    table_ = DenseTable([&](double wavelength) { return power(wavelength) * (observer_y_integral() / y); });
+    for (int i = 0; i < tables::size; ++i) y += tables::observer[i][1] * relative.exact(double(wavelength_low) + i);
+    for (float& value : values) value = float(double(value) * (observer_y_integral() / y));
+    table_ = SteppedTable(std::move(wavelengths), std::move(values));
   }
   Spectrum evaluate(const Wavelengths& wavelengths, ColorUse) const override { return table_.evaluate(wavelengths); }
-  float at(float wavelength, ColorUse) const override { return table_.at(wavelength); }
+  float at(float wavelength, ColorUse) const override { return float(table_.exact(double(wavelength))); }
+  std::vector<float> corners() const override { return table_.corners(); }
   std::string expression() const override { return "illuminant(" + quoted(name_) + ")"; }
 
  private:
   std::string name_;
-  DenseTable table_;
+  SteppedTable table_;
 };
 
 }  // namespace

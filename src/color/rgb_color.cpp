@@ -48,6 +48,8 @@ class RgbColor final : public SpectralFunction {
     return float(use == ColorUse::radiance ? s * double(illuminant_->at(wavelength, use)) : s);
   }
   std::string expression() const override { return expression_; }
+  std::vector<float> corners() const override { return illuminant_->corners(); }
+  float largest_component() const override { return scale_ / 2; }
 
  private:
   static const SigmoidFit& fit_of(const RgbSpace& space) {

@@ -19,6 +19,7 @@ class ScaledSpectrum final : public SpectralFunction {
   float at(float wavelength, ColorUse use) const override { return float(factor_ * double(base_->at(wavelength, use))); }
   std::string expression() const override { return number_text(factor_) + " * " + base_->expression(); }
   bool varies() const override { return base_->varies(); }
+  std::vector<float> corners() const override { return base_->corners(); }
   Color imaginary() const override { return imaginary_; }
 
   double factor() const { return factor_; }

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
-#include "color/dense_table.h"
 #include "color/named.h"
+#include "color/stepped_table.h"
 #include "etendue/color.h"
 #include "etendue/error.h"
 
@@ -14,56 +15,51 @@ namespace etendue {
 
 namespace {
 
-/// Kept twice: as given, and resampled to 1 nm for fast evaluation. Steps finer than 1 nm are resampled by the integral
-/// with a hat of 2 nm width, so that no narrow line is lost or loses power.
+// What is reflected, absorbed or refracted is a table's values themselves, steps included, as light depends on them by powers
+// and exponentials. Light may also come in lines that are far narrower than a nanometre: drawing wavelengths one would hardly
+// ever meet them. So the light of a table that has such lines, or that varies within many nanometres, is seen through a slit of
+// 2 nm: its mean under a hat, in which no line is lost or loses power.
 class TableSpectrum final : public SpectralFunction {
  public:
   TableSpectrum(std::vector<float> wavelengths, std::vector<float> values, std::string expression)
-      : wavelengths_(std::move(wavelengths)), values_(std::move(values)), expression_(std::move(expression)) {
-    bool fine = false;
-    for (size_t i = 1; i < wavelengths_.size(); ++i) fine |= wavelengths_[i] - wavelengths_[i - 1] < 0.999f;
-    dense_ = DenseTable([&](double wavelength) { return fine ? hat_mean(wavelength) : exact(wavelength); });
+      : table_(std::move(wavelengths), std::move(values)), expression_(std::move(expression)) {
+    if (!fine()) return;
+    constexpr int many = tables::size / 4;
+    auto light = std::make_unique<DenseTable>([this](double wavelength) { return table_.hat_mean(wavelength); });
+    if (table_.bent_cells() > many || has_lines(*light)) light_ = std::move(light);
   }
 
-  Spectrum evaluate(const Wavelengths& wavelengths, ColorUse) const override { return dense_.evaluate(wavelengths); }
-  float at(float wavelength, ColorUse) const override { return float(exact(double(wavelength))); }
+  Spectrum evaluate(const Wavelengths& wavelengths, ColorUse use) const override {
+    return light_ && use == ColorUse::radiance ? light_->evaluate(wavelengths) : table_.evaluate(wavelengths);
+  }
+  float at(float wavelength, ColorUse use) const override {
+    return light_ && use == ColorUse::radiance ? light_->at(wavelength) : float(table_.exact(double(wavelength)));
+  }
+  std::vector<float> corners() const override { return table_.corners(); }
   std::string expression() const override {
-    return expression_.empty() ? table_expression(wavelengths_, values_) : expression_;
+    return expression_.empty() ? table_expression(table_.wavelengths(), table_.values()) : expression_;
   }
 
  private:
-  double exact(double wavelength) const {
-    if (!(wavelength >= double(wavelengths_.front()) && wavelength <= double(wavelengths_.back()))) return 0;
-    const auto above = std::upper_bound(wavelengths_.begin() + 1, wavelengths_.end() - 1, wavelength,
-                                        [](double w, float entry) { return w < double(entry); });
-    const size_t i = size_t(above - wavelengths_.begin());
-    const double low = double(wavelengths_[i - 1]), high = double(wavelengths_[i]);
-    const double f = (wavelength - low) / (high - low);
-    return (1 - f) * double(values_[i - 1]) + f * double(values_[i]);
+  bool fine() const {
+    const std::vector<float>& w = table_.wavelengths();
+    for (size_t i = 1; i < w.size(); ++i)
+      if (w[i] - w[i - 1] < 0.999f) return true;
+    return false;
   }
-
-  /// Integral of S(w) max(0, 1 - |w - centre|) dw: Simpson's rule is exact between the knots of the product.
-  double hat_mean(double centre) const {
-    const double low = std::max(centre - 1, double(wavelengths_.front())),
-                 high = std::min(centre + 1, double(wavelengths_.back()));
-    if (!(low < high)) return 0;
-    std::vector<double> knots{low, high};
-    if (centre > low && centre < high) knots.push_back(centre);
-    const auto first = std::upper_bound(wavelengths_.begin(), wavelengths_.end(), float(low));
-    for (auto w = first; w != wavelengths_.end() && double(*w) < high; ++w) knots.push_back(double(*w));
-    std::sort(knots.begin(), knots.end());
-    const auto product = [&](double w) { return exact(w) * std::max(0.0, 1 - std::abs(w - centre)); };
-    double sum = 0;
-    for (size_t i = 1; i < knots.size(); ++i) {
-      const double a = knots[i - 1], b = knots[i];
-      sum += (b - a) / 6 * (product(a) + 4 * product((a + b) / 2) + product(b));
+  /// Whether anything stands out that is narrower than about a quarter of a nanometre.
+  bool has_lines(const DenseTable& mean) const {
+    const std::vector<float>& w = table_.wavelengths();
+    for (size_t i = 0; i < w.size(); ++i) {
+      const float k = std::floor(w[i]);
+      if (table_.values()[i] > 4 * std::max(mean.at(k), mean.at(k + 1))) return true;
     }
-    return sum;
+    return false;
   }
 
-  std::vector<float> wavelengths_, values_;
-  std::string expression_;  // empty: the table itself
-  DenseTable dense_;
+  SteppedTable table_;
+  std::string expression_;             // empty: the table itself
+  std::unique_ptr<DenseTable> light_;  // of a table with lines
 };
 
 }  // namespace

@@ -25,8 +25,10 @@ class EnvironmentEmission final : public EmissionShader {
  public:
   static void describe(Description<EnvironmentEmission>& d) {
     d.summary("Light that arrives from infinitely far away, from an image in longitude and latitude or of a map.")
-        .member<&EnvironmentEmission::file>(
-            "file", "", "the image; its middle is seen along -z, its top along +y of the object; none: `radiance` is used")
+        .member<&EnvironmentEmission::file>("file", "",
+                                            "the image, in longitude and latitude: its middle is seen along +z of the object, "
+                                            "its top along +y, its left and right "
+                                            "edges along -z, the middle of its left half along +x; none: `radiance` is used")
         .member<&EnvironmentEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
                                            "radiance when there is no image; maps see (u, v) of the direction, v upwards")
         .member<&EnvironmentEmission::scale>("scale", "1", "multiplies the radiance", at_least(0))

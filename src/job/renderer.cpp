@@ -13,7 +13,13 @@
 namespace etendue {
 
 void Renderer::describe(Description<Renderer>& d) {
-  d.summary("An image synthesis algorithm.")
+  d.summary(
+       "An image synthesis algorithm. The length of paths (`max_depth`, `roulette_depth`) is counted in segments, from camera "
+       "to "
+       "luminaire: light seen directly has come by 1, light that was scattered n times by n + 1. Reflection, refraction and "
+       "scattering in a medium count, and the way inside a body that scatters light beneath its surface counts as one segment; "
+       "what goes straight on (through holes, thin panes, the bounds of media, bodies within others of higher priority) does "
+       "not.")
       .member<&Renderer::samples>("samples", "1", "samples per pixel", range(1, 1 << 30))
       .member<&Renderer::sampler>("sampler", "", "where random numbers come from")
       .member<&Renderer::light_sampler>("light_sampler", "", "how luminaires are chosen")

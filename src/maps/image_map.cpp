@@ -66,6 +66,13 @@ class ImageMap final : public ObjectMap {
     return channels == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
   }
 
+  float largest() const override {
+    float most = 0;
+    for (const auto& tile : tiles_)
+      if (tile) most = std::max(most, tile->largest());
+    return most;
+  }
+
   FilePath file;
   Interpolation interpolation = Interpolation::bilinear;
   Wrap wrap = Wrap::repeat;

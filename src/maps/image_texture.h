@@ -24,6 +24,9 @@ class ImageTexture {
   /// 3 or 1.
   virtual int channels() const = 0;
 
+  /// The largest of its numbers.
+  virtual float largest() const = 0;
+
   // Lookups write `channels` numbers. Where a coordinate is no number, all are 0.
 
   /// The texel.

@@ -9,7 +9,7 @@ class Annulus final : public PlacedObject {
  public:
   static void describe(Description<Annulus>& d) {
     d.summary(
-         "A flat ring about the origin in the xy plane, facing +z; surface coordinates are as on a disc of its outer radius.")
+         "A flat ring about the origin in the xy plane, facing +z; surface coordinates are as on a Disc of its outer radius.")
         .member<&Annulus::inner_radius>("inner_radius", "m", "of its hole; 0: none", at_least(0), Effect::rebuild)
         .member<&Annulus::radius>("radius", "m", "its outer radius", more_than(0), Effect::rebuild)
         .member<&Annulus::sweep>("sweep", "deg", "how much of a turn there is, from x towards y", Range{0, 360, true},

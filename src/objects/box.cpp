@@ -10,8 +10,11 @@ namespace {
 class Box final : public PlacedObject {
  public:
   static void describe(Description<Box>& d) {
-    d.summary("A box with edges along the axes; each face has its own surface coordinates from 0 to 1.",
-              "slabs: Kay & Kajiya 1986, \"Ray tracing complex scenes\"")
+    d.summary(
+         "A box with edges along the axes. Each face has its own surface coordinates from 0 to 1: on that which faces +x u "
+         "goes "
+         "along y and v along z, on +y along z and x, on +z along x and y; on those that face back u runs the other way.",
+         "slabs: Kay & Kajiya 1986, \"Ray tracing complex scenes\"")
         .member<&Box::center>("center", "m", "its middle", Effect::rebuild)
         .member<&Box::size>("size", "m", "its edges", Effect::rebuild);
   }

@@ -13,7 +13,7 @@ class Cone final : public RevolvedQuadric {
   static void describe(Description<Cone>& d) {
     d.summary(
          "A circular cone about the z axis with its base at z = 0, pointed or cut off at its height. On its side u goes around "
-         "and v up; on its caps they are as on a disc.",
+         "from +x towards +y, over the sweep, and v up; on its caps they are as on a Disc, u backwards on what faces down.",
          "intersection with quadrics: Hearn & Baker 2004")
         .member<&Cone::radius>("radius", "m", "of its base", at_least(0), Effect::rebuild)
         .member<&Cone::top_radius>("top_radius", "m", "at its height; 0: a point", at_least(0), Effect::rebuild)

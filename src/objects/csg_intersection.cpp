@@ -13,7 +13,8 @@ class Intersection final : public Csg {
     d.summary(
         "The solid of what lies in all of several closed objects. Where the shader is an OperandShader (as by "
         "default) each surface has the shader of the operand it comes from; otherwise the whole solid has "
-        "this one. Emission, interior, sides and priority are those of the solid.",
+        "this one. Surface coordinates are those of the operand. Emission, interior, sides and priority are those of the "
+        "solid.",
         "Roth 1982, \"Ray casting for modeling solids\"");
     describe_operands(d, "closed objects; what is common to all of them is left");
   }

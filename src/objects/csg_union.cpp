@@ -13,7 +13,8 @@ class Union final : public Csg {
     d.summary(
         "The solid of all that lies in any of several closed objects, without the surfaces within. Where the "
         "shader is an OperandShader (as by default) each surface has the shader of the operand it comes from; "
-        "otherwise the whole solid has this one. Emission, interior, sides and priority are those of the "
+        "otherwise the whole solid has this one. Surface coordinates are those of the operand. Emission, interior, sides and "
+        "priority are those of the "
         "solid.",
         "Roth 1982, \"Ray casting for modeling solids\"");
     describe_operands(d, "closed objects, which are joined");

@@ -9,8 +9,8 @@ class Cylinder final : public RevolvedQuadric {
  public:
   static void describe(Description<Cylinder>& d) {
     d.summary(
-         "A circular cylinder about the z axis, from -height/2 to height/2. On its side u goes around and v up; on its caps "
-         "they are as on a disc.",
+         "A circular cylinder about the z axis, from -height/2 to height/2. On its side u goes around from +x towards +y, over "
+         "the sweep, and v up; on its caps they are as on a Disc, u backwards on what faces down.",
          "intersection with quadrics: Hearn & Baker 2004")
         .member<&Cylinder::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild)
         .member<&Cylinder::height>("height", "m", "its length along z", more_than(0), Effect::rebuild)

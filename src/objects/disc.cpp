@@ -10,7 +10,9 @@ class Disc final : public SceneObject {
 
  public:
   static void describe(Description<Disc>& d) {
-    d.summary("A disc about the origin in the xy plane, facing +z.")
+    d.summary(
+         "A disc about the origin in the xy plane, facing +z. u goes along x and v along y, from 0 to 1 over the square around "
+         "it.")
         .member<&Disc::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild);
   }
 

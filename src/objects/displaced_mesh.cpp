@@ -13,7 +13,8 @@ class DisplacedMesh final : public TriangleObject {
     d.summary(
          "Another object's triangles, divided into smaller ones and moved along its normals, or anywhere, as maps say; the "
          "result "
-         "has the normals of its new shape. All that lies in one place moves alike, so that nothing gapes.",
+         "has the normals of its new shape. All that lies in one place moves alike, so that nothing gapes. Surface coordinates "
+         "are those of the other object.",
          "Cook 1984, \"Shade trees\"")
         .member<&DisplacedMesh::surface>(
             "surface", "",

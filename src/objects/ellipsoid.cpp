@@ -47,7 +47,7 @@ class Ellipsoid final : public PlacedObject {
     d.summary(
          "An ellipsoid with its axes along x, y and z. Surface coordinates are those of the sphere it is stretched from: u "
          "around "
-         "z, v from the pole at -z to that at +z.",
+         "z from +x towards +y, v from the pole at -z to that at +z.",
          "area: Carlson 1995, \"Numerical computation of real or complex elliptic integrals\"; the cone in which it is seen: "
          "Heitz "
          "2017, \"Analytical calculation of the solid angle subtended by an arbitrarily positioned ellipsoid to a point "

@@ -10,7 +10,7 @@ class Environment final : public SceneObject {
   static void describe(Description<Environment>& d) {
     d.summary(
         "A sphere at infinity around the scene, which carries an emission shader; its transform turns it. Its +y axis is up; "
-        "u runs from -z by +x around it, v from the pole at -y to that at +y.");
+        "u runs from -z by +x, +z and -x around it, to the right as seen from inside, v from the pole at -y to that at +y.");
   }
 
   void prepare() override {

@@ -14,9 +14,8 @@ class Hyperboloid final : public RevolvedQuadric {
     d.summary(
          "A hyperboloid of revolution of one sheet about the z axis, from -height/2 to height/2 with its waist at z = 0: what "
          "a "
-         "straight line sweeps that turns around an axis it does not meet. On its side u goes around and v up; on its caps "
-         "they "
-         "are as on a disc.",
+         "straight line sweeps that turns around an axis it does not meet. On its side u goes around from +x towards +y, over "
+         "the sweep, and v up; on its caps they are as on a Disc, u backwards on what faces down.",
          "intersection with quadrics: Hearn & Baker 2004")
         .member<&Hyperboloid::waist_radius>("waist_radius", "m", "in the middle, where it is narrowest", more_than(0),
                                             Effect::rebuild)

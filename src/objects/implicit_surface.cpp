@@ -19,7 +19,7 @@ class ImplicitSurface final : public ImplicitObject {
     d.summary(
          "The surface in a box where a formula of x, y and z is 0; the solid is where it is negative. By default a torus. "
          "Surface "
-         "coordinates are those of the face of the box the surface faces most, from 0 to 1.",
+         "coordinates are those of the face of the box the surface faces most, from 0 to 1 as on a Box.",
          "Mitchell 1990, \"Robust ray intersection with interval arithmetic\"")
         .member<&ImplicitSurface::formula>(
             "formula", "",

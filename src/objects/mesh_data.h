@@ -26,6 +26,7 @@ struct MeshData {
   std::vector<Normal3> normals;  ///< a zero normal: the vertex has none
   std::vector<Point2> uvs;
   std::vector<VertexAttribute> attributes;  ///< "color" (linear sRGB) and whatever else a file tells of its vertices
+  std::vector<std::string> materials;       ///< names of those that the file uses, each once; nothing more is read of them
 };
 
 // The readers take the file's contents. They throw Error("what is wrong"), with the line for text, without the file's name.

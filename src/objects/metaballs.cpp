@@ -17,7 +17,7 @@ class Metaballs final : public ImplicitObject {
          "Soft balls that flow together: the solid where the sum of strength * (1 - (distance / radius)^2)^3, over all balls "
          "within whose radius a point is, exceeds the threshold. Surface coordinates are those of the face of the surrounding "
          "box "
-         "the surface faces most, from 0 to 1.",
+         "the surface faces most, from 0 to 1 as on a Box.",
          "Wyvill, McPheeters & Wyvill 1986, \"Data structure for soft objects\"")
         .member<&Metaballs::centers>("centers", "m", "the middles of the balls", Effect::rebuild)
         .member<&Metaballs::radii>("radii", "m", "how far each ball reaches; one number: all reach as far", Effect::rebuild)

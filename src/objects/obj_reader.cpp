@@ -1,4 +1,5 @@
-// Wavefront OBJ files: v, vt, vn and f. Everything else (groups, materials, curves) says nothing about triangles.
+// Wavefront OBJ files: v, vt, vn and f. Of materials the names are kept, to tell that they are not read;
+// everything else (groups, curves) says nothing about triangles.
 
 #include <charconv>
 #include <cstring>
@@ -71,6 +72,13 @@ class Lines {
     ++cursor_;
     return true;
   }
+  /// What is left of the line.
+  std::string_view rest() {
+    if (at_end()) return {};
+    const char* last = line_end_;
+    while (last > cursor_ && space(last[-1])) --last;
+    return {cursor_, size_t(last - cursor_)};
+  }
   bool word_ends() const { return cursor_ >= line_end_ || space(*cursor_); }
 
   [[noreturn]] void error(const std::string& message) const { throw Error("line " + std::to_string(number_) + ": " + message); }
@@ -84,6 +92,9 @@ class Lines {
   const char *at_, *end_, *begin_ = nullptr, *line_end_ = nullptr, *cursor_ = nullptr;
   std::int64_t number_ = 0, continued_ = 0;
 };
+
+/// More names of materials than this nobody is told.
+constexpr size_t most_materials = 100;
 
 struct Counts {
   size_t positions = 0, uvs = 0, normals = 0, faces = 0;
@@ -168,6 +179,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   std::vector<Face> late;  // faces that stand before their vertices and have more than three corners
   MeshData face;
   std::vector<std::uint32_t> order;
+  std::vector<std::string> materials;
   const auto cut = [&](const Face& polygon) {  // by positions, then named by vertices
     face.positions.clear();
     face.triangles.clear();
@@ -191,6 +203,10 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
     } else if (word == "vn") {
       const float x = lines.number(), y = lines.number(), z = lines.number();
       mesh.normals.push_back({x, y, z});
+    } else if (word == "usemtl") {
+      const std::string name(lines.rest());
+      if (std::find(materials.begin(), materials.end(), name) == materials.end() && materials.size() < most_materials)
+        materials.push_back(name);
     } else if (word == "f") {
       corners.clear();
       positions.clear();
@@ -231,6 +247,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
     return mesh;
   }
   for (const Face& polygon : late) cut(polygon);
+  mesh.materials = materials;
   if (plain) return mesh;
 
   // One entry for each vertex. A corner without normal gets a zero one, without uv the origin.
@@ -254,6 +271,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
     for (const auto& c : list) result.normals.push_back(c.normal == Vertices::none ? Normal3{} : mesh.normals[c.normal]);
   }
   result.triangles = std::move(mesh.triangles);
+  result.materials = std::move(materials);
   return result;
 }
 

@@ -13,7 +13,9 @@ class Paraboloid final : public RevolvedQuadric {
     d.summary(
          "A paraboloid of revolution with its vertex at the origin, open towards +z; its focus is at z = radius^2 / (4 "
          "height). "
-         "u goes around, and v with the distance from the axis; on the cap they are as on a disc. The outside is in front.",
+         "u goes around from +x towards +y, over the sweep, and v with the distance from the axis, up to 1 at the rim; on the "
+         "cap "
+         "they are as on a Disc. The outside is in front.",
          "intersection with quadrics: Hearn & Baker 2004")
         .member<&Paraboloid::radius>("radius", "m", "at its rim", more_than(0), Effect::rebuild)
         .member<&Paraboloid::height>("height", "m", "from vertex to rim along z", more_than(0), Effect::rebuild)

@@ -12,7 +12,8 @@ class Quadric final : public ImplicitObject {
     d.summary(
          "A general quadric in a box: the solid where a x^2 + b y^2 + c z^2 + d y z + e z x + f x y + g x + h y + i z + j < 0. "
          "By "
-         "default the unit sphere. Surface coordinates are those of the face of the box the surface faces most, from 0 to 1.")
+         "default the unit sphere. Surface coordinates are those of the face of the box the surface faces most, from 0 to 1 as "
+         "on a Box.")
         .member<&Quadric::squares>("squares", "1", "the factors a, b, c of x^2, y^2 and z^2", Effect::rebuild)
         .member<&Quadric::products>("products", "1", "the factors d, e, f of y z, z x and x y", Effect::rebuild)
         .member<&Quadric::linear>("linear", "1", "the factors g, h, i of x, y and z, in m", Effect::rebuild)

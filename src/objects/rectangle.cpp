@@ -12,8 +12,10 @@ class Rectangle final : public SceneObject {
 
  public:
   static void describe(Description<Rectangle>& d) {
-    d.summary("A parallelogram given by a corner and two edges; by default a unit square about the origin, facing +z.",
-              "solid-angle sampling: Urena, Fajardo & King 2013")
+    d.summary(
+         "A parallelogram given by a corner and two edges; by default a unit square about the origin, facing +z. u goes along "
+         "edge_u and v along edge_v, from 0 at the corner to 1.",
+         "solid-angle sampling: Urena, Fajardo & King 2013")
         .member<&Rectangle::corner>("corner", "m", "one of its corners", Effect::rebuild)
         .member<&Rectangle::edge_u>("edge_u", "m", "from the corner along u", Effect::rebuild)
         .member<&Rectangle::edge_v>("edge_v", "m", "from the corner along v; the front is on the side of edge_u x edge_v",

@@ -7,14 +7,23 @@
 namespace etendue {
 
 void SceneObject::describe(Description<SceneObject>& d) {
-  d.summary("A shape with its place, its material and its light.")
+  d.summary(
+       "A shape with its place, its material and its light. Its surface coordinates (u, v), over which images lie, are said "
+       "with "
+       "each shape, in its own coordinates, before its transform; seen from the front with v upwards, u grows to the right, so "
+       "an "
+       "image is not mirrored there.")
       .member<&SceneObject::transform>("transform", "", "from the object's own coordinates to those of the scene it is in",
                                        Effect::rebuild)
       .member<&SceneObject::shader>("shader", "", "how its surface scatters light; none: black")
       .member<&SceneObject::emission>("emission", "", "how it emits light; none: it does not", Effect::rebuild)
       .member<&SceneObject::interior>("interior", "", "the medium inside; none: vacuum", Effect::rebuild)
-      .member<&SceneObject::sides>("sides", "", "which sides scatter light; the other absorbs it",
-                                   choices("front", "back", "both"))
+      .member<&SceneObject::sides>(
+          "sides", "",
+          "which sides scatter light; with one alone, the other side absorbs what would be scattered there, and no light is "
+          "refracted or let through diffusely. What goes straight on, through holes of a mask, thin panes or the bounds of a "
+          "medium, does so from either side",
+          choices("front", "back", "both"))
       .member<&SceneObject::priority>("priority", "1", "where objects overlap, the one of highest priority fills the space")
       .member<&SceneObject::shading_normals>(
           "shading_normals", "",

@@ -21,7 +21,7 @@ class SignedDistanceGrid final : public ImplicitObject {
          "The surface where distances on a regular grid, interpolated trilinearly, are 0; the solid is where they are "
          "negative. "
          "Other fields than distances may be given. Surface coordinates are those of the face of the box the surface faces "
-         "most, from 0 to 1.",
+         "most, from 0 to 1 as on a Box.",
          "Hansson-Soderlund, Evans & Akenine-Moller 2022, \"Ray tracing of signed distance function grids\"")
         .member<&SignedDistanceGrid::file>(
             "file", "",

@@ -11,8 +11,11 @@ class Sphere final : public SceneObject {
 
  public:
   static void describe(Description<Sphere>& d) {
-    d.summary("A sphere; an ellipsoid when its transform stretches.",
-              "cone sampling: Shirley, Wang & Zimmerman 1996, \"Monte Carlo techniques for direct lighting calculations\"")
+    d.summary(
+         "A sphere; an ellipsoid when its transform stretches. u goes around the z axis from +x towards +y, v from the pole at "
+         "-z "
+         "to that at +z.",
+         "cone sampling: Shirley, Wang & Zimmerman 1996, \"Monte Carlo techniques for direct lighting calculations\"")
         .member<&Sphere::center>("center", "m", "its centre", Effect::rebuild)
         .member<&Sphere::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild);
   }

@@ -1,5 +1,7 @@
 // What objects made of triangles keep of those they are given, and what they find out about them.
 
+#include <algorithm>
+
 #include "geometry.h"
 #include "scenes/embree_device.h"
 #include "triangle_object.h"
@@ -114,6 +116,46 @@ bool TriangleObject::closed() const {
     lazy_->closed = sum == 0 && !mesh_.triangles.empty();
   });
   return lazy_->closed;
+}
+
+ObjectNotes TriangleObject::notes() const {
+  ObjectNotes notes;
+  notes.without_uv = mesh_.uvs.empty();
+  if (data_) {
+    for (const VertexAttribute& a : data_->attributes) notes.attributes.push_back(a.name);
+    notes.materials = data_->materials;
+  }
+  return notes;
+}
+
+// Edges by the places of their ends, as above. One that is met once ends the surface; of the others nothing is said, as a mesh
+// whose triangles do not all turn the same way around the front, which is not closed either, has two of each.
+std::uint64_t TriangleObject::open_edges() const {
+  if (closed()) return 0;
+  std::uint64_t open = 0;
+  const auto key = [this](std::uint32_t i) {
+    const Point3& p = mesh_.positions[i];
+    std::uint64_t h = mix_bits(std::bit_cast<std::uint32_t>(p.x + 0.0f));
+    h = mix_bits((h << 32 | std::bit_cast<std::uint32_t>(p.y + 0.0f)) + 0x9e3779b97f4a7c15ull);
+    return mix_bits(h ^ std::bit_cast<std::uint32_t>(p.z + 0.0f));
+  };
+  std::vector<std::uint64_t> edges;
+  edges.reserve(3 * mesh_.triangles.size());
+  for (const auto& t : mesh_.triangles) {
+    const std::uint64_t h[3] = {key(t[0]), key(t[1]), key(t[2])};
+    for (int i = 0; i < 3; ++i) {
+      const std::uint64_t a = h[i], b = h[(i + 1) % 3];
+      edges.push_back(mix_bits(3 * std::min(a, b) + std::max(a, b)));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (size_t i = 0; i < edges.size();) {
+    size_t end = i + 1;
+    while (end < edges.size() && edges[end] == edges[i]) ++end;
+    open += end - i == 1;
+    i = end;
+  }
+  return open;
 }
 
 }  // namespace etendue

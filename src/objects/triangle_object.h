@@ -45,6 +45,8 @@ class TriangleObject : public SceneObject, public NumberedParts {
   float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
   NormalCone normals() const override;
   bool closed() const override;
+  ObjectNotes notes() const override;
+  std::uint64_t open_edges() const override;
   std::optional<TriangleView> triangles() const override;
   /// Triangles, whether they move or not.
   std::uint64_t part_count() const override { return mesh_.triangles.size(); }

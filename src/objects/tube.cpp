@@ -13,8 +13,9 @@ class Tube final : public PlacedObject {
   static void describe(Description<Tube>& d) {
     d.summary(
          "A pipe with a thick wall, about the z axis from -height/2 to height/2: a closed solid. On its sides u goes around "
-         "and v "
-         "up, or down inside; on its ends they are as on a disc of the outer radius.",
+         "from +x towards +y and v up, or down inside; on its ends they are as on a Disc of the outer radius, u backwards on "
+         "the "
+         "lower one.",
          "intersection with quadrics: Hearn & Baker 2004")
         .member<&Tube::inner_radius>("inner_radius", "m", "of its bore", more_than(0), Effect::rebuild)
         .member<&Tube::radius>("radius", "m", "its outer radius", more_than(0), Effect::rebuild)

@@ -120,7 +120,12 @@ void CachedTexture::read(const std::string& key) {
   levels_.reserve(32);  // as many as there can be: lookups in the first go on while the others are made
   levels_.push_back({width, height, {}});
   // All of it, so that a damaged file is found now.
-  if (!read_rows([](int, int, const float*) {})) throw Error(cache.geterror());
+  const size_t row = size_t(pixels_x_) * size_t(channels_);
+  const auto use = [&](int begin, int end, const float* strip) {
+    for (const float* value = strip; value != strip + row * size_t(end - begin); ++value)
+      largest_ = *value > largest_ ? *value : largest_;
+  };
+  if (!read_rows(use)) throw Error(cache.geterror());
 }
 
 template <class Use>

@@ -21,6 +21,7 @@ class CachedTexture final : public ImageTexture {
                                                    const std::string& channel);
 
   int channels() const override { return channels_; }
+  float largest() const override { return largest_; }
   void nearest(Point2 at, Wrap, float* out) const override;
   void bilinear(Point2 at, Wrap, float* out) const override;
   void mean(Point2 at, const UvFootprint&, Wrap, float* out) const override;
@@ -45,6 +46,7 @@ class CachedTexture final : public ImageTexture {
 
   OIIO::ImageCache::ImageHandle* handle_ = nullptr;
   int channels_ = 3;
+  float largest_ = 0;
   int left_ = 0, top_ = 0;           // of the display window, in the file's pixels
   int begin_x_ = 0, begin_y_ = 0;    // of the pixels that are there, in the display window
   int pixels_x_ = 0, pixels_y_ = 0;  // how many are there

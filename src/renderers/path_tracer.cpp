@@ -281,8 +281,7 @@ class PathTracer final : public Renderer {
     const bool tracked = point.media != nullptr;
     // On the other side of the surface than the path came from, the object's inside begins or ends.
     const bool through = (dot(point.normal, out) > 0) != (dot(point.normal, direct.shadow.direction) > 0);
-    if (tracked && through && point.object->shader->transmits())
-      cross_boundary(around, *point.object, point.normal, direct.shadow.direction);
+    if (tracked && through) cross_boundary(around, *point.object, point.normal, direct.shadow.direction);
     direct.light *= visible_fraction(scene, direct.shadow, tracked ? &around : nullptr, sample.wavelengths, sample.arena);
     return !direct.light.black();
   }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <unordered_set>
 
+#include "etendue/medium_stack.h"
 #include "etendue/shader.h"
 #include "scenes/nested_luminaires.h"
 
@@ -54,12 +55,14 @@ void Scene::prepare() {
   has_interiors_ = has_null_surfaces_ = unbounded_ = false;
   const auto note_interior = [&](const SceneObject& object) {
     const bool null_surfaces = object.shader && object.shader->possible_lobes() & pass_through;
-    const bool enterable = object.shader && object.shader->transmits();
+    // A sheet may bound a medium (see enterable); an instance does not know whether what it gives a sheet's shader to has one.
+    const bool may_enter = object.shader && (object.shader->transmits() ||
+                                             (is_sheet(*object.shader) && (object.interior || scene_within(object))));
     const Scene* inner = scene_within(object);
     // An instance's shader replaces all those inside.
     const bool asks_inside = inner && (inner == &object || !object.shader);
     has_null_surfaces_ |= asks_inside ? inner->has_null_surfaces_ : null_surfaces;
-    if (!(asks_inside ? inner->has_interiors_ : enterable)) return;
+    if (!(asks_inside ? inner->has_interiors_ : may_enter)) return;
     has_interiors_ = true;
     interiors_.push_back(object.bounds());
   };
@@ -101,9 +104,6 @@ void Scene::prepare() {
     object->luminaire_index = -1;
     if (object->luminaire() && !object->infinite() && object->emission->only_at_infinity())
       object->fail("emission", "this emission is of light from infinity: it belongs on an Environment");
-    if (object->interior && !inner && !object->closed())
-      warn(object->class_info().name + ": the surface is not closed, so its interior is never entered",
-           object->location_of("interior"));
     if (object->luminaire() && !inner) {
       object->luminaire_index = int(luminaires_.size());
       luminaires_.push_back(object.get());

@@ -67,6 +67,7 @@ class DiffuseTransmitter final : public Shader {
   void prepare() override {
     require_reflectance(*this, "reflectance", reflectance);
     require_reflectance(*this, "transmittance", transmittance);
+    warn_of_sum(*this, "reflectance", reflectance, "transmittance", transmittance);
   }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {

@@ -31,7 +31,7 @@ class PassThrough final : public Shader {
   static void describe(Description<PassThrough>& d) {
     d.summary(
         "Everything goes straight on, undiminished: the boundary of a medium that neither reflects nor refracts, such as "
-        "that of a cloud. The index of what lies inside is 1.");
+        "that of a cloud. What lies inside has the index of what is around.");
   }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths&, Arena& arena) const override {

@@ -94,6 +94,7 @@ class PhongShader final : public Shader {
   void prepare() override {
     require_reflectance(*this, "color", color);
     require_reflectance(*this, "specular", specular);
+    warn_of_sum(*this, "color", color, "specular", specular);
     // Without <cmath>'s beta: B(a, b) = Gamma(a) Gamma(b) / Gamma(a + b); Gamma(3/2) = sqrt(pi) / 2.
     const double n = exponent;
     const double beta = std::exp(std::lgamma((n + 1) / 2) - std::lgamma((n + 4) / 2)) * 0.88622692545275801365;

@@ -12,17 +12,12 @@ inline Spectrum reflectance_at(const ObjectMap& map, const SurfacePoint& p, cons
   return Spectrum(low < one ? low : one);
 }
 
-/// Throws at the member when the map is missing, or has one colour everywhere that is no reflectance.
-inline void require_reflectance(const Component& owner, const char* member, const Ref<ObjectMap>& map) {
-  if (!map) owner.fail(member, "a map or a colour is needed");
-  const Color color = map->constant();
-  if (!color) return;
-  for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
-    const float value = color->at(lambda, ColorUse::reflectance);
-    if (!(value >= 0 && value <= 1.0001f))
-      owner.fail(member, "a reflectance lies between 0 and 1, and this is " + std::to_string(value) + " at " +
-                             std::to_string(int(lambda)) + " nm");
-  }
-}
+/// Throws at the member when the map is missing, or has one colour everywhere that is no reflectance; warns where an image or a
+/// colour's components are brighter than a reflectance can be.
+void require_reflectance(const Component& owner, const char* member, const Ref<ObjectMap>& map);
+
+/// Warns where two reflectances that are the same everywhere exceed 1 together, and are scaled down for it.
+void warn_of_sum(const Component& owner, const char* first_member, const Ref<ObjectMap>& first, const char* second_member,
+                 const Ref<ObjectMap>& second);
 
 }  // namespace etendue

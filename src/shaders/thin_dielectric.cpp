@@ -92,8 +92,9 @@ class ThinDielectric final : public Shader {
   static void describe(Description<ThinDielectric>& d) {
     d.summary(
          "A thin pane of glass, film of water, ...: it mirrors, and lets light pass straight on, with all reflections inside. "
-         "A "
-         "single surface stands for the whole pane; colours of interference are left out.",
+         "A single surface stands for the whole pane; colours of interference are left out. Around a closed object it "
+         "bounds the medium that this names as its interior, which has the index of what is around; without one, what is "
+         "around goes on inside.",
          "Stokes 1862, On the intensity of the light reflected from or transmitted through a pile of plates")
         .member<&ThinDielectric::ior>("ior", "1", "index of refraction: a number, glass(\"N-BK7\"), or a spectrum")
         .member<&ThinDielectric::color>("color", "1", "fraction of light left after one passage along the normal");

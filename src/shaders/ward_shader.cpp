@@ -95,6 +95,7 @@ class WardShader final : public Shader {
   void prepare() override {
     require_reflectance(*this, "color", color);
     require_reflectance(*this, "specular", specular);
+    warn_of_sum(*this, "color", color, "specular", specular);
     require_scalar(*this, "roughness_u", roughness_u, sharpest);
     require_scalar(*this, "roughness_v", roughness_v, sharpest);
     if (!rotation) fail("rotation", "a map or a number is needed");

@@ -94,8 +94,7 @@ void media_at_slowly(const Scene& scene, const Point3& p, float time, MediumStac
   }
   for (size_t i = crossings.size(); i-- > 0;) {
     const SceneObject& object = *crossings[i].object;
-    if (object.shader && object.shader->transmits() && object.closed())
-      cross_boundary(media, object, crossings[i].normal, -ray.direction);
+    if (enterable(object)) cross_boundary(media, object, crossings[i].normal, -ray.direction);
   }
 }
 

@@ -3,12 +3,17 @@
 namespace etendue {
 namespace {
 
-bool lets_in(const SceneObject& object) { return object.shader && object.shader->transmits(); }
+/// Whether light goes on behind the surface, in whatever medium.
+bool lets_in(const SceneObject& object) { return object.shader && (object.shader->transmits() || is_sheet(*object.shader)); }
+
+/// Whether it bounds nothing itself: light goes on behind it in what is around.
+bool mere_sheet(const SceneObject& object) { return is_sheet(*object.shader) && !enterable(object); }
 
 /// Whether the first counts where the boundaries of both lie in one place.
 bool before(const SceneObject& a, const SceneObject& b) {
   if (lets_in(a) != lets_in(b)) return !lets_in(a);
   if (!lets_in(a)) return false;
+  if (mere_sheet(a) || mere_sheet(b)) return mere_sheet(a) && !mere_sheet(b);
   if (a.priority != b.priority) return a.priority > b.priority;
   // What only bounds a medium gives way to what refracts.
   return a.shader->possible_lobes() != pass_through && b.shader->possible_lobes() == pass_through;
@@ -59,7 +64,7 @@ void settle_coincident(const Scene& scene, const Ray& ray, Hit& hit, SurfacePoin
   for (int i = 0; i < others.size; ++i)
     if (before(*others.hits[i].object, first < 0 ? *hit.object : *others.hits[first].object)) first = i;
   const auto note = [&](const SceneObject& object, const Normal3& normal) {
-    if (lets_in(object) && object.closed()) media.note_other(object, dot(normal, ray.direction) < 0);
+    if (enterable(object)) media.note_other(object, dot(normal, ray.direction) < 0);
   };
   if (first >= 0) note(*point.object, point.normal);
   const float footprint = point.footprint;

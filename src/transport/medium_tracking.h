@@ -11,9 +11,9 @@ namespace etendue {
 constexpr int most_crossings = 1000;
 
 /// The path goes through the surface of an object in a direction. One that is not closed has no inside: a sheet of it
-/// bounds nothing; nor has one whose shader stands for a sheet.
+/// bounds nothing.
 inline void cross_boundary(MediumStack& media, const SceneObject& object, const Normal3& normal, const Vector3& direction) {
-  if (object.shader && object.shader->transmits() && object.closed()) {
+  if (enterable(object)) {
     if (dot(normal, direction) < 0)
       media.enter(object);
     else
@@ -24,7 +24,8 @@ inline void cross_boundary(MediumStack& media, const SceneObject& object, const 
 
 /// Whether the object's boundary means nothing here because the path is inside something of higher priority.
 inline bool hidden_by_priority(const MediumStack& media, const SceneObject& object) {
-  return object.shader && object.shader->transmits() && !media.visible(object);
+  if (!object.shader || media.visible(object)) return false;
+  return object.shader->transmits() || enterable(object);
 }
 
 /// Other surfaces in the same place as a hit, within the error of its position, each once. `probe` is the ray, across the

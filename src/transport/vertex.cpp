@@ -62,7 +62,7 @@ Ray lens_ray(const Vertex& v, const LensSample& lens) {
 const MediumStack* media_towards(const Vertex& v, const Vector3& direction, MediumStack& scratch) {
   if (!v.media || !v.on_surface()) return v.media;
   const bool through = (dot(v.point.normal, v.out) > 0) != (dot(v.point.normal, direction) > 0);
-  if (!through || !v.point.object->shader || !v.point.object->shader->transmits()) return v.media;
+  if (!through || !v.point.object->shader) return v.media;
   scratch = *v.media;
   cross_boundary(scratch, *v.point.object, v.point.normal, direction);
   return &scratch;

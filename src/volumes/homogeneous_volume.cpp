@@ -1,5 +1,7 @@
 // HomogeneousVolume: a medium that is the same everywhere.
 
+#include <fmt/format.h>
+
 #include "etendue/spectral_function.h"
 #include "etendue/volume_shader.h"
 #include "etendue/warp.h"
@@ -78,19 +80,16 @@ class HomogeneousVolume final : public VolumeShader {
     return (1 - g) * (1 + g) / (4 * pi * d * std::sqrt(d));
   }
 
-  /// Whether it is more than 0 anywhere; fails when it is negative. At 1 nm: tables are linear between those.
+  /// Whether it is more than 0 anywhere; fails when it is negative.
   bool check(const char* member, const Color& color, ColorUse use) const {
     if (!color) fail(member, "a number, a colour or a spectrum is needed");
     if (color->imaginary()) fail(member, "must be real; this is a complex index of refraction");
-    bool some = false;
-    for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 1) {
-      const float x = color->at(lambda, use);
-      if (!(x >= 0 && x < infinity))
-        fail(member, "must be neither negative nor infinite, and is " + std::to_string(x) + " at " +
-                         std::to_string(int(lambda)) + " nm");
-      some |= x > 0;
-    }
-    return some;
+    const ValueRange range = range_of(*color, use);
+    const bool low = !(range.least >= 0);
+    if (low || !(range.most < infinity))
+      fail(member, fmt::format("must be neither negative nor infinite, and is {} at {} nm", low ? range.least : range.most,
+                               low ? range.least_at : range.most_at));
+    return range.most > 0;
   }
 
   bool emits_ = false;

@@ -1,0 +1,234 @@
+// What of a scene's objects has no effect, or is not as their materials need it.
+
+#include <fmt/format.h>
+
+#include <set>
+#include <unordered_set>
+
+#include "app/scene_warnings.h"
+#include "app/text.h"
+#include "etendue/medium_stack.h"
+#include "etendue/object_map.h"
+#include "etendue/registry.h"
+
+namespace etendue {
+namespace {
+
+constexpr Lobes refracting_lobes = specular_transmission | glossy_transmission;
+
+/// As the user knows it: the name it has in the file, or what it is.
+std::string label(const SceneObject& object) {
+  if (object.origin && !object.origin->name.empty()) return "'" + object.origin->name + "'";
+  const std::string& name = object.class_info().name;
+  return fmt::format("the {}", name);
+}
+
+bool written(const Component& c, std::string_view member) {
+  if (!c.origin) return false;
+  for (const auto& [name, place] : c.origin->members)
+    if (name == member) return true;
+  return false;
+}
+
+/// Calls for a component and all that its members hold, once each; `into` says whether to look inside.
+template <class Call>
+void for_parts(const Component& c, std::unordered_set<const Component*>& seen, const Call& call) {
+  if (!seen.insert(&c).second || !call(c)) return;
+  for (const Member& m : c.class_info().members) {
+    if (m.kind != Kind::component) continue;
+    const Value value = m.get(c, m);
+    if (const auto* part = value.as<Ref<Component>>(); part && *part) for_parts(**part, seen, call);
+    if (const auto* list = value.as<Value::List>())
+      for (const Value& item : *list)
+        if (const auto* part = item.as<Ref<Component>>(); part && *part) for_parts(**part, seen, call);
+  }
+}
+
+std::string names_text(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < std::min<size_t>(names.size(), 3); ++i) text += (i == 0 ? "'" : ", '") + names[i] + "'";
+  return names.size() > 3 ? text + fmt::format(" and {} more", names.size() - 3) : text;
+}
+
+class Objects {
+ public:
+  Objects(const Job& job, std::vector<SceneWarning>& list) : job_(job), list_(list) {}
+
+  /// `instead`: what all objects have for their own shaders; null: those.
+  void in(const Scene& scene, const Shader* instead) {
+    if (!seen_.insert({&scene, instead}).second) return;
+    for (const Ref<SceneObject>& object : scene.objects) {
+      if (const Scene* inner = scene_within(*object)) {
+        const bool instance = inner != object.get();
+        nested(*object, instance);
+        in(*inner, instead ? instead : instance ? object->shader.get() : nullptr);
+      } else {
+        one(*object, instead ? instead : object->shader.get());
+      }
+    }
+  }
+
+ private:
+  void add(const char* kind, std::string text, Location at) {
+    for (const SceneWarning& w : list_)
+      if (w.at.known() && w.at == at && w.kind == kind) return;
+    list_.push_back({kind, std::move(text), at});
+  }
+
+  void without_effect(const SceneObject& object, std::initializer_list<const char*> members, const std::string& why) {
+    for (const char* member : members)
+      if (written(object, member))
+        add("without effect", fmt::format("{}: '{}' has no effect: {}", label(object), member, why),
+            object.location_of(member));
+  }
+
+  void nested(const SceneObject& object, bool instance) {
+    if (instance)
+      without_effect(object, {"emission", "interior", "sides", "priority"},
+                     "of an instance only its shader counts; give these to the objects in its scene");
+    else
+      without_effect(object, {"shader", "emission", "interior", "sides", "priority"},
+                     "of a nested scene only its objects count; give these to them, or put the scene into an Instance with a "
+                     "shader");
+  }
+
+  void one(const SceneObject& object, const Shader* shader) {
+    if (object.infinite() || object.delta()) {
+      if (!object.luminaire())
+        add("dark luminaire", fmt::format("{} has no emission: it does nothing", label(object)), object.location_of());
+      without_effect(object, {"shader", "interior", "sides", "priority"}, "no ray meets its surface, it has only its emission");
+      return;
+    }
+    const bool enters = is_enterable(object, shader);
+    blackness(object, shader);
+    if (!shader) without_effect(object, {"sides"}, "it has no shader, so both sides are black");
+    if (shader && shader->possible_lobes() == pass_through)
+      without_effect(object, {"sides"}, "what goes straight on does so from both sides");
+    if (!enters && (!shader || !shader->transmits()))
+      without_effect(object, {"priority"}, "light does not enter it, so nothing can overlap inside");
+    if (object.interior) interior(object, shader, enters);
+    openness(object, shader);
+    file(object, shader);
+    coordinates(object, shader);
+  }
+
+  static bool is_enterable(const SceneObject& object, const Shader* shader) {
+    if (!shader) return false;
+    Lobes lobes = shader->possible_lobes();
+    if (object.sides != Sides::both) lobes &= Lobes(reflection_lobes | pass_through);
+    if (!(lobes & transmission_lobes)) return false;
+    // Last, as of a large mesh it takes time.
+    return (shader->transmits() || (object.interior && is_sheet(*shader))) && object.closed();
+  }
+
+  void blackness(const SceneObject& object, const Shader* shader) {
+    if (shader || object.luminaire() || !shows_light(*job_.renderer)) return;
+    std::string text = fmt::format("{} has no shader, so it is black", label(object));
+    if (const std::vector<std::string> materials = object.notes().materials; !materials.empty())
+      text += fmt::format("; the materials that its file names ({}) are not read", names_text(materials));
+    add("no shader", text + "; give it one, such as Lambertian { color: 0.5 }", object.location_of());
+  }
+
+  void interior(const SceneObject& object, const Shader* shader, bool enters) {
+    if (enters) return;
+    std::string why;
+    if (!object.closed())
+      why = fmt::format("the surface is not closed{}, so it has no inside; close it", ends_text(object));
+    else if (!shader)
+      why = "it has no shader, so no light enters; PassThrough {} bounds a medium without being seen";
+    else if (object.sides != Sides::both && shader->transmits())
+      why = "with one side black, no light is refracted into it; leave out 'sides'";
+    else
+      why = fmt::format(
+          "its shader, {}, lets no light in; PassThrough {{}} bounds a medium without being seen, Dielectric {{}} as "
+          "glass does",
+          shader->class_info().name);
+    add("interior", fmt::format("{}: the medium in 'interior' is never entered: {}", label(object), why),
+        object.location_of("interior"));
+  }
+
+  /// " (12 of its edges belong to one triangle alone)"
+  static std::string ends_text(const SceneObject& object) {
+    const std::uint64_t open = object.open_edges();
+    if (open > 0) return fmt::format(" ({} edge{} to one triangle alone)", grouped(open), open == 1 ? " belongs" : "s belong");
+    const auto mesh = object.triangles();
+    constexpr size_t fewest = 4;  // that enclose anything
+    return mesh && mesh->triangles.size() >= fewest ? " (its triangles do not all turn the same way around the front)" : "";
+  }
+
+  void openness(const SceneObject& object, const Shader* shader) {
+    if (!shader || object.interior || object.closed() || object.unbounded()) return;
+    if (!shader->transmits() || !(shader->possible_lobes() & refracting_lobes)) return;
+    // Of patches nothing is said: those of the best known bodies, such as the teapot, reach into one another and do not meet.
+    const std::string& name = object.class_info().name;
+    if (name == "BezierPatches" || name == "NurbsSurface") return;
+    add("open body",
+        fmt::format(
+            "{}: it refracts light, but the surface is not closed{}, so it has no inside and other bodies in it are taken "
+            "to be in the air; close it, or use a shader for thin panes, such as ThinDielectric",
+            label(object), ends_text(object)),
+        object.location_of("shader"));
+  }
+
+  /// What its file says that nobody reads.
+  void file(const SceneObject& object, const Shader* shader) {
+    if (!shader) return;
+    const ObjectNotes notes = object.notes();
+    const Location at = object.location_of("file");
+    if (notes.materials.size() > 1)
+      add("materials",
+          fmt::format("{}: its file names {} materials ({}), which are not read: all of it has the one shader given here; to "
+                      "give each its own, write a file and an object for each",
+                      label(object), notes.materials.size(), names_text(notes.materials)),
+          at);
+    for (const std::string& name : notes.attributes)
+      if (name == "color" && !uses(*shader, "AttributeMap") && !(object.emission && uses(*object.emission, "AttributeMap")))
+        add("vertex colours",
+            fmt::format("{}: the colours of its vertices are not used; Lambertian {{ color: AttributeMap {{}} }} shows them",
+                        label(object)),
+            written(object, "colors") ? object.location_of("colors") : at);
+  }
+
+  static bool uses(const Component& root, const char* class_name) {
+    bool found = false;
+    std::unordered_set<const Component*> seen;
+    for_parts(root, seen, [&](const Component& c) {
+      found |= c.class_info().name == class_name;
+      return !found;
+    });
+    return found;
+  }
+
+  /// Images over the surface coordinates of a mesh that has none.
+  void coordinates(const SceneObject& object, const Shader* shader) {
+    const Component* roots[] = {shader, object.emission.get()};
+    for (const Component* root : roots) {
+      if (!root) continue;
+      const Component* image = nullptr;
+      std::unordered_set<const Component*> seen;
+      for_parts(*root, seen, [&](const Component& c) {
+        const std::string& name = c.class_info().name;
+        if (name == "ImageMap" && !image) image = &c;
+        // These give what they hold coordinates of their own.
+        return name != "PlanarMap" && name != "CylindricalMap" && name != "SphericalMap" && name != "TriplanarMap";
+      });
+      if (!image || !object.notes().without_uv) continue;
+      add("no uv",
+          fmt::format(
+              "{}: the mesh has no surface coordinates (uv), so every triangle shows the image's lower left half; put the "
+              "image into a PlanarMap, CylindricalMap, SphericalMap or TriplanarMap, or give the mesh uvs",
+              label(object)),
+          image->location_of());
+    }
+  }
+
+  const Job& job_;
+  std::vector<SceneWarning>& list_;
+  std::set<std::pair<const Scene*, const Shader*>> seen_;
+};
+
+}  // namespace
+
+void warn_of_objects(const Job& job, std::vector<SceneWarning>& list) { Objects(job, list).in(*job.scene, nullptr); }
+
+}  // namespace etendue

@@ -1,0 +1,82 @@
+// Whether a picture for display came out nearly all black or nearly all white.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/scene_warnings.h"
+
+namespace etendue {
+namespace {
+
+constexpr double middle_grey = 0.18;  // of white
+
+struct Shown {
+  double lit = 0;               ///< fraction of pixels with any light at all
+  double black = 0, white = 0;  ///< of the lit ones, those shown as black, or with all of R, G and B at their most
+  double median = 0;            ///< luminance Y of the lit ones
+};
+
+Shown shown(const Image& radiance, const Image& display) {
+  std::vector<double> y;
+  size_t black = 0, white = 0;
+  const size_t stride = radiance.channels.size(), channels = display.channels.size();
+  for (size_t i = 0; i < size_t(radiance.width) * size_t(radiance.height); ++i) {
+    const double light = radiance.values[i * stride + 1];
+    if (!(light > 0) || !std::isfinite(light)) continue;
+    y.push_back(light);
+    const double* rgb = &display.values[i * channels];
+    black += std::max({rgb[0], rgb[1], rgb[2]}) < 1.5 / 255;
+    white += std::min({rgb[0], rgb[1], rgb[2]}) >= 1 - 0.5 / 255;
+  }
+  Shown s;
+  if (y.empty()) return s;
+  const double n = double(y.size());
+  s.lit = n / (double(radiance.width) * radiance.height);
+  s.black = double(black) / n;
+  s.white = double(white) / n;
+  const auto middle = y.begin() + std::ptrdiff_t(y.size() / 2);
+  std::nth_element(y.begin(), middle, y.end());
+  s.median = *middle;
+  return s;
+}
+
+}  // namespace
+
+std::vector<SceneWarning> picture_warnings(const Job& job) {
+  std::vector<SceneWarning> list;
+  if (!shows_light(*job.renderer)) return list;
+  const Image radiance = job.picture();
+  if (radiance.channels.size() < 3) return list;
+  const bool any = std::any_of(radiance.values.begin(), radiance.values.end(), [](double v) { return v > 0; });
+  if (!any) {
+    list.push_back(
+        {"black picture",
+         "the picture is black: no light found its way to the camera; 'etendue check' tells what a renderer cannot find",
+         job.location_of("renderer")});
+    return list;
+  }
+  for (const Ref<Output>& output : job.outputs) {
+    const ToneMap* tone = output->tone_map ? output->tone_map.get() : job.tone_map.get();
+    if (!output->for_display() || !tone) continue;
+    const Shown s = shown(radiance, tone->apply(radiance));
+    constexpr double most = 0.9;
+    const bool dark = s.black >= most, bright = s.white >= most;
+    // A few lit pixels before a black sky are a picture.
+    if (!(s.median > 0) || s.lit < 0.05 || (!dark && !bright)) continue;
+    const double stops = std::log2(middle_grey / s.median);
+    const double factor = dark ? middle_grey / s.median : s.median / middle_grey;
+    list.push_back(
+        {"tone",
+         fmt::format("{:.0f} % of the lit pixels are {} in {}: the median luminance, {:.3g}, is {:.3g} times {} middle "
+                     "grey; 'tone_map: ExposureToneMap {{ stops: {:.1f} }}' makes it that",
+                     100 * (dark ? s.black : s.white), dark ? "black" : "white", output->class_info().name, s.median, factor,
+                     dark ? "darker than" : "as bright as", stops),
+         output->tone_map ? output->location_of("tone_map") : job.location_of("tone_map")});
+    break;
+  }
+  return list;
+}
+
+}  // namespace etendue

@@ -1,0 +1,24 @@
+// The least and the largest value of a spectrum.
+
+#include "etendue/spectral_function.h"
+
+namespace etendue {
+
+ValueRange range_of(const SpectralFunction& f, ColorUse use) {
+  ValueRange r;
+  r.least = r.most = f.at(wavelength_low, use);
+  r.least_at = r.most_at = wavelength_low;
+  const auto look = [&](float wavelength) {
+    if (!(wavelength >= wavelength_low && wavelength <= wavelength_high)) return;
+    const float value = f.at(wavelength, use);
+    // Written so that what is no number is taken for the least.
+    if (!(value >= r.least)) r.least = value, r.least_at = wavelength;
+    if (value > r.most) r.most = value, r.most_at = wavelength;
+  };
+  if (f.varies())
+    for (float wavelength = wavelength_low; wavelength <= wavelength_high; wavelength += 1) look(wavelength);
+  for (const float wavelength : f.corners()) look(wavelength);
+  return r;
+}
+
+}  // namespace etendue
