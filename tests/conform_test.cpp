@@ -81,7 +81,12 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"SecretLensCamera", "without a lens rays do not depend on the lens point"},
                       Fault{"UnboundedMap", "reflectances are in [0, 1]"},
                       Fault{"DimRenderer", "the value of a furnace is the known one"},
-                      Fault{"ForgetfulFilter", "preparing leaves the members as they were written"}),
+                      Fault{"ForgetfulFilter", "preparing leaves the members as they were written"},
+                      Fault{"GlowingToneMap", "a black picture stays black"},
+                      Fault{"SolarizingToneMap", "what is brighter is not shown darker"},
+                      Fault{"HalfExposedToneMap", "an exposure of one stop less halves what goes in"},
+                      Fault{"PlaceToneMap", "equal pixels are shown equal by a map that is not local"},
+                      Fault{"UnclippedToneMap", "what is shown of a right picture is finite, and in [0, 1] if the map clips"}),
     [](const auto& each) { return std::string(each.param.class_name); });
 
 TEST(Conform, OutcomesDependOnTheSeedAlone) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "etendue/image_tools.h"
 #include "etendue/registry.h"
 
 namespace etendue {
@@ -57,6 +58,24 @@ Job { camera: PerspectiveCamera { from: [0, 0, -4], to: [0, 0, 0] }, image: Imag
   EXPECT_EQ(run(program + " render " + f + "/gold.etd --set 'scene.objects[0].shader.purity=2'", &output), 2);
   EXPECT_NE(output.find("must be from 0 to 1"), std::string::npos) << output;
 
+  // The textured shader reads its maps where it is hit: under light from everywhere a surface seen at 60 degrees sends
+  // color cos^darkness back, here in squares of darkness 0 and 1.
+  const std::string minnaert = f + "/build/libminnaert.so";
+  EXPECT_EQ(run(program + " conform MinnaertShader --quick --plugin " + minnaert, &output), 0) << output;
+  std::ofstream(f + "/squares.etd") << R"(plugin "build/libminnaert.so"
+Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, image: ImageBuffer { width: 2, height: 1, filter: BoxFilter {} }
+      scene: BruteForceScene { objects: [
+          Rectangle { corner: [-1, -4, 0], edge_u: [2, 0, 0], edge_v: [0, 8, 0], transform: rotate(60 deg, "x")
+                      shader: MinnaertShader { color: 0.8, darkness: CheckerMap { first: 0, second: 1, repeat: [2, 1, 1] } } }
+          Environment { emission: DiffuseEmission { sides: both } } ] } })";
+  EXPECT_EQ(run(program + " render " + f + "/squares.etd --samples 1024 --quiet -o " + f + "/squares.npy", &output), 0)
+      << output;
+  const Image squares = read_image(f + "/squares.npy");
+  const double lighter = std::max(squares.at(0, 0, 1), squares.at(1, 0, 1)),
+               darker = std::min(squares.at(0, 0, 1), squares.at(1, 0, 1));
+  EXPECT_NEAR(lighter, 0.8, 0.01);
+  EXPECT_NEAR(darker, 0.4, 0.01);
+
   // The renderer of the other page renders what the built-in one does.
   EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
                     "/build/libstudent_tracer.so --renderers PathTracer,StudentTracer --samples 512 --size 48x48 --quiet",
@@ -76,6 +95,7 @@ TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
     EXPECT_LT(std::count(listing.begin(), listing.end(), '\n'), lines) << source;
   };
   check(ETENDUE_SOURCE_DIR "/tests/plugin/gold.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-shader.md", 60);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/minnaert.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-textured-shader.md", 70);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/student_tracer.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 80);
 }
 

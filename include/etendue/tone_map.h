@@ -24,9 +24,11 @@ class ToneMap : public Component {
 
   /// Whether the result is bounded to [0, 1] (all but the map that changes nothing).
   virtual bool clips() const { return true; }
+  /// Whether what becomes of a pixel depends on those around it (dodging and burning): equal pixels may then differ.
+  virtual bool local() const { return false; }
 
  protected:
-  /// The operator: X Y Z to X Y Z, in place.
+  /// The operator: X Y Z to X Y Z, in place. What it has found out may go to the image's metadata.
   virtual void map(Image& xyz) const = 0;
 };
 

@@ -7,6 +7,7 @@
 #include "app/commands.h"
 #include "app/image_merge.h"
 #include "etendue/image_tools.h"
+#include "etendue/job.h"
 #include "etendue/language.h"
 #include "etendue/tone_map.h"
 #include "files/input_files.h"
@@ -131,7 +132,7 @@ void add_info(CLI::App& image, Run& run) {
 // ---- tonemap ------------------------------------------------------------------------------------------------------------
 
 struct ToneMapOptions {
-  std::string in, out, tone_map = "NoToneMap {}";
+  std::string in, out, tone_map = write_description(*make<Job>()->tone_map);
 };
 
 int tone_map_picture(const ToneMapOptions& options) {
@@ -155,7 +156,7 @@ void add_tonemap(CLI::App& image, Run& run) {
   command->add_option("--tone-map", options->tone_map, "A tone map as it is written in a file")
       ->capture_default_str()
       ->type_name("TONEMAP");
-  command->footer("\nExample\n  etendue image tonemap box.exr box.png --tone-map 'SchlickToneMap {}'");
+  command->footer("\nExample\n  etendue image tonemap box.exr box.png --tone-map 'ReinhardToneMap { stops: 1 }'");
   command->callback([options, &run] { run = [options] { return tone_map_picture(*options); }; });
 }
 

@@ -115,7 +115,7 @@ std::string VerifyOptions::command_line() const {
 /// The tone map of the report's pictures: the job's, unless that leaves them as they are.
 Ref<ToneMap> display_tone_map(const Job& job) {
   if (job.tone_map && job.tone_map->clips()) return job.tone_map;
-  Ref<ToneMap> map = ref_cast<ToneMap>(Registry::instance().create("SchlickToneMap"));
+  Ref<ToneMap> map = make<Job>()->tone_map;
   prepare_tree(*map);
   return map;
 }

@@ -21,7 +21,7 @@ constexpr InterfaceCheck interface_checks[] = {
     {"Shader", check_shader},        {"VolumeShader", check_volume},      {"Camera", check_camera},
     {"Filter", check_filter},        {"Sampler", check_sampler},          {"EmissionShader", check_emission},
     {"ObjectMap", check_object_map}, {"SceneObject", check_scene_object}, {"LightSampler", check_light_sampler},
-    {"Renderer", check_renderer},
+    {"Renderer", check_renderer},    {"ToneMap", check_tone_map},
 };
 
 std::vector<const ClassInfo*> chosen(const std::vector<std::string>& names) {

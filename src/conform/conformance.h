@@ -105,6 +105,7 @@ void check_object_map(Trial&);
 void check_scene_object(Trial&);
 void check_light_sampler(Trial&);
 void check_renderer(Trial&);
+void check_tone_map(Trial&);
 
 struct Options {
   std::vector<std::string> classes;  ///< names of classes or interfaces; empty: all

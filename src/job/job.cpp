@@ -46,7 +46,7 @@ Job::Job()
     : renderer(created<Renderer>("PathTracer")),
       image(created<ImageBuffer>("ImageBuffer")),
       wavelengths(created<WavelengthSampler>("HeroWavelengths")),
-      tone_map(created<ToneMap>("NoToneMap")) {}
+      tone_map(created<ToneMap>("AgXToneMap")) {}
 
 Job::~Job() = default;
 

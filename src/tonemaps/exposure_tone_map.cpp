@@ -1,23 +1,17 @@
-#include "etendue/tone_map.h"
+#include "etendue/exposed_tone_map.h"
 
 namespace etendue {
 namespace {
 
-class ExposureToneMap final : public ToneMap {
-  float stops = 0;
-
+class ExposureToneMap final : public ExposedToneMap {
  public:
+  ExposureToneMap() { exposure = Exposure::fixed; }
   static void describe(Description<ExposureToneMap>& d) {
-    d.summary("Multiplies by a power of two, as a camera's exposure does; what exceeds white is clipped.")
-        .member<&ExposureToneMap::stops>("stops", "1", "each doubles the light; at 0, luminance 1 is white", range(-64, 64),
-                                         Effect::retone);
+    d.summary("Multiplies by a power of two, as a camera's exposure does; what exceeds white is clipped.");
   }
 
  protected:
-  void map(Image& xyz) const override {
-    const double scale = std::exp2(double(stops));
-    for (double& v : xyz.values) v *= scale;
-  }
+  void develop(Image&) const override {}
 };
 
 static const Register<ExposureToneMap> registered;

@@ -35,6 +35,7 @@ Image ToneMap::apply(const Image& xyz) const {
   for (size_t i = 0; i < pixels; ++i)
     for (size_t c = 0; c < 3; ++c) image.values[3 * i + c] = xyz.values[i * channels + from[c]];
 
+  image.metadata = xyz.metadata;
   map(image);
 
   const std::array<double, 9> m = rgb_space(color_space).from_xyz;
@@ -49,7 +50,6 @@ Image ToneMap::apply(const Image& xyz) const {
     }
   }
   image.channels = {"R", "G", "B"};
-  image.metadata = xyz.metadata;
   image.metadata["color_space"] = color_space;
   image.metadata["transfer"] = transfer;
   return image;
