@@ -47,8 +47,7 @@ TEST(Expansion, OfMapsAndShadersIsBounded) {
       "13:7: 'a12' is asked for 16383 parts at every hit, as 'a0' stands in 4096 places in it; only 15 parts are written, "
       "and 10000 are the most that shared parts may amount to");
   const std::string mixes = chain("Lambertian {}", "MixShader { first: @, second: @, amount: a0a }", 20);
-  EXPECT_NE(said("a0a = NoiseMap {}\n" + mixes + lit("Sphere { shader: a20 }")).find("is asked for 1"),
-            std::string::npos);
+  EXPECT_NE(said("a0a = NoiseMap {}\n" + mixes + lit("Sphere { shader: a20 }")).find("is asked for 1"), std::string::npos);
   // Two chains that cross: no part has the same part twice.
   std::string crossed = "a0 = NoiseMap {}\nb0 = NoiseMap { seed: 2 }\n";
   for (int i = 1; i <= 30; ++i) {

@@ -8,8 +8,8 @@
 #include "etendue/language.h"
 #include "files/input_files.h"
 #include "files/output_files.h"
-#include "outputs/whole_file.h"
 #include "language/json.h"
+#include "outputs/whole_file.h"
 
 namespace etendue {
 
