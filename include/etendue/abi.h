@@ -26,7 +26,7 @@ inline constexpr std::size_t vector_register = 32;
 inline constexpr std::size_t vector_register = 16;
 #endif
 
-/// The sizes of what options change: -fshort-enums, -fpack-struct, -mlong-double-64, -fabi-version.
+/// Of sizes that options change: -fshort-enums, -fpack-struct.
 enum SmallEnum { small_enum };
 struct Padded {
   char first;
@@ -36,8 +36,7 @@ struct WithBase : Padded {
   char third;
 };
 
-/// A text that is put together by the compiler. It has internal linkage on purpose: a plugin's own is asked for, never that of
-/// the program.
+/// A text that is put together by the compiler.
 struct AbiText {
   char text[320] = {};
   std::size_t size = 0;
@@ -81,6 +80,7 @@ constexpr AbiText make_abi_text() {
   }
   return t;
 }
+/// Of internal linkage, as what a plugin says must be its own, never what the program says.
 static constexpr AbiText abi_text = make_abi_text();
 
 /// The extensions of the instruction set that the compiler may have used, each followed by a blank.

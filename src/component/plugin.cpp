@@ -76,8 +76,8 @@ void compare_abi(const std::string& theirs) {
   for (size_t i = 0; i < own_parts.size(); ++i) {
     if (i < their_parts.size() && their_parts[i] == own_parts[i]) continue;
     const std::string other = i < their_parts.size() ? their_parts[i] : "nothing";
-    throw Error(fmt::format("it was built for '{}', this program is '{}'; build it again {} (all of it: '{}' and '{}')", other,
-                            own_parts[i], remedy(other, own_parts[i]), theirs, own));
+    throw Error(fmt::format("it was built for '{}', this program is '{}'; build it again {}", other, own_parts[i],
+                            remedy(other, own_parts[i])));
   }
   throw Error(
       fmt::format("it was built for '{}', this program is '{}'; build it again with the headers of this program", theirs, own));
