@@ -194,7 +194,7 @@ TEST(ClosedForm, PrismDeviation) {
       if (record.vertices.size() < 4) continue;
       if (record.vertices[1].lobe != "specular transmission" || record.vertices[2].lobe != "specular transmission") continue;
       const Vector3 begin = Vector3(record.vertices[0].normal),
-                    end = normalize(record.vertices[3].position - record.vertices[2].position);
+                    end = normalize(Vector3(record.vertices[3].position - record.vertices[2].position));
       EXPECT_NEAR(std::acos(double(dot(begin, end))) * 180 / double(pi), line.deviation, 0.005) << line.wavelength;
       found = true;
     }

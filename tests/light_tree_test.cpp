@@ -42,7 +42,7 @@ std::string scene_job(const std::string& sampler, const std::string& objects, in
 
 TEST(LightTree, ProbabilitiesAreThoseOfTheChoices) {
   const Ref<Job> job = load_job_text(scene_job("TreeLightSampler", lamps(40) + floor_plane, 1), "test.etd");
-  prepare_tree(*job);
+  prepare_tree(*job->scene);  // alone: it counts from the origin
   const Scene& scene = *job->scene;
   const Ref<LightSampler> tree = create<LightSampler>("TreeLightSampler");
   tree->build(scene);

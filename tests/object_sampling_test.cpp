@@ -61,7 +61,7 @@ TEST(Objects, SurfacePointsAgreeWithRays) {
       EXPECT_LT(distance(p.position, r(hit.distance)), 2e-5f);
       EXPECT_NEAR(length(Vector3(p.normal)), 1, 1e-5f);
       EXPECT_GE(dot(p.normal, p.shading_normal), 0);
-      const Transform t = c.object->transform.at(c.time);
+      const Transform t = c.object->transform.from_origin(c.time);
       EXPECT_LT(distance(t(p.object_position), p.position), 2e-5f);
       EXPECT_NEAR(dot(normalize(t(p.object_normal)), p.normal), 1, 1e-4f);
       EXPECT_EQ(p.time, c.time);

@@ -28,6 +28,9 @@ class Component {
   /// What is known of the object's class: name, parent, members, factory.
   const ClassInfo& class_info() const;
 
+  /// Called before the members that are components are prepared, when this component is what prepare_tree was asked for: a
+  /// Job tells them here what coordinates they are to count in.
+  virtual void before_prepare() {}
   /// Called once, after all members are set and after the members that are components were prepared; again after an
   /// edit. May throw an Error; `fail` throws one with the place where a member was written.
   virtual void prepare() {}

@@ -36,18 +36,18 @@ std::int64_t to_integer(const Value&, const Member&, std::int64_t low, std::int6
 std::string to_string(const Value&);
 FilePath to_file(const Value&);
 int to_choice(const Value&, const Member&);
-void to_floats(const Value&, const Member&, float* out, int count);
+void to_numbers(const Value&, const Member&, double* out, int count);
 Color to_color(const Value&, const Member&);
 AnimatedTransform to_transform(const Value&);
 Ref<Component> to_component(const Value&, const Member&);
-/// Rows of `width` floats appended through `push`; accepts flat and nested lists.
-void to_rows(const Value&, const Member&, int width, void (*push)(void* to, const float* row), void* to,
+/// Rows of `width` numbers appended through `push`; accepts flat and nested lists.
+void to_rows(const Value&, const Member&, int width, void (*push)(void* to, const double* row), void* to,
              void (*reserve)(void* to, size_t rows));
 void to_integers(const Value&, const Member&, std::int64_t low, std::int64_t high, void (*push)(void* to, std::int64_t),
                  void* to, void (*reserve)(void* to, size_t count));
 const Value::List& to_list(const Value&, Value::List& scratch);
 Value from_number(double, const Member&);
-Value from_floats(const float*, int count, const Member&);
+Value from_numbers(const double*, int count, const Member&);
 
 template <class T>
 struct Convert;  // no member: a type the language does not have
@@ -103,26 +103,27 @@ template <class T, Kind K, int N>
 struct ConvertTuple {
   static constexpr Kind kind = K;
   static constexpr int width = N;
-  static T make(const float* f) {
+  using Scalar = decltype(T::x);
+  static T make(const double* f) {
     if constexpr (N == 2)
-      return T{f[0], f[1]};
+      return T{Scalar(f[0]), Scalar(f[1])};
     else
-      return T{f[0], f[1], f[2]};
+      return T{Scalar(f[0]), Scalar(f[1]), Scalar(f[2])};
   }
   static void read(const Value& v, const Member& m, T& out) {
-    float f[N];
-    to_floats(v, m, f, N);
+    double f[N];
+    to_numbers(v, m, f, N);
     out = make(f);
   }
-  static void get(const T& v, float* f) {
-    f[0] = v.x;
-    f[1] = v.y;
-    if constexpr (N == 3) f[2] = v.z;
+  static void get(const T& v, double* f) {
+    f[0] = double(v.x);
+    f[1] = double(v.y);
+    if constexpr (N == 3) f[2] = double(v.z);
   }
   static Value write(const T& v, const Member& m) {
-    float f[N];
+    double f[N];
     get(v, f);
-    return from_floats(f, N, m);
+    return from_numbers(f, N, m);
   }
 };
 template <>
@@ -133,6 +134,8 @@ template <>
 struct Convert<Vector3> : ConvertTuple<Vector3, Kind::vector3, 3> {};
 template <>
 struct Convert<Point3> : ConvertTuple<Point3, Kind::point3, 3> {};
+template <>
+struct Convert<DoublePoint3> : ConvertTuple<DoublePoint3, Kind::point3, 3> {};
 template <>
 struct Convert<Normal3> : ConvertTuple<Normal3, Kind::normal3, 3> {};
 
@@ -147,7 +150,9 @@ template <>
 struct Convert<AnimatedTransform> {
   static constexpr Kind kind = Kind::transform;
   static void read(const Value& v, const Member&, AnimatedTransform& out) { out = to_transform(v); }
-  static Value write(const AnimatedTransform& v, const Member&) { return v.animated() ? Value(v) : Value(v.still()); }
+  static Value write(const AnimatedTransform& v, const Member&) {
+    return v.animated() ? Value(AnimatedTransform(v.keys())) : Value(v.keys().front().transform);
+  }
 };
 
 template <class C>
@@ -170,10 +175,10 @@ struct Convert<std::vector<T>> {
     List list;
     if constexpr (Tuple<T>) {
       to_rows(
-          v, m, Convert<T>::width, [](void* to, const float* f) { static_cast<List*>(to)->push_back(Convert<T>::make(f)); },
+          v, m, Convert<T>::width, [](void* to, const double* f) { static_cast<List*>(to)->push_back(Convert<T>::make(f)); },
           &list, reserve);
     } else if constexpr (std::is_floating_point_v<T>) {
-      to_rows(v, m, 1, [](void* to, const float* f) { static_cast<List*>(to)->push_back(T(*f)); }, &list, reserve);
+      to_rows(v, m, 1, [](void* to, const double* f) { static_cast<List*>(to)->push_back(T(*f)); }, &list, reserve);
     } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
       to_integers(
           v, m, Convert<T>::low, Convert<T>::high, [](void* to, std::int64_t i) { static_cast<List*>(to)->push_back(T(i)); },
@@ -191,7 +196,7 @@ struct Convert<std::vector<T>> {
       n.width = Convert<T>::width;
       n.values.reserve(v.size() * size_t(n.width));
       for (const T& item : v) {
-        float f[3];
+        double f[3];
         Convert<T>::get(item, f);
         n.values.insert(n.values.end(), f, f + n.width);
       }
@@ -272,6 +277,7 @@ class Description {
     m.text = std::move(text);
     m.kind = detail::Convert<Type>::kind;
     m.list = detail::IsVector<Type>::value;
+    m.in_double = std::is_same_v<Type, DoublePoint3> || std::is_same_v<Type, std::vector<DoublePoint3>>;
     m.component_class = detail::referred_class<detail::Referee<Type>>();
     m.owner = &info_;
     m.get = [](const Component& c, const Member& self) {

@@ -65,7 +65,10 @@ class Job final : public Component {
   double checkpoint_interval = 60;   ///< [s] at least from one writing to the next; 0: after every pass
   std::optional<IndexRange> passes;  ///< only these; their number and size follow from the picture's size and the samples
 
+  void before_prepare() override;
   void prepare() override;
+  /// The point of the world that rendering coordinates count from.
+  const DoublePoint3& world_centre() const { return centre_; }
 
   /// Prepares everything and renders from the beginning until a rule says stop. The picture depends on the description and
   /// the seed alone.
@@ -101,6 +104,7 @@ class Job final : public Component {
 
  private:
   RenderContext context() const;
+  void count_from(const DoublePoint3& centre);
   IndexRange wanted_samples() const;
   Ended run(const Checkpoint* from, const std::string& from_file);
 
@@ -109,6 +113,7 @@ class Job final : public Component {
   double seconds_ = 0;
   std::string checkpoint_failure_;
   bool prepared_ = false;
+  DoublePoint3 centre_;
 };
 
 }  // namespace etendue

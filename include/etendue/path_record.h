@@ -11,9 +11,9 @@ namespace etendue {
 
 struct PathRecord {
   struct Vertex {
-    std::string kind;    ///< "camera", "surface", "escaped", …
-    std::string object;  ///< its name or class
-    Point3 position;
+    std::string kind;       ///< "camera", "surface", "escaped", …
+    std::string object;     ///< its name or class
+    DoublePoint3 position;  ///< while it is filled as the renderer counts, then in the coordinates of the world
     Normal3 normal;
     std::string lobe;     ///< what was sampled there; empty: the path ended
     float density = 0;    ///< [1/sr] of the sampled direction (a probability for specular lobes)
@@ -38,6 +38,11 @@ struct PathRecord {
   }
   void contribute(Contribution c) {
     add_to(contributions, std::move(c), [](Contribution& last) { last.strategy += ", others before it left out"; });
+  }
+  /// To be called when all is filled, with the point of the world that the renderer counts from.
+  void count_from_world(const DoublePoint3& centre) {
+    for (auto* list : {&vertices, &light_vertices})
+      for (Vertex& v : *list) v.position = v.position + (centre - DoublePoint3{});
   }
 
   std::vector<Vertex> vertices;        ///< from the camera

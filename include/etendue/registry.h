@@ -52,7 +52,8 @@ struct Member {
   std::string name, unit, text;
   Kind kind = Kind::number;
   bool list = false;
-  bool required = false;  ///< must be written: it has no useful default
+  bool required = false;   ///< must be written: it has no useful default
+  bool in_double = false;  ///< its numbers are places in double; else they are floats
   Effect effect = Effect::rerender;
   std::optional<Range> range;
   std::vector<std::string> choices;

@@ -18,6 +18,9 @@ class Scene : public SceneObject {
   static void describe(Description<Scene>&);
 
   std::vector<Ref<SceneObject>> objects;
+  /// Of a nested scene that may choose, when it is prepared, from which point its objects count: the time at which the shutter
+  /// opens [s]. Set by the Job.
+  std::optional<float> chooses_centre;
 
   /// The nearest hit with t in (0, ray.maximum).
   virtual bool nearest(const Ray&, Hit&) const = 0;
@@ -72,6 +75,7 @@ class Scene : public SceneObject {
   void prepare() override;
   Bounds3 bounds() const override;
   bool unbounded() const override { return unbounded_; }
+  std::vector<SceneObject*> placed_within() const override;
   bool intersect(const Ray&, Hit&) const override;
   bool occludes(const Ray&) const override;
   void all_hits(const Ray&, HitList&) const override;
@@ -86,6 +90,7 @@ class Scene : public SceneObject {
 
  private:
   friend class Instance;
+  void choose_centre();
   void locate_nested(const Ray&, const Hit&, SurfacePoint&) const;
   Bounds3 placed_bounds(const AnimatedTransform& placed) const;
   bool in_interior_tree(const Point3&) const;

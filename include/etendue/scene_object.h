@@ -70,7 +70,10 @@ class SceneObject : public Component {
   using Parent = Component;
   static void describe(Description<SceneObject>&);
 
-  AnimatedTransform transform;   ///< from the object's own coordinates to those of the scene it is in
+  /// From the object's own coordinates to those of the scene it is in. It counts these from a point near to what is seen, and
+  /// the own ones from whatever the object chooses in `prepare` (see AnimatedTransform): so objects give bounds, hits and
+  /// points as the renderer counts, from what their transform makes of own places.
+  AnimatedTransform transform;
   Ref<Shader> shader;            ///< null: black
   Ref<EmissionShader> emission;  ///< null: no luminaire
   Ref<VolumeShader> interior;    ///< null: vacuum inside
@@ -147,8 +150,21 @@ class SceneObject : public Component {
   /// The object the user wrote, when this one stands for it: in one of several places, or with another shader.
   virtual const SceneObject& original() const { return *this; }
 
+  /// Objects that stand within this one's own coordinates: those of a scene, the operands of a solid.
+  virtual std::vector<SceneObject*> placed_within() const { return {}; }
+  /// Which point of the world, in its coordinates, the renderer counts from. Set by the Job, as the points the transform counts
+  /// from are.
+  DoublePoint3 world_centre;
+  /// Whether what stands within counts from where this object's scene does, as it is in one place only. Set with those.
+  bool follows_scene = false;
+
   /// Place among the luminaires of the scene the renderer sees; -1: none. Set by Scene::prepare.
   int luminaire_index = -1;
 };
+
+/// A point's place in the coordinates of the world, as the user wrote them.
+inline DoublePoint3 world_position(const SurfacePoint& p) {
+  return p.object ? DoublePoint3(p.position) + (p.object->world_centre - DoublePoint3{}) : DoublePoint3(p.position);
+}
 
 }  // namespace etendue

@@ -84,6 +84,42 @@ constexpr float max_component(const Vector3& v) { return v.x > v.y ? (v.x > v.z 
 inline bool is_finite(const Vector3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 inline bool is_finite(const Point3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
+/// A displacement in double: of places as a description says them.
+struct DoubleVector3 {
+  double x = 0, y = 0, z = 0;
+  constexpr DoubleVector3() = default;
+  constexpr DoubleVector3(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
+  constexpr DoubleVector3(const Vector3& v) : x(double(v.x)), y(double(v.y)), z(double(v.z)) {}  // NOLINT: loses nothing
+  constexpr explicit operator Vector3() const { return {float(x), float(y), float(z)}; }
+  bool operator==(const DoubleVector3&) const = default;
+};
+
+/// A place as a description says it: a float far from the origin could not hold it. Rendering counts places from a point near
+/// to what is seen, in floats; the difference is taken in double.
+struct DoublePoint3 {
+  double x = 0, y = 0, z = 0;
+  constexpr DoublePoint3() = default;
+  constexpr DoublePoint3(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
+  constexpr DoublePoint3(const Point3& p) : x(double(p.x)), y(double(p.y)), z(double(p.z)) {}  // NOLINT: loses nothing
+  constexpr explicit operator Point3() const { return {float(x), float(y), float(z)}; }
+  constexpr double operator[](int axis) const { return axis == 0 ? x : (axis == 1 ? y : z); }
+  constexpr double& operator[](int axis) { return axis == 0 ? x : (axis == 1 ? y : z); }
+  bool operator==(const DoublePoint3&) const = default;
+};
+
+constexpr DoubleVector3 operator-(const DoublePoint3& a, const DoublePoint3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+constexpr DoublePoint3 operator+(const DoublePoint3& p, const DoubleVector3& v) { return {p.x + v.x, p.y + v.y, p.z + v.z}; }
+constexpr DoublePoint3 operator-(const DoublePoint3& p, const DoubleVector3& v) { return {p.x - v.x, p.y - v.y, p.z - v.z}; }
+constexpr DoubleVector3 operator+(const DoubleVector3& a, const DoubleVector3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+constexpr DoubleVector3 operator-(const DoubleVector3& a, const DoubleVector3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+constexpr DoubleVector3 operator*(double s, const DoubleVector3& v) { return {s * v.x, s * v.y, s * v.z}; }
+constexpr double dot(const DoubleVector3& a, const DoubleVector3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr DoubleVector3 cross(const DoubleVector3& a, const DoubleVector3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length(const DoubleVector3& v) { return std::sqrt(dot(v, v)); }
+inline bool is_finite(const DoublePoint3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
 /// An orthonormal right-handed basis; local z is the normal.
 struct Frame {
   Vector3 s, t;

@@ -78,6 +78,7 @@ ReplayedPath replay(const RenderContext& context, const Renderer& renderer, int 
   request.record = &path.record;
   request.splats = &splats;
   const Renderer::CameraSample s = renderer.camera_sample(context, x, y, sample, arena, request);
+  path.record.count_from_world(context.camera.world_centre);
   path.film = s.film;
   path.bad = !luminance_of(s.value, s.wavelengths, path.luminance);
   path.splatted = splatted_luminance(context.image, splats);

@@ -23,6 +23,13 @@ std::string place(const V& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z);
 }
 
+/// Far from the origin with as many digits as tell places near to each other apart.
+std::string place(const DoublePoint3& p) {
+  const double largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), 1.0});
+  const int digits = std::clamp(4 + int(std::log10(largest)), 6, 15);
+  return fmt::format("({:.{}g}, {:.{}g}, {:.{}g})", p.x, digits, p.y, digits, p.z, digits);
+}
+
 std::string vertex_text(const PathRecord::Vertex& v, const char* what, size_t place_in_path) {
   std::string text = fmt::format("{} {}: {}{}\n", what, place_in_path, v.kind, v.object.empty() ? "" : " on " + v.object);
   const auto add = [&](const char* label, const std::string& value) { text += fmt::format("    {:<12}{}\n", label, value); };

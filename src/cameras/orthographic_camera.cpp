@@ -21,6 +21,7 @@ class OrthographicCamera final : public Camera {
                                             more_than(0));
   }
 
+  std::optional<DoublePoint3> place() const override { return transform.written(shutter_open)(from); }
   void prepare() override {
     check_shutter(*this);
     placement_.set(*this, from, to, up, transform);
@@ -71,7 +72,7 @@ class OrthographicCamera final : public Camera {
   float importance(const Ray& r) const override { return film_point(r) ? density_ : 0; }
   CameraDensity density(const Ray& r) const override { return film_point(r) ? CameraDensity{density_, 1} : CameraDensity{}; }
 
-  Point3 from{0, 0, 0}, to{0, 0, 1};
+  DoublePoint3 from{0, 0, 0}, to{0, 0, 1};
   Vector3 up{0, 1, 0};
   AnimatedTransform transform;
   float width = 1;

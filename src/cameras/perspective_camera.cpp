@@ -39,10 +39,11 @@ class PerspectiveCamera final : public Camera {
             "focus_distance", "m", "distance of the plane of sharp focus, along the axis; 0: at the point `to`", at_least(0));
   }
 
+  std::optional<DoublePoint3> place() const override { return transform.written(shutter_open)(from); }
   void prepare() override {
     check_shutter(*this);
     placement_.set(*this, from, to, up, transform);
-    focus_ = focus_distance > 0 ? focus_distance : distance(from, to);
+    focus_ = focus_distance > 0 ? focus_distance : float(length(to - from));
     update();
   }
   void set_film(int width, int height) override {
@@ -106,7 +107,7 @@ class PerspectiveCamera final : public Camera {
     return {lens_density_, 1 / (area_ * seen.cosine * square(seen.cosine))};
   }
 
-  Point3 from{0, 0, 0}, to{0, 0, 1};
+  DoublePoint3 from{0, 0, 0}, to{0, 0, 1};
   Vector3 up{0, 1, 0};
   AnimatedTransform transform;
   float fov = 40;

@@ -4,14 +4,15 @@
 
 namespace etendue {
 
-void Placement::set(const Component& camera, const Point3& from, const Point3& to, const Vector3& up,
+void Placement::set(const Camera& camera, const DoublePoint3& from, const DoublePoint3& to, const Vector3& up,
                     const AnimatedTransform& transform) {
   if (!is_finite(from)) camera.fail("from", "must be finite numbers");
   if (!is_finite(to)) camera.fail("to", "must be finite numbers");
-  const Vector3 forward = to - from;
-  if (!(length(forward) > 0)) camera.fail("to", "must be another point than from: it says where the camera looks");
+  const DoubleVector3 way = to - from;
+  const Vector3 forward(1 / length(way) * way);
+  if (!(length(way) > 0)) camera.fail("to", "must be another point than from: it says where the camera looks");
   if (!is_finite(up) || !(length(up) > 0)) camera.fail("up", "must be a direction other than zero");
-  if (!(length(cross(normalize(forward), normalize(up))) > 1e-5f)) camera.fail("up", "must not point along the line of sight");
+  if (!(length(cross(forward, normalize(up))) > 1e-5f)) camera.fail("up", "must not point along the line of sight");
   if (!transform.valid()) camera.fail("transform", "cannot be inverted");
   // A camera that is stretched would measure lens and film in other units than the world's.
   for (const auto& key : transform.keys()) {
@@ -20,8 +21,9 @@ void Placement::set(const Component& camera, const Point3& from, const Point3& t
       if (!(std::abs(length(axes[i]) - 1) < 1e-3f) || !(std::abs(dot(axes[i], axes[(i + 1) % 3])) < 1e-3f))
         camera.fail("transform", "a camera can be moved and turned but not scaled or sheared");
   }
-  base_ = Transform::look_at(from, to, up);
   transform_ = transform;
+  transform_.count_from(camera.world_centre, from);
+  base_ = Transform::look_at({}, {way.x, way.y, way.z}, up);
   moving_ = transform.animated();
   still_ = Pose(transform_.still() * base_);
 }

@@ -26,7 +26,7 @@ struct Pose {
 class Placement {
  public:
   /// Checks and takes the members of a camera; throws at the member that is wrong.
-  void set(const Component& camera, const Point3& from, const Point3& to, const Vector3& up,
+  void set(const Camera& camera, const DoublePoint3& from, const DoublePoint3& to, const Vector3& up,
            const AnimatedTransform& transform);
   Pose at(float time) const { return moving_ ? Pose(transform_.at(time) * base_) : still_; }
 

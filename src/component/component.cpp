@@ -44,6 +44,7 @@ void prepare_tree(Component& root) {
   const auto visit = [&](Component& c) {
     if (seen.insert(&c).second) way.push_back({&c, components_of(c)});
   };
+  root.before_prepare();
   visit(root);
   while (!way.empty()) {
     Step& step = way.back();

@@ -115,10 +115,10 @@ int to_choice(const Value& v, const Member& m) {
   throw Error(fmt::format("has no choice '{}'{}; known are {}", *s, suggestion(*s, m.choices), known), v.location);
 }
 
-void to_floats(const Value& v, const Member& m, float* out, int count) {
+void to_numbers(const Value& v, const Member& m, double* out, int count) {
   const auto* n = v.as<Numbers>();
   if (!n || n->width != 1 || n->values.size() != size_t(count)) mismatch(fmt::format("{} numbers in brackets", count), v);
-  for (int i = 0; i < count; ++i) out[i] = float(checked(n->values[size_t(i)], n->dimension, m, v.location));
+  for (int i = 0; i < count; ++i) out[i] = checked(n->values[size_t(i)], n->dimension, m, v.location);
 }
 
 Color to_color(const Value& v, const Member& m) {
@@ -168,7 +168,7 @@ Ref<Component> to_component(const Value& v, const Member& m) {
   mismatch(with_article(wanted->name), v);
 }
 
-void to_rows(const Value& v, const Member& m, int width, void (*push)(void*, const float*), void* to,
+void to_rows(const Value& v, const Member& m, int width, void (*push)(void*, const double*), void* to,
              void (*reserve)(void*, size_t)) {
   if (const auto* list = v.as<Value::List>(); list && list->empty()) return;
   const auto* n = v.as<Numbers>();
@@ -179,12 +179,12 @@ void to_rows(const Value& v, const Member& m, int width, void (*push)(void*, con
   }
   const size_t rows = n->values.size() / size_t(width);
   reserve(to, rows);
-  float row[4];
+  double row[4];
   for (size_t r = 0; r < rows; ++r) {
     for (int k = 0; k < width; ++k) {
       const double x = n->values[r * size_t(width) + size_t(k)];
       try {
-        row[k] = float(checked(x, n->dimension, m, v.location));
+        row[k] = checked(x, n->dimension, m, v.location);
       } catch (const Error& e) {
         throw Error(fmt::format("entry {}: {}", r, e.what()), v.location);
       }
@@ -233,10 +233,10 @@ Value from_number(double x, const Member& m) {
   return Value(n);
 }
 
-Value from_floats(const float* f, int count, const Member& m) {
+Value from_numbers(const double* f, int count, const Member& m) {
   Numbers n;
   const double factor = unit_factor(m, n.dimension);
-  for (int i = 0; i < count; ++i) n.values.push_back(double(f[i]) * factor);
+  for (int i = 0; i < count; ++i) n.values.push_back(f[i] * factor);
   return Value(std::move(n));
 }
 

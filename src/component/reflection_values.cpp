@@ -50,7 +50,7 @@ std::string quoted(const std::string& text) {
 std::string transform_text(const Transform& transform) {
   if (transform.identity()) return "identity";
   std::vector<std::string> numbers;
-  for (const float x : transform.matrix()) numbers.push_back(number_text(double(x)));
+  for (const double x : transform.exact()) numbers.push_back(number_text(x));
   return fmt::format("matrix({})", fmt::join(numbers, ", "));
 }
 
@@ -159,7 +159,7 @@ std::string value_text(const Value& value, const Member& member) {
   if (const auto* color = value.as<Color>()) return *color ? (*color)->expression() : "none";
   if (const auto* transform = value.as<Transform>()) return transform_text(*transform);
   if (const auto* moving = value.as<AnimatedTransform>()) {
-    if (!moving->animated()) return transform_text(moving->still());
+    if (!moving->animated()) return transform_text(moving->keys().front().transform);
     return fmt::format("{} keys in time", moving->keys().size());
   }
   if (const auto* component = value.as<Ref<Component>>()) return *component ? component_text(**component) : "none";

@@ -95,7 +95,7 @@ void check_moved(const ObjectTrial& o) {
   const Transform by =
       Transform::translate({1, -2, 0.5f}) * Transform::rotate(1.1f, {1, 0.3f, -0.7f}) * Transform::scale({scale, scale, scale});
   const Ref<SceneObject> moved = ref_cast<SceneObject>(copy(o.object));
-  moved->transform = by * o.object.transform.still();
+  moved->transform = by * o.object.transform.keys().front().transform;
   prepare_tree(*moved);
   const float area = o.object.area(o.time);
   o.trial.expect(std::abs(moved->area(o.time) / area - scale * scale) < 1e-3f, "a moved copy is the same elsewhere", [&] {

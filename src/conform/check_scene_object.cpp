@@ -51,7 +51,7 @@ void check_hit(const ObjectTrial& o, const Ray& ray, const Hit& hit, const Surfa
                      std::isfinite(p.uv.x) && std::isfinite(p.uv.y),
                  "normals are unit vectors and errors small", where);
   if (scene_within(o.object)) return;
-  o.trial.expect(p.object == &o.object && distance(o.object.transform.at(o.time)(p.object_position), p.position) < off,
+  o.trial.expect(p.object == &o.object && distance(o.object.transform.from_origin(o.time)(p.object_position), p.position) < off,
                  "object coordinates are those before the transform", where);
 }
 

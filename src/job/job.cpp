@@ -7,6 +7,7 @@
 #include "component/guard.h"
 #include "job/checkpoint.h"
 #include "job/pass_runner.h"
+#include "scenes/rendering_space.h"
 
 namespace etendue {
 
@@ -50,6 +51,18 @@ Job::Job()
 
 Job::~Job() = default;
 
+void Job::count_from(const DoublePoint3& centre) {
+  centre_ = centre;
+  camera->world_centre = centre;
+  etendue::count_from(*scene, centre, camera->shutter_open);
+}
+
+void Job::before_prepare() {
+  if (!camera || !scene) return;
+  const std::optional<DoublePoint3> place = camera->place();
+  count_from(place && is_finite(*place) ? *place : DoublePoint3{});
+}
+
 void Job::prepare() {
   if (!renderer) fail("renderer", "a job needs a renderer, such as PathTracer {}");
   if (!camera) fail("camera", "a job needs a camera, such as PerspectiveCamera { from: [0, 0, -5] m, to: [0, 0, 0] m }");
@@ -59,6 +72,14 @@ void Job::prepare() {
   if (camera->shutter_close < camera->shutter_open) camera->fail("shutter_close", "the shutter closes before it opens");
   for (const Ref<Output>& output : outputs)
     if (!output) fail("outputs", "an output is none");
+  // Seen from far away the scene would be coarse where the picture is fine.
+  constexpr float far = 32;
+  const Vector3 away = scene->centre() - Point3{};
+  if (camera->place() && length(away) > far * scene->radius() && is_finite(away)) {
+    count_from(centre_ + DoubleVector3(away));
+    prepare_tree(*scene);
+    camera->prepare();
+  }
   camera->set_film(image->width, image->height);
   prepared_ = true;
 }
@@ -269,7 +290,9 @@ Point2 Job::replay(int x, int y, std::uint32_t sample, PathRecord& record) {
   Arena arena;
   Renderer::Request request;
   request.record = &record;
-  return rendering(*this, [&] { return renderer->camera_sample(context, x, y, sample, arena, request); }).film;
+  const Point2 film = rendering(*this, [&] { return renderer->camera_sample(context, x, y, sample, arena, request); }).film;
+  record.count_from_world(centre_);
+  return film;
 }
 
 }  // namespace etendue

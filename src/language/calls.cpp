@@ -61,7 +61,7 @@ const Numbers& Arguments::numbers(size_t i) const {
   return *n;
 }
 
-Vector3 Arguments::vector(size_t i, Dimension dimension) const {
+DoubleVector3 Arguments::vector(size_t i, Dimension dimension) const {
   const auto* n = as<Numbers>(i);
   const std::string expected =
       dimension == Dimension::none ? "3 plain numbers in brackets" : fmt::format("3 numbers [{}] in brackets", name(dimension));
@@ -69,13 +69,13 @@ Vector3 Arguments::vector(size_t i, Dimension dimension) const {
     wrong(i, expected);
   for (const double x : n->values)
     if (std::abs(x) > double(std::numeric_limits<float>::max())) too_large(i, x);
-  return {float(n->values[0]), float(n->values[1]), float(n->values[2])};
+  return {n->values[0], n->values[1], n->values[2]};
 }
 
-Vector3 Arguments::vector_or_three(Dimension dimension) const {
+DoubleVector3 Arguments::vector_or_three(Dimension dimension) const {
   if (count() == 1) return vector(0, dimension);
   if (count() != 3) wrong_count();
-  return {float(number(0, dimension)), float(number(1, dimension)), float(number(2, dimension))};
+  return {number(0, dimension), number(1, dimension), number(2, dimension)};
 }
 
 namespace {

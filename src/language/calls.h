@@ -40,9 +40,9 @@ class Arguments {
   const std::string& string(size_t i) const;
   /// Plain numbers, packed.
   const Numbers& numbers(size_t i) const;
-  Vector3 vector(size_t i, Dimension = Dimension::none) const;
+  DoubleVector3 vector(size_t i, Dimension = Dimension::none) const;
   /// Three numbers from argument `i` on, or a vector as argument `i`.
-  Vector3 vector_or_three(Dimension = Dimension::none) const;
+  DoubleVector3 vector_or_three(Dimension = Dimension::none) const;
   bool files_allowed() const { return files_allowed_; }
 
  private:

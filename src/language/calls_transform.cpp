@@ -18,25 +18,25 @@ Value translate(const Arguments& a) { return checked(a, Transform::translate(a.v
 Value rotate(const Arguments& a) {
   if (a.count() != 2) a.wrong_count();
   const double angle = a.angle(0);
-  Vector3 axis;
+  DoubleVector3 axis;
   if (const auto* letter = a.as<std::string>(1)) {
     if (*letter != "x" && *letter != "y" && *letter != "z")
       a.fail(1, fmt::format("the axis must be \"x\", \"y\", \"z\" or a vector, not \"{}\"", *letter));
-    axis[letter->front() - 'x'] = 1;
+    (*letter == "x" ? axis.x : *letter == "y" ? axis.y : axis.z) = 1;
   } else {
     if (!a.as<Numbers>(1)) a.wrong(1, "a vector or \"x\", \"y\", \"z\"");
     axis = a.vector(1);
-    const float size = max_component(abs(axis));
+    const double size = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
     if (size == 0) a.fail(1, "the axis has no length");
-    axis = axis / size;  // so that its square neither vanishes nor overflows
+    axis = 1 / size * axis;  // so that its square neither vanishes nor overflows
   }
-  return checked(a, Transform::rotate(float(angle), axis));
+  return checked(a, Transform::rotate(angle, axis));
 }
 
 Value scale(const Arguments& a) {
   if (a.count() == 1 && !a.as<Numbers>(0)) {
     if (!a.as<Number>(0)) a.wrong(0, "a number or 3 numbers in brackets");
-    const float s = float(a.number(0));
+    const double s = a.number(0);
     return checked(a, Transform::scale({s, s, s}));
   }
   return checked(a, Transform::scale(a.vector_or_three()));
@@ -45,13 +45,13 @@ Value scale(const Arguments& a) {
 Value look_at(const Arguments& a) {
   if (a.count() != 3) a.wrong_count();
   const auto point = [&](size_t i) {
-    const Vector3 v = a.vector(i, Dimension::length);
-    return Point3{v.x, v.y, v.z};
+    const DoubleVector3 v = a.vector(i, Dimension::length);
+    return DoublePoint3{v.x, v.y, v.z};
   };
-  const Point3 from = point(0), to = point(1);
-  const Vector3 up = a.vector(2);
-  const Vector3 side = cross(up, to - from);
-  if (!(length_squared(side) > 0))
+  const DoublePoint3 from = point(0), to = point(1);
+  const DoubleVector3 up = a.vector(2);
+  const DoubleVector3 side = cross(up, to - from);
+  if (!(length(side) > 0))
     a.fail(a.count(), from == to ? "look_at: from and to are the same point" : "look_at: up points along the view");
   return checked(a, Transform::look_at(from, to, up));
 }
@@ -71,8 +71,8 @@ Value matrix(const Arguments& a) {
   }
   if (m.size() == 16 && (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1))
     a.fail(a.count() == 1 ? 0 : 12, "the last row of a matrix must be 0 0 0 1");
-  Transform::Matrix rows;
-  for (size_t i = 0; i < rows.size(); ++i) rows[i] = float(m[i]);
+  Transform::DoubleMatrix rows;
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = m[i];
   return checked(a, Transform(rows));
 }
 

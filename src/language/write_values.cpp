@@ -12,13 +12,13 @@
 
 namespace etendue::language {
 
-std::string number_text(double value, double factor, bool whole) {
+std::string number_text(double value, double factor, bool whole, bool exact) {
   if (!std::isfinite(value)) throw Error("a number that is not finite cannot be written");
   const double x = value / factor;
   if (x == std::floor(x) && std::abs(x) < (whole ? 0x1p53 : 1e9) && x * factor == value)
     return fmt::format("{}", std::int64_t(x));
   const auto narrow = float(x);
-  if (std::isfinite(narrow) && double(narrow) * factor == value) {
+  if (!exact && std::isfinite(narrow) && double(narrow) * factor == value) {
     const std::string text = etendue::number_text(narrow);
     double read = 0;
     std::from_chars(text.data(), text.data() + text.size(), read);
@@ -45,10 +45,11 @@ std::string Writer::numbers(const Numbers& n, const Member* member, int indent, 
   double factor = 1;
   const std::string suffix = unit_suffix(n.dimension, member, factor);
   const bool whole = member && member->kind == Kind::integer;
+  const bool exact = member && member->in_double;
   const auto width = size_t(n.width);
   const auto row = [&](size_t r) {
     std::string text = width > 1 ? "[" : "";
-    for (size_t k = 0; k < width; ++k) text += (k > 0 ? ", " : "") + number_text(n.values[r * width + k], factor, whole);
+    for (size_t k = 0; k < width; ++k) text += (k > 0 ? ", " : "") + number_text(n.values[r * width + k], factor, whole, exact);
     return width > 1 ? text + "]" : text;
   };
   // On one line when that is short; else filled lines.

@@ -165,7 +165,7 @@ std::string Writer::value(const Value& v, const Member* member, int indent, int 
   if (const auto* color = v.as<Color>()) return *color ? color_text(**color, folder_) : "none";
   const auto matrix = [](const Transform& t) {
     std::vector<std::string> entries;
-    for (const float x : t.matrix()) entries.push_back(number_text(double(x), 1, false));
+    for (const double x : t.exact()) entries.push_back(number_text(x, 1, false, true));
     return fmt::format("matrix({})", fmt::join(entries, ", "));
   };
   if (const auto* still = v.as<Transform>()) return matrix(*still);

@@ -12,7 +12,8 @@ namespace etendue::language {
 
 /// A number of a member as the shortest text that reads back to the same float (or double, if it has more digits) after
 /// going through base units: `value` is in base units, `factor` of them make the unit that is written.
-std::string number_text(double value, double factor, bool whole);
+/// `exact`: of a double; else the number has been a float, and the text is the shortest that gives this float.
+std::string number_text(double value, double factor, bool whole, bool exact = false);
 
 /// A path for a text that lies in `folder`.
 std::string path_text(const FilePath&, const std::string& folder);

@@ -71,7 +71,10 @@ UvFootprint uv_footprint(const SurfacePoint& point) {
 const Transform& placement(const SurfacePoint& p, Transform& scratch) {
   static const Transform identity;
   if (!p.object) return identity;
-  const Transform& own = placed(p.object->transform, p.time, scratch);
+  const AnimatedTransform& transform = p.object->transform;
+  const bool still = !transform.animated() && transform.inner() == DoublePoint3{};
+  if (!still) scratch = transform.from_origin(p.time);
+  const Transform& own = still ? transform.still() : scratch;
   const Point3 there = own(p.object_position);
   const float size = std::max({std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)});
   if (distance_squared(there, p.position) <= square(1e-4f * size + 16 * p.error)) return own;
@@ -115,7 +118,7 @@ SolidPoint solid_point(const SurfacePoint& p, MapSpace space, float size) {
       if (!t.identity()) width /= std::sqrt(std::abs(linear_determinant(t)) * length(Vector3(t(p.object_normal))));
       break;
     }
-    case MapSpace::world: s.at = p.position - Point3{}; break;
+    case MapSpace::world: s.at = Point3(world_position(p)) - Point3{}; break;
     case MapSpace::uv: {
       s.at = {p.uv.x, p.uv.y, 0};
       if (!(width > 0)) break;

@@ -75,7 +75,7 @@ class FormulaMap final : public ObjectMap {
 
   template <class Value>
   Spectrum compute(const SurfacePoint& p, Value value) const {
-    const Point3& at = space == Space::object ? p.object_position : p.position;
+    const Point3 at = space == Space::object ? p.object_position : Point3(world_position(p));
     Spectrum values[5 + most_maps] = {p.uv.x, p.uv.y, at.x, at.y, at.z};
     for (size_t i = 0; i < maps.size(); ++i)
       if (program_.used()[5 + i]) values[5 + i] = value(*maps[i]);

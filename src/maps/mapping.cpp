@@ -47,7 +47,7 @@ SurfacePoint ProjectionMap::seen_at(const SurfacePoint& point) const {
   SurfacePoint p = point;
   Transform scratch, object_scratch;
   const Transform& t = placed(transform, p.time, scratch);
-  Projected to = project(t.back(world ? p.position : p.object_position) - Point3{});
+  Projected to = project(Point3(t.back(world ? world_position(p) : DoublePoint3(p.object_position))) - Point3{});
   // Gradients go out like normals.
   const auto out = [&](const Vector3& gradient) {
     const Normal3 g = t(Normal3(gradient));

@@ -24,14 +24,14 @@ class PositionMap final : public ShownGeometry {
         fail("high", "must be finite and differ from `low` along each axis");
   }
 
-  Point3 low{0, 0, 0}, high{1, 1, 1};
+  DoublePoint3 low{0, 0, 0}, high{1, 1, 1};
   Space space = Space::object;
 
  private:
   Vector3 shown(const SurfacePoint& p) const override {
-    const Point3& at = space == Space::object ? p.object_position : p.position;
+    const DoublePoint3 at = space == Space::object ? DoublePoint3(p.object_position) : world_position(p);
     Vector3 c;
-    for (int i = 0; i < 3; ++i) c[i] = fraction((at[i] - low[i]) / (high[i] - low[i]));
+    for (int i = 0; i < 3; ++i) c[i] = fraction(float((at[i] - low[i]) / (high[i] - low[i])));
     return c;
   }
 };

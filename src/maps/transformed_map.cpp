@@ -33,12 +33,21 @@ class TransformedMap final : public ObjectMap {
   bool world = false;
 
  private:
+  /// In the coordinates of the world as the renderer counts them.
+  Transform counted_in(const DoublePoint3& centre, float time) const {
+    AnimatedTransform counted = transform.written(time);
+    counted.count_from(centre, centre);
+    return counted.still();
+  }
+
   SurfacePoint moved(const SurfacePoint& point) const {
     SurfacePoint p = point;
     with_tangents(p);
     const Footprint seen = footprint_of(p);
     Transform scratch, place_scratch;
-    const Transform& t = placed(transform, p.time, scratch);
+    const bool far = world && p.object && p.object->world_centre != DoublePoint3{};
+    if (far) scratch = counted_in(p.object->world_centre, p.time);
+    const Transform& t = far ? scratch : placed(transform, p.time, scratch);
     const Transform& place = placement(point, place_scratch);
     // A vector, a normal or a position, in the renderer's and in the object's coordinates.
     const auto outside = [&](const auto& x) { return world ? t(x) : place(t(place.back(x))); };

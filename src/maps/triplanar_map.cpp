@@ -44,7 +44,7 @@ class TriplanarMap final : public ObjectMap {
     Transform scratch;
     const Transform still, &t = world ? still : placement(p, scratch);
     const Vector3 n(normalize(normal_into(t, p.shading_normal)));
-    const Point3& at = world ? p.position : p.object_position;
+    const Point3 at = world ? Point3(world_position(p)) : p.object_position;
     const float s = 1 / size;
     float weights[3];
     for (int axis = 0; axis < 3; ++axis) weights[axis] = std::pow(std::abs(n[axis]), sharpness);

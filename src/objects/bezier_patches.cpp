@@ -1,6 +1,7 @@
 // BezierPatches: tensor-product Bézier patches, such as the Utah teapot's.
 
 #include "bezier_object.h"
+#include "own_centre.h"
 
 namespace etendue {
 namespace {
@@ -29,7 +30,7 @@ class BezierPatches final : public BezierObject {
   void prepare() override {
     const size_t each = size_t(degree_u + 1) * size_t(degree_v + 1);
     const auto number = [](size_t n) { return std::to_string(n); };
-    for (const Point3& p : points)
+    for (const DoublePoint3& p : points)
       if (!is_finite(p)) fail("points", "a control point is not finite");
     if (!weights.empty() && weights.size() != points.size())
       fail("weights", number(weights.size()) + " weights for " + number(points.size()) + " points");
@@ -40,6 +41,7 @@ class BezierPatches final : public BezierObject {
       fail(patches.empty() ? "points" : "patches", number(each) + " points make a patch of degrees " +
                                                        std::to_string(degree_u) + " and " + std::to_string(degree_v) +
                                                        ", but " + number(count) + " are given");
+    transform.count_from(transform.outer(), own_centre(points));
     std::vector<bezier::Patch> made;
     size_t dropped = 0;
     for (size_t first = 0; first < count; first += each) {
@@ -52,9 +54,8 @@ class BezierPatches final : public BezierObject {
         if (i >= points.size())
           fail("patches", "patch " + number(first / each) + " refers to point " + number(i) + " of " + number(points.size()) +
                               " (counting from 0)");
-        const Point3& p = points[i];
-        patch.points.push_back(
-            bezier::control({double(p.x), double(p.y), double(p.z)}, weights.empty() ? 1 : double(weights[i])));
+        const DoubleVector3 p = points[i] - transform.inner();
+        patch.points.push_back(bezier::control({p.x, p.y, p.z}, weights.empty() ? 1 : double(weights[i])));
       }
       if (bezier::measure(patch))
         made.push_back(std::move(patch));
@@ -68,10 +69,10 @@ class BezierPatches final : public BezierObject {
 
   int degree_u = 3, degree_v = 3;
   // Nearly half a cylinder, a little twisted.
-  std::vector<Point3> points{{-0.5f, -0.5f, 0},  {-0.5f, -0.38f, 0.67f}, {0.5f, -0.62f, 0.67f}, {0.5f, -0.5f, 0},
-                             {-0.5f, -0.17f, 0}, {-0.5f, -0.05f, 0.67f}, {0.5f, -0.29f, 0.67f}, {0.5f, -0.17f, 0},
-                             {-0.5f, 0.17f, 0},  {-0.5f, 0.29f, 0.67f},  {0.5f, 0.05f, 0.67f},  {0.5f, 0.17f, 0},
-                             {-0.5f, 0.5f, 0},   {-0.5f, 0.62f, 0.67f},  {0.5f, 0.38f, 0.67f},  {0.5f, 0.5f, 0}};
+  std::vector<DoublePoint3> points{{-0.5, -0.5, 0},  {-0.5, -0.38, 0.67}, {0.5, -0.62, 0.67}, {0.5, -0.5, 0},
+                                   {-0.5, -0.17, 0}, {-0.5, -0.05, 0.67}, {0.5, -0.29, 0.67}, {0.5, -0.17, 0},
+                                   {-0.5, 0.17, 0},  {-0.5, 0.29, 0.67},  {0.5, 0.05, 0.67},  {0.5, 0.17, 0},
+                                   {-0.5, 0.5, 0},   {-0.5, 0.62, 0.67},  {0.5, 0.38, 0.67},  {0.5, 0.5, 0}};
   std::vector<float> weights;
   std::vector<std::uint32_t> patches;
 };

@@ -23,8 +23,10 @@ class Box final : public PlacedObject {
     if (!is_finite(center)) fail("center", "must be finite");
     for (int k = 0; k < 3; ++k)
       if (!(size[k] > 0 && size[k] < infinity)) fail("size", "all edges must be positive and finite");
-    low_ = center - 0.5f * size;
-    high_ = center + 0.5f * size;
+    count_with_scene(transform);
+    const DoubleVector3 middle = center - transform.inner(), half = 0.5 * DoubleVector3(size);
+    low_ = Point3(DoublePoint3{} + (middle - half));
+    high_ = Point3(DoublePoint3{} + (middle + half));
     double sum = 0;
     for (int k = 0; k < 3; ++k)
       for (const int face : {2 * k, 2 * k + 1}) {
@@ -64,7 +66,7 @@ class Box final : public PlacedObject {
     return seen.areas[p.primitive] > 0 && cosine > 0 ? distance_squared(p.position, from) / (cosine * seen.area) : 0;
   }
 
-  Point3 center{0, 0, 0};
+  DoublePoint3 center{0, 0, 0};
   Vector3 size{1, 1, 1};
 
  protected:
@@ -102,10 +104,10 @@ class Box final : public PlacedObject {
     const DoubleRay r(ray);
     const int face = int(hit.primitive), k = face / 2;
     float x[3];
-    for (int i = 0; i < 3; ++i) x[i] = float(std::clamp(r.at(double(hit.distance), i), double(low_[i]), double(high_[i])));
+    for (int i = 0; i < 3; ++i) x[i] = within_face(i, float(r.at(double(hit.distance), i)));
     const int a = next(k), b = next(a);
-    const float along = (x[a] - low_[a]) / size[a];
-    point_on(face, {face % 2 ? along : 1 - along, (x[b] - low_[b]) / size[b]}, p);
+    const float along = clamp((x[a] - low_[a]) / size[a], 0, 1);
+    point_on(face, {face % 2 ? along : 1 - along, clamp((x[b] - low_[b]) / size[b], 0, 1)}, p);
     x[k] = face % 2 ? high_[k] : low_[k];
     p.position = {x[0], x[1], x[2]};
   }
@@ -124,14 +126,15 @@ class Box final : public PlacedObject {
 
  private:
   static int next(int k) { return (k + 1) % 3; }
+  float within_face(int axis, float x) const { return float(within(double(x), double(low_[axis]), double(high_[axis]))); }
 
   void point_on(int face, Point2 at, OwnPoint& p) const {
     const int k = face / 2, a = next(k), b = next(a);
     const float side = face % 2 ? 1.0f : -1.0f;
     float x[3], n[3]{}, du[3]{}, dv[3]{};
     x[k] = face % 2 ? high_[k] : low_[k];
-    x[a] = low_[a] + (face % 2 ? at.x : 1 - at.x) * size[a];
-    x[b] = low_[b] + at.y * size[b];
+    x[a] = within_face(a, low_[a] + (face % 2 ? at.x : 1 - at.x) * size[a]);
+    x[b] = within_face(b, low_[b] + at.y * size[b]);
     n[k] = side;
     du[a] = side * size[a];
     dv[b] = size[b];
@@ -143,7 +146,7 @@ class Box final : public PlacedObject {
     p.primitive = std::uint32_t(face);
     p.u = p.v = 0;
     // The face's own place is rounded, and so are points moved off it.
-    p.error = rounding_bound(4) * (std::abs(x[k]) + std::abs(center[k]) + size[k]);
+    p.error = rounding_bound(4) * (2 * std::abs(x[k]) + size[k]);
   }
 
   /// Areas outside of the faces that a point can see: those it lies in front of, and from within all.

@@ -63,6 +63,12 @@ void Csg::prepare() {
   if (!something_left()) warn(class_info().name + ": nothing seems to be left of its operands", location_of("operands"));
 }
 
+std::vector<SceneObject*> Csg::placed_within() const {
+  std::vector<SceneObject*> all;
+  for (const Ref<SceneObject>& operand : operands) all.push_back(operand.get());
+  return all;
+}
+
 void Csg::check_operand(SceneObject& operand) {
   const std::string name = operand.class_info().name, part_of = " part of a solid";
   if (!operand.transform.valid())
@@ -203,7 +209,7 @@ void Csg::own_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const {
   }
   p.object = this;
   p.primitive = hit.primitive;
-  p.object_position = p.position;
+  p.object_position = own_place(transform, p.position);
   p.object_normal = p.normal;
 }
 
@@ -238,7 +244,7 @@ const SceneObject& Csg::operand_at(const SurfacePoint& p, SurfacePoint& there) c
   there.object = &operand;
   Transform scratch;
   const Transform& t = placed(operand.transform, p.time, scratch);
-  there.object_position = t.back(p.object_position);
+  there.object_position = Point3(operand.transform.written(p.time).back(DoublePoint3(p.object_position)));
   there.object_normal = normalize(normal_into(t, combined_[i].weight < 0 ? -p.object_normal : p.object_normal));
   return operand;
 }

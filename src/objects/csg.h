@@ -30,6 +30,7 @@ class Csg : public SceneObject {
   float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
   bool closed() const override { return true; }
   int attribute(int number, const SurfacePoint&, float* values) const override;
+  std::vector<SceneObject*> placed_within() const override;
 
   /// The operand a point lies on. `there` becomes the point as one of the operand: with its primitive and its object
   /// coordinates; the rest stays as it is on the solid.

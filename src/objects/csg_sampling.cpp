@@ -143,7 +143,7 @@ SurfaceSample Csg::sample_area(Point2 u, float time) const {
 float Csg::area_density(const SurfacePoint& p) const {
   Transform scratch;
   const Transform& t = placed(transform, p.time, scratch);
-  return float(own_density(p.object_position, p.object_normal, p.time)) / stretch_of_area(t, p.object_normal);
+  return float(own_density(t.back(p.position), p.object_normal, p.time)) / stretch_of_area(t, p.object_normal);
 }
 
 double Csg::chord_area(const Transform& t, float time, int chords, int step) const {

@@ -4,6 +4,7 @@
 #include "curve_ribbon.h"
 #include "curve_tube.h"
 #include "numbered_parts.h"
+#include "own_centre.h"
 
 namespace etendue {
 namespace {
@@ -46,6 +47,8 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
     check();
     vertices_.clear();
     pieces_.clear();
+    transform.count_from(transform.outer(), own_centre(points));
+    const std::vector<Point3> counted = counted_from(transform.inner(), points);
     std::vector<StrandPoint> flat;
     size_t first = 0, dropped = 0, cuts = 0;
     const size_t strands = counts.empty() ? 1 : counts.size();
@@ -57,7 +60,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
                                                                : std::span<const Item>(list);
       };
       flat.clear();
-      flatten({std::span<const Point3>(points).subspan(first, n), part(radius), part(normals)}, basis, double(radians(turn)),
+      flatten({std::span<const Point3>(counted).subspan(first, n), part(radius), part(normals)}, basis, double(radians(turn)),
               flat);
       const size_t kept = clean(flat, i);
       dropped += kept < 2;
@@ -80,7 +83,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
   bool closed() const override { return form == Form::tube; }
   std::uint64_t part_count() const override { return 4 * std::uint64_t(pieces_.size()); }  // with ends and joints
 
-  std::vector<Point3> points{{0, 0, 0}, {0, 0, 1}};
+  std::vector<DoublePoint3> points{{0, 0, 0}, {0, 0, 1}};
   std::vector<float> radius{0.05f};
   std::vector<std::uint32_t> counts;
   CurveBasis basis = CurveBasis::linear;
@@ -133,7 +136,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
   void check() {
     if (points.empty()) fail("points", "there are none");
     for (size_t i = 0; i < points.size(); ++i)
-      if (!(max_component(abs(points[i] - Point3{})) < 1e15f)) fail("points", "point " + std::to_string(i) + " is not finite");
+      if (!(length(points[i] - DoublePoint3{}) < 1e15)) fail("points", "point " + std::to_string(i) + " is not finite");
     if (radius.size() != 1 && radius.size() != points.size())
       fail("radius", std::to_string(radius.size()) + " radii for " + std::to_string(points.size()) + " points");
     for (const float r : radius)

@@ -134,7 +134,7 @@ class Disc final : public SceneObject {
     p.u = on_disc.x;
     p.v = on_disc.y;
     Transform scratch;
-    fill_object_coordinates(placed(transform, time, scratch), p);
+    fill_object_coordinates(transform, placed(transform, time, scratch), p);
   }
 
   World still_;

@@ -59,6 +59,7 @@ class DisplacedMesh final : public TriangleObject {
     if (surface->shader || surface->emission || surface->interior)
       warn("DisplacedMesh.surface: its shader, emission and interior are not used; they belong to the DisplacedMesh",
            location_of("surface"));
+    surface->world_centre = surface->transform.outer();  // the maps' world ends here
     Displacement by;
     by.surface = surface.get();
     by.height = displacement.get();
@@ -72,6 +73,7 @@ class DisplacedMesh final : public TriangleObject {
       if (!triangles_->divide(levels, edge_length))
         warn("DisplacedMesh: edges remain that are longer than edge_length", location_of("edge_length"));
       MeshData mesh = displace(*triangles_, by);
+      mesh.centre = surface->transform.outer();
       if (!(smooth_angle > 0)) mesh.normals = {};
       triangles_->keep_places();
       keep_usable(mesh);
@@ -84,6 +86,8 @@ class DisplacedMesh final : public TriangleObject {
   }
 
   /// What the surface tells where the point was before it moved.
+  std::vector<SceneObject*> placed_within() const override { return {surface.get()}; }
+
   int attribute(int number, const SurfacePoint& p, float* values) const override {
     const std::uint32_t triangle = kept_.empty() ? p.primitive : kept_[p.primitive];
     // Where a still transform mirrors, triangles were turned round: their second and third corners changed places.

@@ -72,7 +72,8 @@ class Displacer {
 
   /// Lets maps see what they may average over: as much as neighbouring corners are apart.
   void widen(SurfacePoint& p, std::uint64_t c) const {
-    p.position = p.object_position = in_.positions[vertex(c)];  // shared by all that lie here
+    p.position = in_.positions[vertex(c)];  // shared by all that lie here
+    p.object_position = Point3(DoublePoint3(p.position) + (by_.surface->transform.outer() - DoublePoint3{}));
     p.object_normal = p.normal;
     p.footprint = std::min(length(edge(c, 1, in_.positions)), length(edge(c, 2, in_.positions)));
     p.footprint_cosine = 1;

@@ -60,6 +60,7 @@ class Ellipsoid final : public PlacedObject {
     if (!is_finite(center)) fail("center", "must be finite");
     for (int k = 0; k < 3; ++k)
       if (!(radii[k] > 0 && radii[k] < infinity)) fail("radii", "all must be positive and finite");
+    transform.count_from(transform.outer(), center);
     area_ = area_under(Transform());
     if (!(float(area_) > 0 && float(area_) < infinity)) fail("radii", "the ellipsoid is too small or too large");
     const double a = double(radii.x), b = double(radii.y), c = double(radii.z), sum = a * b + b * c + c * a;
@@ -109,14 +110,14 @@ class Ellipsoid final : public PlacedObject {
     return cone_density(cone, t, distance(p.position, from), direction, p);
   }
 
-  Point3 center{0, 0, 0};
+  DoublePoint3 center{0, 0, 0};
   Vector3 radii{1, 1, 1};
 
  protected:
   Bounds3 own_bounds() const override {
     Bounds3 box;
-    box.add(center - radii);
-    box.add(center + radii);
+    box.add(Point3{} - radii);
+    box.add(Point3{} + radii);
     return box;
   }
 
@@ -125,7 +126,7 @@ class Ellipsoid final : public PlacedObject {
     double o[3], d[3], along = 0, dd = 0;
     for (int k = 0; k < 3; ++k) {
       const double inverse = 1 / double(radii[k]);
-      o[k] = (double(ray.origin[k]) - double(center[k])) * inverse;
+      o[k] = double(ray.origin[k]) * inverse;
       d[k] = double(ray.direction[k]) * inverse;
       along += o[k] * d[k];
       dd += d[k] * d[k];
@@ -148,7 +149,7 @@ class Ellipsoid final : public PlacedObject {
     const DoubleRay r(ray);
     const double t = double(hit.distance) + double(hit.u);
     double s[3];
-    for (int k = 0; k < 3; ++k) s[k] = (r.at(t, k) - double(center[k])) / double(radii[k]);
+    for (int k = 0; k < 3; ++k) s[k] = r.at(t, k) / double(radii[k]);
     point_at(s[0], s[1], s[2], p);
   }
 
@@ -188,9 +189,9 @@ class Ellipsoid final : public PlacedObject {
 
   Cone seen(const Point3& own) const {
     Cone c;
-    c.x = (double(own.x) - double(center.x)) / double(radii.x);
-    c.y = (double(own.y) - double(center.y)) / double(radii.y);
-    c.z = (double(own.z) - double(center.z)) / double(radii.z);
+    c.x = double(own.x) / double(radii.x);
+    c.y = double(own.y) / double(radii.y);
+    c.z = double(own.z) / double(radii.z);
     const double d2 = c.x * c.x + c.y * c.y + c.z * c.z, sin2 = 1 / d2;
     c.distance = std::sqrt(d2);
     c.usable = sin2 < 0.9999;
@@ -202,7 +203,7 @@ class Ellipsoid final : public PlacedObject {
   float cone_density(const Cone& cone, const Transform& t, float distance, const Vector3& direction,
                      const SurfacePoint& p) const {
     if (!(dot(p.normal, direction) < 0)) return 0;  // its far side
-    const Vector3 s = p.object_position - center;
+    const Vector3 s = t.back(p.position) - Point3{};
     const double x = double(s.x) / double(radii.x) - cone.x, y = double(s.y) / double(radii.y) - cone.y,
                  z = double(s.z) / double(radii.z) - cone.z;
     const double stretch = double(distance) / std::sqrt(x * x + y * y + z * z);
@@ -258,7 +259,7 @@ class Ellipsoid final : public PlacedObject {
     y *= l;
     z *= l;
     const double nx = x / a, ny = y / b, nz = z / c, support = 1 / std::sqrt(nx * nx + ny * ny + nz * nz);
-    p.position = {float(double(center.x) + x * a), float(double(center.y) + y * b), float(double(center.z) + z * c)};
+    p.position = {float(x * a), float(y * b), float(z * c)};
     p.normal = {float(nx * support), float(ny * support), float(nz * support)};
     const double around = std::sqrt(x * x + y * y);
     p.uv = {positive_atan2(float(y), float(x)) / (2 * pi), positive_atan2(float(around), float(-z)) * inverse_pi};

@@ -14,6 +14,20 @@ inline const Transform& placed(const AnimatedTransform& transform, float time, T
   return scratch;
 }
 
+/// Where what an object counts from its own `inner` point is in its own coordinates.
+inline Point3 own_place(const AnimatedTransform& transform, const Point3& counted) {
+  return transform.inner() == DoublePoint3{} ? counted : Point3(transform.inner() + (DoublePoint3(counted) - DoublePoint3{}));
+}
+
+/// Lets an object count its own places from where the scene counts from: a transform that does nothing does nothing then
+/// either, and what several objects say to be in one place is in one place.
+inline void count_with_scene(AnimatedTransform& transform) {
+  const Transform& first = transform.keys().front().transform;
+  const bool far = transform.outer() != DoublePoint3{};
+  const DoublePoint3 own = far && first.valid() ? first.back(transform.outer()) : DoublePoint3{};
+  transform.count_from(transform.outer(), is_finite(own) ? own : DoublePoint3{});
+}
+
 /// A box over the whole time an object moves.
 inline Bounds3 swept(const AnimatedTransform& transform, const Bounds3& box) {
   return transform.sweep(box, transform.keys().front().time, transform.keys().back().time);
@@ -41,16 +55,22 @@ inline Normal3 normal_into(const Transform& transform, const Normal3& n) {
   return {m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z};
 }
 
-/// Fills object_position and object_normal of a point that is known outside.
-inline void fill_object_coordinates(const Transform& transform, SurfacePoint& p) {
-  if (transform.identity()) [[likely]] {
-    p.object_position = p.position;
+/// Fills object_position and object_normal of a point that is known outside; `now` is the object's transform at its time.
+inline void fill_object_coordinates(const AnimatedTransform& transform, const Transform& now, SurfacePoint& p) {
+  if (now.shifts_only()) [[likely]] {
+    p.object_position = own_place(transform, p.position + now.shift_back());
     p.object_normal = p.normal;
   } else {
-    p.object_position = transform.back(p.position);
-    p.object_normal = normalize(normal_into(transform, p.normal));
+    p.object_position = own_place(transform, now.back(p.position));
+    p.object_normal = normalize(normal_into(now, p.normal));
   }
 }
+
+/// How far from a surface's own border its points stay, in parts of the largest coordinate there. A point nearer to an edge may
+/// be rounded to the other side of the surface that joins there, and a ray that leaves it would be outside of a closed room.
+/// Rounding moves it by 3 units of 2^-24 along each axis; the other surface is found, and a ray's origin moved off this one,
+/// within as much: twice their sum, which allows for surfaces that meet at 30 degrees.
+constexpr float border = rounding_bound(16);
 
 /// sum |n_k| x_k: how far an error of x_k along each axis moves a point along the normal.
 inline float along(const Normal3& n, const Vector3& x) {

@@ -16,8 +16,12 @@ class InfinitePlane final : public PlacedObject {
   void prepare() override {
     // How far its own coordinates may go for points to stay within endless_box(), whatever the transform enlarges.
     double reach = 1, shift = 0;
+    // It counts from beside where the scene does, so that the ground is as fine there as anywhere.
+    count_with_scene(transform);
+    transform.count_from(transform.outer(), {transform.inner().x, transform.inner().y, 0});
     for (const AnimatedTransform::Key& key : transform.keys()) {
-      const Transform::Matrix& m = key.transform.matrix();
+      const Transform t = transform.at(key.time);
+      const Transform::Matrix& m = t.matrix();
       for (size_t row = 0; row < 12; row += 4) {
         reach = std::max(reach, double(std::abs(m[row])) + double(std::abs(m[row + 1])));
         shift = std::max(shift, double(std::abs(m[row + 3])));
@@ -55,7 +59,7 @@ class InfinitePlane final : public PlacedObject {
   void own_point(const Ray&, const Hit& hit, OwnPoint& p) const override {
     p.position = {hit.u, hit.v, 0};
     p.normal = {0, 0, 1};
-    p.uv = {hit.u, hit.v};
+    p.uv = {float(double(hit.u) + transform.inner().x), float(double(hit.v) + transform.inner().y)};
     p.dpdu = {1, 0, 0};
     p.dpdv = {0, 1, 0};
     // z = 0 is exact; but a ray that starts there must not find it again by the rounding of its own coordinates.

@@ -22,6 +22,7 @@ struct VertexAttribute {
 /// Triangles with shared vertices. Normals and uvs are by vertex, or absent.
 struct MeshData {
   std::vector<Point3> positions;
+  DoublePoint3 centre;  ///< what they are counted from, in the object's coordinates
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Normal3> normals;  ///< a zero normal: the vertex has none
   std::vector<Point2> uvs;

@@ -2,6 +2,7 @@
 
 #include "bernstein.h"
 #include "implicit_grid.h"
+#include "own_centre.h"
 
 namespace etendue {
 namespace {
@@ -39,12 +40,14 @@ class Metaballs final : public ImplicitObject {
     if (!std::isfinite(threshold)) fail("threshold", "must be finite");
     balls_.clear();
     Bounds3 box;
+    transform.count_from(transform.outer(), own_centre(centers));
+    const std::vector<Point3> middles = counted_from(transform.inner(), centers);
     for (size_t i = 0; i < centers.size(); ++i) {
       const float radius = radii[radii.size() == 1 ? 0 : i], strength = strengths[strengths.size() == 1 ? 0 : i];
       if (!is_finite(centers[i])) fail("centers", "must be finite");
       if (!(radius > 0 && radius < infinity)) fail("radii", "must be positive and finite");
       if (!std::isfinite(strength)) fail("strengths", "must be finite");
-      const Point3& c = centers[i];
+      const Point3& c = middles[i];
       balls_.push_back({{double(c.x), double(c.y), double(c.z)}, 1 / (double(radius) * double(radius)), double(strength)});
       if (!(strength > 0)) continue;
       box.add(c - Vector3{radius, radius, radius});
@@ -57,7 +60,7 @@ class Metaballs final : public ImplicitObject {
 
   bool closed() const override { return true; }  // at the border of the box the density is 0
 
-  std::vector<Point3> centers{{-0.45f, 0, 0}, {0.45f, 0, 0}};
+  std::vector<DoublePoint3> centers{{-0.45, 0, 0}, {0.45, 0, 0}};
   std::vector<float> radii{1}, strengths{1};
   float threshold = 0.2f;
 

@@ -2,6 +2,7 @@
 
 #include "bezier_object.h"
 #include "nurbs_basis.h"
+#include "own_centre.h"
 #include "trimming_curve.h"
 
 namespace etendue {
@@ -50,8 +51,9 @@ class NurbsSurface final : public BezierObject {
       fail("weights", std::to_string(weights.size()) + " weights for " + std::to_string(points.size()) + " points");
     for (const float w : weights)
       if (!(w > 0 && w < infinity)) fail("weights", "weights must be positive and finite");
-    for (const Point3& p : points)
+    for (const DoublePoint3& p : points)
       if (!is_finite(p)) fail("points", "a control point is not finite");
+    transform.count_from(transform.outer(), own_centre(points));
     std::vector<bezier::Patch> patches = take_apart(columns, rows);
     if (patches.empty()) fail("points", "the surface has no area");
     bezier::Region region(patches.size(), trimming.empty() ? grid_for(patches.size()) : std::max(8, grid_for(patches.size())));
@@ -63,8 +65,8 @@ class NurbsSurface final : public BezierObject {
   int degree_u = 2, degree_v = 1;
   // Nearly a quarter of a cylinder, with one knot within it.
   std::vector<float> knots_u{0, 0, 0, 1, 1, 1}, knots_v{0, 0, 0.5f, 1, 1};
-  std::vector<Point3> points{{1, 0, 0},    {1, 1, 0}, {0, 1, 0}, {1, 0, 0.6f}, {1, 1, 0.6f},
-                             {0, 1, 0.6f}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  std::vector<DoublePoint3> points{{1, 0, 0},   {1, 1, 0}, {0, 1, 0}, {1, 0, 0.6}, {1, 1, 0.6},
+                                   {0, 1, 0.6}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   std::vector<float> weights;
   std::vector<Ref<TrimmingCurve>> trimming;
   Keep keep = Keep::inside;
@@ -78,8 +80,8 @@ class NurbsSurface final : public BezierObject {
   std::vector<bezier::Patch> take_apart(size_t columns, size_t rows) {
     std::vector<bezier::Control> net;
     for (size_t i = 0; i < points.size(); ++i) {
-      const Point3& p = points[i];
-      net.push_back(bezier::control({double(p.x), double(p.y), double(p.z)}, weights.empty() ? 1 : double(weights[i])));
+      const DoubleVector3 p = points[i] - transform.inner();
+      net.push_back(bezier::control({p.x, p.y, p.z}, weights.empty() ? 1 : double(weights[i])));
     }
     const std::vector<nurbs::Span> along_u = nurbs::spans(knots_u, degree_u), along_v = nurbs::spans(knots_v, degree_v);
     const size_t m = size_t(degree_u) + 1, n = size_t(degree_v) + 1, width = along_u.size() * m;

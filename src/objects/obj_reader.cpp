@@ -6,6 +6,7 @@
 
 #include "etendue/error.h"
 #include "mesh_data.h"
+#include "own_centre.h"
 #include "polygon_mesh.h"
 
 namespace etendue {
@@ -44,17 +45,18 @@ class Lines {
     skip_space();
     return cursor_ >= line_end_ || *cursor_ == '#';
   }
-  float number() {
+  template <class Number = float>
+  Number number() {
     if (at_end()) error("a number is missing");
     if (*cursor_ == '+') ++cursor_;
-    float value = 0;
+    Number value = 0;
     const auto [stop, code] = std::from_chars(cursor_, line_end_, value);
     if (code == std::errc::invalid_argument) error("a number is expected");
     // Too large or too small for a float: the former makes its triangles unusable, the latter is zero.
     if (code == std::errc::result_out_of_range) {
       double wide = 0;
       std::from_chars(cursor_, stop, wide);
-      value = float(wide);
+      value = Number(wide);
     }
     cursor_ = stop;
     return value;
@@ -158,6 +160,31 @@ void name_corners(const std::vector<Vertices::Corner>& list, PolygonMesh& mesh) 
 }
 
 /// With `polygons` given, faces go there as they are, and no triangles are made.
+DoublePoint3 read_place(Lines& lines) {
+  const double x = lines.number<double>(), y = lines.number<double>(), z = lines.number<double>();
+  return {x, y, z};
+}
+
+/// What the places in a file are to be counted from, which takes a look at all of them when the first is far from the origin.
+DoublePoint3 centre_of(std::string_view file) {
+  constexpr double far = 1000;
+  std::vector<DoublePoint3> ends;  // the box's corners
+  for (Lines lines(file); lines.next();) {
+    if (lines.keyword() != "v") continue;
+    const DoublePoint3 p = read_place(lines);
+    if (!is_finite(p)) continue;
+    if (ends.empty()) {
+      if (!(length(p - DoublePoint3{}) > far)) return {};
+      ends = {p, p};
+    }
+    for (int k = 0; k < 3; ++k) {
+      ends[0][k] = std::min(ends[0][k], p[k]);
+      ends[1][k] = std::max(ends[1][k], p[k]);
+    }
+  }
+  return own_centre(ends);
+}
+
 MeshData parse(std::string_view file, PolygonMesh* polygons) {
   const Counts all = count(file);
   if (all.positions == 0) throw Error("it has no vertices");
@@ -166,7 +193,8 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
     throw Error("more than 2^32 vertices");
   const bool plain = all.uvs == 0 && all.normals == 0;
 
-  MeshData mesh;                              // as in the file until all is read
+  MeshData mesh;  // as in the file until all is read
+  mesh.centre = centre_of(file);
   mesh.positions.reserve(all.positions + 1);  // one more, for the padding the object adds
   mesh.uvs.reserve(all.uvs);
   mesh.normals.reserve(all.normals);
@@ -195,8 +223,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   for (Lines lines(file); lines.next();) {
     const std::string_view word = lines.keyword();
     if (word == "v") {
-      const float x = lines.number(), y = lines.number(), z = lines.number();
-      mesh.positions.push_back({x, y, z});
+      mesh.positions.push_back(Point3(DoublePoint3{} + (read_place(lines) - mesh.centre)));
     } else if (word == "vt") {
       const float u = lines.number();
       mesh.uvs.push_back({u, lines.at_end() ? 0 : lines.number()});
@@ -242,6 +269,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   }
   if (polygons) {
     polygons->positions = std::move(mesh.positions);
+    polygons->centre = mesh.centre;
     polygons->uvs = std::move(mesh.uvs);
     if (!plain) name_corners(vertices.corners(), *polygons);
     return mesh;
@@ -252,6 +280,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
 
   // One entry for each vertex. A corner without normal gets a zero one, without uv the origin.
   MeshData result;
+  result.centre = mesh.centre;
   const auto& list = vertices.corners();
   bool any_uv = false, any_normal = false;
   for (const auto& c : list) {

@@ -14,6 +14,12 @@ void PlacedObject::place() {
   const Vector3 margin = rounding_bound(8) * (bounds_.diagonal() + abs(bounds_.centre() - Point3{}));
   bounds_.low = bounds_.low - margin;
   bounds_.high = bounds_.high + margin;
+  // Of what own coordinates round, and those of the scene: |M^-T n| is 1 / how much wider slabs across n get.
+  const auto largest = [](const Bounds3& b) { return max_component(abs(b.centre() - Point3{}) + 0.5f * b.diagonal()); };
+  float shrunk = 0;
+  for (const Normal3& axis : {Normal3(1, 0, 0), Normal3(0, 1, 0), Normal3(0, 0, 1)})
+    shrunk = std::max(shrunk, length(Vector3(transform.still()(axis))));
+  margin_ = border * (largest(own) + largest(bounds_) * shrunk);
   still_area_ = area_of(transform.still());
 }
 
@@ -44,7 +50,8 @@ void PlacedObject::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p
 }
 
 void PlacedObject::carry(const OwnPoint& own, float time, SurfacePoint& p) const {
-  p.position = p.object_position = own.position;
+  p.position = own.position;
+  p.object_position = own_place(transform, own.position);
   p.normal = p.object_normal = own.normal;
   p.shading_normal = own.shading_normal == Normal3{} ? own.normal : own.shading_normal;
   p.error = own.error;

@@ -68,6 +68,14 @@ class PlacedObject : public SceneObject {
   /// The density own_sample gives a point with.
   virtual float own_density(const SurfacePoint&) const { return float(1 / own_area()); }
 
+  /// How near to an edge points go, in own coordinates: see `border`.
+  float margin() const { return margin_; }
+  /// A coordinate between two edges, and not nearer to them than that.
+  double within(double x, double low, double high) const {
+    const double m = std::min(double(margin_), 0.125 * (high - low));
+    return std::clamp(x, low + m, high - m);
+  }
+
   /// From own coordinates to those of the containing scene.
   void carry(const OwnPoint&, float time, SurfacePoint&) const;
   /// By how much a transform enlarges area at a unit normal inside: |det M| |M^-T n|.
@@ -83,6 +91,7 @@ class PlacedObject : public SceneObject {
   Area area_of(const Transform&) const;
 
   Bounds3 bounds_;
+  float margin_ = 0;
   Area still_area_;
 };
 

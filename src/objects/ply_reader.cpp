@@ -7,6 +7,7 @@
 
 #include "etendue/error.h"
 #include "mesh_data.h"
+#include "own_centre.h"
 #include "ply_attributes.h"
 #include "polygon_mesh.h"
 
@@ -115,6 +116,10 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
   const size_t count = size_t(e.count);
   mesh.positions.reserve(count + 1);  // one more, for the padding the object adds
   mesh.positions.resize(count);
+  // Places in double are counted from their middle, where that is far from the origin.
+  const int axes[3] = {x, y, z};
+  const bool in_double = std::ranges::all_of(axes, [&](int i) { return e.properties[size_t(i)].type == Type::float64; });
+  std::vector<DoublePoint3> exact(in_double ? count : 0);
   if (normals) mesh.normals.resize(count);
   if (uvs) mesh.uvs.resize(count);
   const auto at = [](void* array, size_t component) { return static_cast<char*>(array) + 4 * component; };
@@ -151,19 +156,28 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
         }
       }
     }
+    for (size_t i = 0; i < exact.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        exact[i][k] = load_number(body.at() + i * stride + offsets[size_t(axes[k])], Type::float64, body.swap());
     body.advance(stride * count);
   } else {
     std::vector<float> row(e.properties.size());
     for (size_t i = 0; i < count; ++i) {
       for (size_t k = 0; k < row.size(); ++k) {
-        if (e.properties[k].list)
+        if (e.properties[k].list) {
           body.skip(e.properties[k]);
-        else
-          row[k] = float(body.number(e.properties[k].type));
+          continue;
+        }
+        const double value = body.number(e.properties[k].type);
+        row[k] = float(value);
+        for (int axis = 0; in_double && axis < 3; ++axis)
+          if (size_t(axes[axis]) == k) exact[i][axis] = value;
       }
       for (const Column& c : columns) std::memcpy(c.to + i * c.step, &row[size_t(c.property)], 4);
     }
   }
+  mesh.centre = own_centre(exact);
+  if (mesh.centre != DoublePoint3{}) mesh.positions = counted_from(mesh.centre, exact);
   decode_fractions(e, columns);
 }
 
@@ -259,6 +273,7 @@ PolygonMesh read_ply_polygons(std::string_view file) {
   PolygonMesh polygons;
   MeshData mesh = parse(file, &polygons);
   polygons.positions = std::move(mesh.positions);
+  polygons.centre = mesh.centre;
   polygons.uvs = std::move(mesh.uvs);
   if (!polygons.uvs.empty()) polygons.uv_corners = polygons.corners;
   polygons.attributes = std::move(mesh.attributes);

@@ -25,6 +25,7 @@ class Point final : public SceneObject {
 
   void prepare() override {
     if (!is_finite(position)) fail("position", "a point lies at a finite place");
+    transform.count_from(transform.outer(), position);
     refuse_surface(*this, "a point");
   }
 
@@ -33,7 +34,7 @@ class Point final : public SceneObject {
   Bounds3 bounds() const override { return {}; }
   Bounds3 luminaire_bounds() const override {
     Bounds3 b;
-    b.add(position);
+    b.add(Point3{});
     return swept(transform, b);
   }
   bool intersect(const Ray&, Hit&) const override { return false; }
@@ -65,18 +66,18 @@ class Point final : public SceneObject {
   /// No direction is the point's but by intention.
   float visible_density(const Point3&, const Vector3&, const SurfacePoint&) const override { return 0; }
 
-  Point3 position{0, 0, 0};
+  DoublePoint3 position{0, 0, 0};
 
  private:
   void fill(float time, SurfacePoint& p) const {
     Transform scratch;
     const Transform& t = placed(transform, time, scratch);
-    p.position = t.identity() ? position : t(position);
+    p.position = t(Point3{});
     p.error = 0;  // the point is where it was found to be: there is no surface it could be off
     p.normal = p.shading_normal = p.object_normal = Normal3{};
     p.uv = {};
     p.dpdu = p.dpdv = {};
-    p.object_position = position;
+    p.object_position = Point3(position);
     p.time = time;
     p.object = this;
     p.primitive = 0;

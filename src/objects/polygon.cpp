@@ -1,5 +1,6 @@
 // Polygon: a flat outline.
 
+#include "own_centre.h"
 #include "polygon_triangulation.h"
 #include "triangle_object.h"
 
@@ -7,8 +8,8 @@ namespace etendue {
 namespace {
 
 class Polygon final : public TriangleObject {
-  std::vector<Point3> points{{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}};
-  std::vector<Point3> holes;
+  std::vector<DoublePoint3> points{{-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0}};
+  std::vector<DoublePoint3> holes;
   std::vector<std::uint32_t> hole_counts;
 
  public:
@@ -28,8 +29,10 @@ class Polygon final : public TriangleObject {
   void prepare() override {
     if (points.size() < 3) fail("points", "a polygon needs at least three points, but has " + std::to_string(points.size()));
     // All outlines one after the other, and where each ends.
-    std::vector<Point3> corners = points;
-    corners.insert(corners.end(), holes.begin(), holes.end());
+    const DoublePoint3 from = own_centre(points);
+    std::vector<Point3> corners = counted_from(from, points);
+    const std::vector<Point3> outline = corners, in_holes = counted_from(from, holes);
+    corners.insert(corners.end(), in_holes.begin(), in_holes.end());
     std::vector<size_t> ends{points.size()};
     add_holes(ends);
     Bounds3 box;
@@ -38,12 +41,12 @@ class Polygon final : public TriangleObject {
       box.add(corners[i]);
     }
     const float size = length(box.diagonal());
-    const Vector3 twice_area = newell_normal(points);
+    const Vector3 twice_area = newell_normal(outline);
     if (!(length(twice_area) > 1e-7f * size * size)) fail("points", "the polygon has no area");
     const Vector3 n = normalize(twice_area);
     const Point3 centre = box.centre();
     double mean = 0;
-    for (const Point3& p : points) mean += double(dot(n, p - centre)) / double(points.size());
+    for (const Point3& p : outline) mean += double(dot(n, p - centre)) / double(points.size());
     for (size_t i = 0; i < corners.size(); ++i) {
       const float height = std::abs(dot(n, corners[i] - centre) - float(mean));
       const bool outer = i < points.size();
@@ -52,10 +55,11 @@ class Polygon final : public TriangleObject {
                                              " is " + std::to_string(height) + " m off its plane");
     }
     MeshData mesh;
+    mesh.centre = from;
     mesh.positions.reserve(corners.size() + 1);
     mesh.positions = corners;
     if (holes.empty()) {
-      if (!triangulate(points, mesh.triangles)) fail("points", "the polygon crosses itself");
+      if (!triangulate(outline, mesh.triangles)) fail("points", "the polygon crosses itself");
     } else {
       const PolygonCheck check = triangulate(corners, ends, mesh.triangles);
       const std::string hole = "hole " + std::to_string(check.outline - 1);
@@ -67,7 +71,7 @@ class Polygon final : public TriangleObject {
     }
     // Surface coordinates: u along the first edge that has a length, v across, both over the polygon's extent.
     Vector3 edge;
-    for (size_t i = 0; i + 1 < points.size() && edge == Vector3{}; ++i) edge = points[i + 1] - points[i];
+    for (size_t i = 0; i + 1 < outline.size() && edge == Vector3{}; ++i) edge = outline[i + 1] - outline[i];
     const Vector3 s = normalize(edge - dot(n, edge) * n), t = cross(n, s);
     Point2 low{infinity, infinity}, high{-infinity, -infinity};
     for (const Point3& p : corners) {

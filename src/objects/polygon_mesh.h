@@ -11,6 +11,7 @@ struct PolygonMesh {
   static constexpr std::uint32_t none = 0xffffffffu;
 
   std::vector<Point3> positions;
+  DoublePoint3 centre;  ///< what they are counted from, as in MeshData
   std::vector<std::uint32_t> face_sizes;
   std::vector<std::uint32_t> corners;  ///< the vertex of each face's corners, face after face
   std::vector<Point2> uvs;

@@ -7,7 +7,7 @@
 namespace etendue {
 
 class Rectangle final : public SceneObject {
-  Point3 corner{-0.5f, -0.5f, 0};
+  DoublePoint3 corner{-0.5, -0.5, 0};
   Vector3 edge_u{1, 0, 0}, edge_v{0, 1, 0};
 
  public:
@@ -26,15 +26,16 @@ class Rectangle final : public SceneObject {
     if (!is_finite(corner) || !is_finite(edge_u) || !is_finite(edge_v)) fail("corner", "the rectangle is not finite");
     const float u2 = length_squared(edge_u), v2 = length_squared(edge_v);
     if (!(length_squared(cross(edge_u, edge_v)) > 1e-12f * u2 * v2)) fail("edge_u", "the edges are parallel or have no length");
+    transform.count_from(transform.outer(), corner);
     still_ = at(transform.still());
     triangles_ = {{{0, 1, 2}, {0, 2, 3}}};
-    for (int i = 0; i < 4; ++i) corners_[i] = still_.corner_at(i);
     Bounds3 box;
     for (int i = 0; i < 4; ++i) {
-      if (transform.animated())
-        box.add(corner + ((i & 1) ? edge_u : Vector3{}) + ((i & 2) ? edge_v : Vector3{}));
-      else
-        box.add(corners_[i]);
+      // In double: what several say to be in one place is in one place.
+      const DoubleVector3 u = i == 1 || i == 2 ? edge_u : Vector3{}, v = i >= 2 ? edge_v : Vector3{};
+      const DoublePoint3 at = DoublePoint3{} + (u + v);
+      corners_[i] = Point3(transform.still()(at));
+      box.add(transform.animated() ? Point3(at) : corners_[i]);
     }
     bounds_ = transform.animated() ? swept(transform, box) : box;
   }
@@ -150,12 +151,10 @@ class Rectangle final : public SceneObject {
     Normal3 normal;
     Vector3 half_diagonal;
     float length_u = 1, length_v = 1, area = 1, error = 0;
-    float far_squared = 0;  // further from the middle all of it is too far away to be sampled by solid angle
+    float far_squared = 0;             // further from the middle all of it is too far away to be sampled by solid angle
+    float margin_u = 0, margin_v = 0;  // how near to 0 and 1 points go: see `border`
     bool perpendicular = true;
 
-    Point3 corner_at(int i) const {
-      return corner + ((i == 1 || i == 2 ? 1.0f : 0.0f) * edge_u + (i >= 2 ? 1.0f : 0.0f) * edge_v);
-    }
     /// Whether sampling by solid angle may pay. `origin` becomes the corner as seen from the point, along the edges and
     /// the normal (for perpendicular edges).
     [[gnu::always_inline]] inline bool near(const Point3& from, Vector3& origin) const {
@@ -178,7 +177,7 @@ class Rectangle final : public SceneObject {
 
   World at(const Transform& t) const {
     World w;
-    w.corner = t(corner);
+    w.corner = t(Point3{});
     w.edge_u = t(edge_u);
     w.edge_v = t(edge_v);
     w.length_u = length(w.edge_u);
@@ -198,7 +197,9 @@ class Rectangle final : public SceneObject {
     const Vector3 a = abs(w.edge_u), b = abs(w.edge_v), extent = a + b;
     const Vector3 x{a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
     const Vector3 furthest = Vector3{std::abs(w.corner.x), std::abs(w.corner.y), std::abs(w.corner.z)} + extent;
-    w.error = along(w.normal, rounding_bound(4) * furthest + rounding_bound(8) * extent) +
+    w.margin_u = std::min(border * max_component(furthest) * w.length_v / w.area, 0.125f);
+    w.margin_v = std::min(border * max_component(furthest) * w.length_u / w.area, 0.125f);
+    w.error = along(w.normal, rounding_bound(5) * furthest + rounding_bound(8) * extent) +
               rounding_bound(3) * dot(x, extent) / w.area;
     return w;
   }
@@ -220,7 +221,8 @@ class Rectangle final : public SceneObject {
   }
 
   [[gnu::always_inline]] inline void fill(const World& w, Point2 uv, float time, SurfacePoint& p) const {
-    p.position = w.corner + (uv.x * w.edge_u + uv.y * w.edge_v);
+    p.position = w.corner + (clamp(uv.x, w.margin_u, 1 - w.margin_u) * w.edge_u +  //
+                             clamp(uv.y, w.margin_v, 1 - w.margin_v) * w.edge_v);
     p.error = w.error;
     p.normal = w.normal;
     p.shading_normal = w.normal;
@@ -230,9 +232,9 @@ class Rectangle final : public SceneObject {
     p.time = time;
     p.object = this;
     if (!transform.animated()) [[likely]]
-      fill_object_coordinates(transform.still(), p);
+      fill_object_coordinates(transform, transform.still(), p);
     else
-      fill_object_coordinates(transform.at(time), p);
+      fill_object_coordinates(transform, transform.at(time), p);
   }
   [[gnu::always_inline]] inline void fill_part(const World& w, Point2 uv, float time, SurfacePoint& p) const {
     fill(w, uv, time, p);

@@ -56,7 +56,7 @@ bool RevolvedQuadric::own_intersect(const Ray& ray, Hit& hit) const {
 void RevolvedQuadric::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const {
   const DoubleRay r(ray);
   const double t = exact_distance(hit);
-  double x = r.at(t, 0), y = r.at(t, 1), z = std::clamp(r.at(t, 2), profile_.low, profile_.high);
+  double x = r.at(t, 0), y = r.at(t, 1), z = within(r.at(t, 2), profile_.low, profile_.high);
   if (hit.primitive == side) {
     // Onto the side by Newton's steps: t may be rounded as on a longer ray (of a solid this is part of).
     for (int i = 0; i < 2; ++i) {
@@ -65,7 +65,7 @@ void RevolvedQuadric::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) con
       const double step = 0.5 * (x * x + y * y - profile_.squared_radius(z)) / g2;
       x -= step * x;
       y -= step * y;
-      z = std::clamp(z + step * slope, profile_.low, profile_.high);
+      z = within(z + step * slope, profile_.low, profile_.high);
     }
     side_point(x, y, z, p);
   } else
@@ -99,7 +99,9 @@ void RevolvedQuadric::side_point(double x, double y, double z, OwnPoint& p) cons
 
 void RevolvedQuadric::cap_point(Part part, double x, double y, OwnPoint& p) const {
   const bool up = part == high_cap;
-  flat_point(x, y, up ? profile_.high : profile_.low, up ? profile_.high_radius : profile_.low_radius, up, extent_, p);
+  const double rim = up ? profile_.high_radius : profile_.low_radius, r = std::sqrt(x * x + y * y);
+  const double inward = r > 0 ? within(r, -rim, rim) / r : 1;
+  flat_point(inward * x, inward * y, up ? profile_.high : profile_.low, rim, up, extent_, p);
   p.primitive = part;
 }
 
@@ -111,7 +113,7 @@ float RevolvedQuadric::own_sample(Point2 u, OwnPoint& p) const {
     const double r = profile_.low_radius * std::sqrt(y / low_area_);
     cap_point(low_cap, r * cosine, r * sine, p);
   } else if (y < low_area_ + side_area_) {
-    const double z = std::clamp(height_at((y - low_area_) / side_area_), profile_.low, profile_.high);
+    const double z = within(height_at((y - low_area_) / side_area_), profile_.low, profile_.high);
     const double r = std::sqrt(profile_.squared_radius(z));
     side_point(r * cosine, r * sine, z, p);
   } else {

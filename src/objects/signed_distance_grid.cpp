@@ -4,6 +4,8 @@
 #include "files/regular_file.h"
 #include "images/numpy_array.h"
 #include "implicit_grid.h"
+#include "mesh_data.h"
+#include "own_centre.h"
 
 namespace etendue {
 namespace {
@@ -47,19 +49,22 @@ class SignedDistanceGrid final : public ImplicitObject {
     file.empty() ? take_list() : read_file();
     for (const float x : values_)
       if (!std::isfinite(x)) fail(file.empty() ? "distances" : "file", "all distances must be finite");
+    const DoublePoint3 ends[2] = {low, high};
+    transform.count_from(transform.outer(), own_centre(ends));
+    const std::vector<Point3> counted = counted_from(transform.inner(), ends);
     for (int k = 0; k < 3; ++k) {
       count_[k] = points_[k] - 1;
-      low_[size_t(k)] = double(low[k]);
-      scale_[size_t(k)] = count_[k] / (double(high[k]) - double(low[k]));
+      low_[size_t(k)] = double(counted[0][k]);
+      scale_[size_t(k)] = count_[k] / (double(counted[1][k]) - double(counted[0][k]));
     }
     find_empty();
-    settle(low, high, capped, file.empty() ? "distances" : "file");
+    settle(counted[0], counted[1], capped, file.empty() ? "distances" : "file");
   }
 
   FilePath file;
   std::vector<int> resolution{65, 65, 65};
   std::vector<float> distances;
-  Point3 low{-1, -1, -1}, high{1, 1, 1};
+  DoublePoint3 low{-1, -1, -1}, high{1, 1, 1};
   bool capped = true, smooth = true;
 
  protected:

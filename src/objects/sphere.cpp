@@ -6,7 +6,7 @@
 namespace etendue {
 
 class Sphere final : public SceneObject {
-  Point3 center{0, 0, 0};
+  DoublePoint3 center{0, 0, 0};
   float radius = 1;
 
  public:
@@ -23,9 +23,10 @@ class Sphere final : public SceneObject {
   void prepare() override {
     if (!is_finite(center) || !(radius > 0 && radius < infinity))
       fail("radius", "centre and radius must be finite, the radius positive");
+    transform.count_from(transform.outer(), center);
     const float scale = transform.animated() ? 0 : similarity_scale(transform.still());
     round_ = scale > 0;
-    ball_ = round_ ? Ball{transform.still()(center), scale * radius} : Ball{center, radius};
+    ball_ = round_ ? Ball{transform.still()(Point3{}), scale * radius} : Ball{{}, radius};
     const Vector3 r{ball_.radius, ball_.radius, ball_.radius};
     Bounds3 box;
     box.add(ball_.center - r);
@@ -37,7 +38,7 @@ class Sphere final : public SceneObject {
     } else {  // an ellipsoid M x + c with |x| <= r reaches r |row k of M| along axis k
       const auto& m = transform.still().matrix();
       const auto reach = [&](size_t k) { return radius * length(Vector3{m[4 * k], m[4 * k + 1], m[4 * k + 2]}); };
-      const Point3 c = transform.still()(center);
+      const Point3 c = transform.still()(Point3{});
       bounds_ = {};
       bounds_.add(c - Vector3{reach(0), reach(1), reach(2)});
       bounds_.add(c + Vector3{reach(0), reach(1), reach(2)});
@@ -76,7 +77,7 @@ class Sphere final : public SceneObject {
 
   void tangents(SurfacePoint& p) const override {
     if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
-    const Vector3 d = p.object_position - center;
+    const Vector3 d = radius * Vector3(p.object_normal);
     const float around = std::sqrt(d.x * d.x + d.y * d.y);
     if (around > 1e-6f * radius) {
       p.dpdu = 2 * pi * Vector3{-d.y, d.x, 0};
@@ -206,11 +207,10 @@ class Sphere final : public SceneObject {
     p.error = rounding_bound(3) * (along(p.normal, here) + ball_.radius);
     if (round_) {
       const Transform& t = transform.still();
-      p.object_position = t.identity() ? p.position : t.back(p.position);
-      p.object_normal = t.identity() ? p.normal : normalize(normal_into(t, p.normal));
+      fill_object_coordinates(transform, t, p);
     } else {
       Transform scratch;
-      p.object_position = p.position;
+      p.object_position = own_place(transform, p.position);
       p.object_normal = p.normal;
       carry_out(placed(transform, time, scratch), p);
     }
@@ -229,7 +229,7 @@ class Sphere final : public SceneObject {
     if (!transform.animated()) return false;
     const Transform t = transform.at(time);
     const float scale = similarity_scale(t);
-    ball = {t(center), scale * radius};
+    ball = {t(Point3{}), scale * radius};
     return scale > 0;
   }
 

@@ -2,6 +2,7 @@
 
 #include <unordered_set>
 
+#include "own_centre.h"
 #include "subdivision.h"
 #include "triangle_object.h"
 #include "vertex_attributes.h"
@@ -110,6 +111,7 @@ class SubdivisionSurface final : public TriangleObject {
     limit.mesh.attributes.clear();
     own_corners_.clear();
     if (!attributes_.empty() && transform.animated()) own_corners_ = limit.mesh.triangles;
+    limit.mesh.centre = cage.centre;
     adopt(std::move(limit.mesh));
     const std::optional<TriangleView> view = TriangleObject::triangles();
     corners_ = view ? view->triangles : own_corners_;
@@ -120,7 +122,7 @@ class SubdivisionSurface final : public TriangleObject {
   }
 
   FilePath file;
-  std::vector<Point3> positions;
+  std::vector<DoublePoint3> positions;
   std::vector<std::uint32_t> face_sizes, indices, uv_indices, creases, corners;
   std::vector<Point2> uvs;
   std::vector<float> crease_sharpness, corner_sharpness;
@@ -151,7 +153,8 @@ class SubdivisionSurface final : public TriangleObject {
     if (positions.empty()) fail("", "a cage needs either a file or positions and indices");
     if (indices.empty()) fail("indices", "there are positions but no faces");
     PolygonMesh cage;
-    cage.positions = positions;
+    cage.centre = own_centre(positions);
+    cage.positions = counted_from(cage.centre, positions);
     cage.corners = indices;
     cage.face_sizes = face_sizes;
     const size_t usual = scheme == SubdivisionRules::Scheme::loop ? 3 : 4;

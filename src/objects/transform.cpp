@@ -21,7 +21,7 @@ Matrix3 inverse_of(const Matrix3& a) {
           s * (a[3] * a[7] - a[4] * a[6]), s * (a[1] * a[6] - a[0] * a[7]), s * (a[0] * a[4] - a[1] * a[3])};
 }
 
-Matrix3 linear_part(const Transform::Matrix& m) { return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}; }
+Matrix3 linear_part(const Transform::DoubleMatrix& m) { return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}; }
 
 /// The product of the lengths of the columns: the largest determinant columns of these lengths can have.
 double column_product(const Matrix3& a) {
@@ -54,14 +54,14 @@ Matrix3 rotation_of(const std::array<double, 4>& q) {
           2 * (y * z - x * w),     2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)};
 }
 
-double dot4(const std::array<float, 4>& a, const std::array<float, 4>& b) {
+double dot4(const std::array<double, 4>& a, const std::array<double, 4>& b) {
   double sum = 0;
-  for (size_t i = 0; i < 4; ++i) sum += double(a[i]) * b[i];
+  for (size_t i = 0; i < 4; ++i) sum += a[i] * b[i];
   return sum;
 }
 
 /// Interpolation along the great circle (Shoemake 1985); linear where the two nearly agree.
-std::array<double, 4> slerp(double t, const std::array<float, 4>& a, const std::array<float, 4>& b) {
+std::array<double, 4> slerp(double t, const std::array<double, 4>& a, const std::array<double, 4>& b) {
   const double cosine = std::min(1.0, dot4(a, b));
   double wa = 1 - t, wb = t;
   if (cosine < 0.9999) {
@@ -81,66 +81,86 @@ std::array<double, 4> slerp(double t, const std::array<float, 4>& a, const std::
 
 }  // namespace
 
-Transform::Transform(const Matrix& matrix) : m_(matrix) {
-  const Matrix3 a = linear_part(m_);
+namespace {
+
+Transform::DoubleMatrix in_double(const Transform::Matrix& m) {
+  Transform::DoubleMatrix d{};
+  for (size_t i = 0; i < m.size(); ++i) d[i] = double(m[i]);
+  return d;
+}
+
+}  // namespace
+
+Transform::Transform(const Matrix& matrix) : Transform(in_double(matrix)) {}
+
+Transform::Transform(const DoubleMatrix& matrix) : exact_(matrix) {
+  for (size_t k = 0; k < 12; ++k) m_[k] = float(exact_[k]);
+  const Matrix3 a = linear_part(exact_);
   const double det = determinant(a), largest = column_product(a);
   bool finite = true;
   for (float x : m_) finite = finite && std::isfinite(x);
   // A determinant this far below what its columns allow is what rounding leaves of a singular matrix.
   valid_ = finite && largest > 0 && std::abs(det) > 1e-7 * largest;
   flips_ = det < 0;
-  identity_ = m_ == Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  identity_ = exact_ == DoubleMatrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  shifts_only_ = a == Matrix3{1, 0, 0, 0, 1, 0, 0, 0, 1};
   if (!valid_) return;
   const Matrix3 i = inverse_of(a);
   for (size_t r = 0; r < 3; ++r) {
-    for (size_t c = 0; c < 3; ++c) inverse_[4 * r + c] = float(i[3 * r + c]);
-    inverse_[4 * r + 3] = float(-(i[3 * r] * m_[3] + i[3 * r + 1] * m_[7] + i[3 * r + 2] * m_[11]));
+    for (size_t c = 0; c < 3; ++c) exact_inverse_[4 * r + c] = i[3 * r + c];
+    exact_inverse_[4 * r + 3] = -(i[3 * r] * exact_[3] + i[3 * r + 1] * exact_[7] + i[3 * r + 2] * exact_[11]);
   }
   // Beyond these, squares and products of a few are no floats any more.
   constexpr float most = 1e15f;
-  for (size_t k = 0; k < 12; ++k)
+  for (size_t k = 0; k < 12; ++k) {
+    inverse_[k] = float(exact_inverse_[k]);
     valid_ = valid_ && std::isfinite(inverse_[k]) && (k % 4 == 3 || (std::abs(inverse_[k]) < most && std::abs(m_[k]) < most));
+  }
 }
 
-Transform Transform::translate(const Vector3& by) { return Transform(Matrix{1, 0, 0, by.x, 0, 1, 0, by.y, 0, 0, 1, by.z}); }
+Transform Transform::translate(const DoubleVector3& by) {
+  return Transform(DoubleMatrix{1, 0, 0, by.x, 0, 1, 0, by.y, 0, 0, 1, by.z});
+}
 
-Transform Transform::rotate(float angle, const Vector3& axis) {
+Transform Transform::rotate(double angle, const DoubleVector3& axis) {
   // Rodrigues' formula.
-  const double n = std::sqrt(double(axis.x) * axis.x + double(axis.y) * axis.y + double(axis.z) * axis.z);
-  const double x = axis.x / n, y = axis.y / n, z = axis.z / n, c = std::cos(double(angle)), s = std::sin(double(angle)),
-               d = 1 - c;
-  return Transform(Matrix{float(c + x * x * d), float(x * y * d - z * s), float(x * z * d + y * s), 0,  //
-                          float(y * x * d + z * s), float(c + y * y * d), float(y * z * d - x * s), 0,  //
-                          float(z * x * d - y * s), float(z * y * d + x * s), float(c + z * z * d), 0});
+  const double n = length(axis);
+  const double x = axis.x / n, y = axis.y / n, z = axis.z / n, c = std::cos(angle), s = std::sin(angle), d = 1 - c;
+  return Transform(DoubleMatrix{c + x * x * d, x * y * d - z * s, x * z * d + y * s, 0,  //
+                                y * x * d + z * s, c + y * y * d, y * z * d - x * s, 0,  //
+                                z * x * d - y * s, z * y * d + x * s, c + z * z * d, 0});
 }
 
-Transform Transform::scale(const Vector3& by) { return Transform(Matrix{by.x, 0, 0, 0, 0, by.y, 0, 0, 0, 0, by.z, 0}); }
+Transform Transform::scale(const DoubleVector3& by) {
+  return Transform(DoubleMatrix{by.x, 0, 0, 0, 0, by.y, 0, 0, 0, 0, by.z, 0});
+}
 
-Transform Transform::look_at(const Point3& from, const Point3& to, const Vector3& up) {
+Transform Transform::look_at(const DoublePoint3& from, const DoublePoint3& to, const DoubleVector3& up) {
   // Where the direction or the left axis vanishes the columns stay zero, and the transform is not valid.
-  const auto unit = [](const Vector3& v) { return length_squared(v) > 0 ? normalize(v) : Vector3{}; };
-  const Vector3 z = unit(to - from);
-  const Vector3 side = cross(unit(up), z);
-  const Vector3 x = length(side) > 1e-6f ? normalize(side) : Vector3{};
-  const Vector3 y = cross(z, x);
-  return Transform(Matrix{x.x, y.x, z.x, from.x, x.y, y.y, z.y, from.y, x.z, y.z, z.z, from.z});
+  const auto unit = [](const DoubleVector3& v, double least) {
+    const double l = length(v);
+    return l > least ? 1 / l * v : DoubleVector3{};
+  };
+  const DoubleVector3 z = unit(to - from, 0), x = unit(cross(unit(up, 0), z), 1e-6), y = cross(z, x);
+  return Transform(DoubleMatrix{x.x, y.x, z.x, from.x, x.y, y.y, z.y, from.y, x.z, y.z, z.z, from.z});
 }
 
 Transform Transform::inverse() const {
   Transform t = *this;
   std::swap(t.m_, t.inverse_);
+  std::swap(t.exact_, t.exact_inverse_);
   return t;
 }
 
 Transform Transform::operator*(const Transform& b) const {
   if (identity_) return b;
   if (b.identity_) return *this;
-  Matrix m{};
+  DoubleMatrix m{};
   for (size_t r = 0; r < 3; ++r)
     for (size_t c = 0; c < 4; ++c) {
-      double sum = c == 3 ? double(m_[4 * r + 3]) : 0.0;
-      for (size_t k = 0; k < 3; ++k) sum += double(m_[4 * r + k]) * b.m_[4 * k + c];
-      m[4 * r + c] = float(sum);
+      double sum = c == 3 ? exact_[4 * r + 3] : 0.0;
+      for (size_t k = 0; k < 3; ++k) sum += exact_[4 * r + k] * b.exact_[4 * k + c];
+      m[4 * r + c] = sum;
     }
   return Transform(m);
 }
@@ -165,6 +185,7 @@ Vector3 Transform::error_bound(const Point3& p, const Vector3& error) const {
 
 AnimatedTransform::AnimatedTransform(std::vector<Key> keys) : keys_(std::move(keys)) {
   if (keys_.empty()) throw Error("an animated transform needs at least one key");
+  still_ = keys_.front().transform;
   for (size_t i = 0; i < keys_.size(); ++i) {
     if (!std::isfinite(keys_[i].time)) throw Error("the time of a transform's key must be finite");
     if (i > 0 && !(keys_[i - 1].time < keys_[i].time)) throw Error("the times of a transform's keys must increase");
@@ -174,9 +195,28 @@ AnimatedTransform::AnimatedTransform(std::vector<Key> keys) : keys_(std::move(ke
     Parts parts = decompose(key.transform);
     // q and -q are the same rotation: take the one nearer to the key before, which gives the shorter way.
     if (!parts_.empty() && dot4(parts_.back().rotation, parts.rotation) < 0)
-      for (float& x : parts.rotation) x = -x;
+      for (double& x : parts.rotation) x = -x;
     parts_.push_back(parts);
   }
+}
+
+void AnimatedTransform::count_from(const DoublePoint3& outer, const DoublePoint3& inner) {
+  outer_ = outer;
+  inner_ = inner;
+  still_ = counted(keys_.front().transform);
+  if (factors_.empty()) return;
+  factors_[0].count_from(outer, factors_[0].inner_);
+  factors_[1].count_from(factors_[1].outer_, inner);
+}
+
+Transform AnimatedTransform::counted(const Transform& written, const DoublePoint3& inner) const {
+  if ((outer_ == DoublePoint3{} && inner == DoublePoint3{}) || !written.valid()) return written;
+  Transform::DoubleMatrix m = written.exact();
+  const DoubleVector3 translation = written(inner) - outer_;
+  m[3] = translation.x;
+  m[7] = translation.y;
+  m[11] = translation.z;
+  return Transform(m);
 }
 
 bool AnimatedTransform::valid() const {
@@ -188,7 +228,7 @@ bool AnimatedTransform::valid() const {
 
 AnimatedTransform::Parts AnimatedTransform::decompose(const Transform& transform) {
   // Polar decomposition M = R S by averaging with the inverse transpose (Higham 1986), which converges quadratically.
-  const Matrix3 m = linear_part(transform.matrix());
+  const Matrix3 m = linear_part(transform.exact());
   Matrix3 r = m;
   for (int iteration = 0; iteration < 100; ++iteration) {
     const Matrix3 i = inverse_of(r);
@@ -204,35 +244,40 @@ AnimatedTransform::Parts AnimatedTransform::decompose(const Transform& transform
   if (determinant(r) < 0)
     for (double& x : r) x = -x;  // a mirroring goes into the stretch
   Parts parts;
-  parts.translation = {transform.matrix()[3], transform.matrix()[7], transform.matrix()[11]};
-  const std::array<double, 4> q = quaternion_of(r);
-  for (size_t i = 0; i < 4; ++i) parts.rotation[i] = float(q[i]);
+  parts.translation = {transform.exact()[3], transform.exact()[7], transform.exact()[11]};
+  parts.rotation = quaternion_of(r);
   for (size_t row = 0; row < 3; ++row)
     for (size_t c = 0; c < 3; ++c) {
       double sum = 0;
       for (size_t k = 0; k < 3; ++k) sum += r[3 * k + row] * m[3 * k + c];  // S = R^T M
-      parts.stretch[3 * row + c] = float(sum);
+      parts.stretch[3 * row + c] = sum;
     }
   return parts;
 }
 
 AnimatedTransform AnimatedTransform::operator*(const AnimatedTransform& b) const {
-  if (!animated() && !b.animated()) return still() * b.still();
+  AnimatedTransform product;
+  if (!animated() && !b.animated()) {
+    product = keys_.front().transform * b.keys_.front().transform;
+    product.count_from(outer_, b.inner_);
+    return product;
+  }
   std::vector<float> times;
   for (const AnimatedTransform* t : {this, &b})
     if (t->animated())
       for (const Key& key : t->keys_) times.push_back(key.time);
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
-  AnimatedTransform product;
   product.keys_.clear();
-  for (const float time : times) product.keys_.push_back({time, at(time) * b.at(time)});
+  for (const float time : times) product.keys_.push_back({time, written(time) * b.written(time)});
   product.factors_ = {*this, b};
+  product.factors_[1].count_from(inner_, b.inner_);
+  product.count_from(outer_, b.inner_);
   return product;
 }
 
-Transform AnimatedTransform::at(float time) const {
-  if (!factors_.empty()) return factors_[0].at(time) * factors_[1].at(time);
+Transform AnimatedTransform::written(float time) const {
+  if (!factors_.empty()) return factors_[0].written(time) * factors_[1].written(time);
   if (!animated() || parts_.empty() || time <= keys_.front().time) return keys_.front().transform;
   if (time >= keys_.back().time) return keys_.back().transform;
   size_t i = 0;
@@ -241,15 +286,14 @@ Transform AnimatedTransform::at(float time) const {
   const Parts &a = parts_[i], &b = parts_[i + 1];
   const double t = (double(time) - keys_[i].time) / (double(keys_[i + 1].time) - keys_[i].time);
   const Matrix3 r = rotation_of(slerp(t, a.rotation, b.rotation));
-  Transform::Matrix m{};
+  Transform::DoubleMatrix m{};
   for (size_t row = 0; row < 3; ++row) {
     for (size_t c = 0; c < 3; ++c) {
       double sum = 0;
       for (size_t k = 0; k < 3; ++k) sum += r[3 * row + k] * ((1 - t) * a.stretch[3 * k + c] + t * b.stretch[3 * k + c]);
-      m[4 * row + c] = float(sum);
+      m[4 * row + c] = sum;
     }
-    const int axis = int(row);
-    m[4 * row + 3] = float((1 - t) * a.translation[axis] + t * b.translation[axis]);
+    m[4 * row + 3] = (1 - t) * a.translation[row] + t * b.translation[row];
   }
   return Transform(m);
 }

@@ -1,5 +1,6 @@
 // Triangle: a single one.
 
+#include "own_centre.h"
 #include "triangle_object.h"
 
 namespace etendue {
@@ -27,24 +28,19 @@ class Triangle final : public TriangleObject {
     if (!(float(area) > std::numeric_limits<float>::min() && float(area) < infinity))
       fail("c", "the triangle is too small or too large: its area is no float");
     MeshData mesh;
-    mesh.positions.reserve(4);  // one more is added
-    mesh.positions = {a, b, c};
+    const DoublePoint3 corners[3] = {a, b, c};
+    mesh.centre = own_centre(corners);
+    mesh.positions = counted_from(mesh.centre, corners);
     mesh.triangles = {{0, 1, 2}};
     mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
     adopt(std::move(mesh));
   }
 
-  Point3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+  DoublePoint3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
 
  private:
-  static double length_of(const Point3& p, const Point3& q) {
-    return std::hypot(double(p.x) - q.x, double(p.y) - q.y, double(p.z) - q.z);
-  }
-  double twice_area() const {
-    const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
-    const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
-    return std::hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
-  }
+  static double length_of(const DoublePoint3& p, const DoublePoint3& q) { return length(p - q); }
+  double twice_area() const { return length(cross(b - a, c - a)); }
 };
 
 const Register<Triangle> registered;

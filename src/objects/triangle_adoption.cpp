@@ -40,6 +40,7 @@ void TriangleObject::adopt(std::shared_ptr<const MeshData> mesh, MeshMotion moti
     mesh_.positions = motion_.positions;
     mesh_.normals = motion_.normals;
   }
+  transform.count_from(transform.outer(), data_->centre);
   if (!transform.animated() && !transform.still().identity()) bake(transform.still());
   static constexpr Point2 plain_uvs[3] = {{0, 0}, {1, 0}, {0, 1}};
   static constexpr std::array<std::uint32_t, 3> plain_corners = {0, 1, 2};
@@ -77,12 +78,14 @@ void TriangleObject::bake(const Transform& t) {
   std::vector<Normal3>& normals = motion_.moves() ? motion_.normals : changed_.normals;
   if (!motion_.moves()) {
     positions.assign(mesh_.positions.begin(), mesh_.positions.end());
-    normals.assign(mesh_.normals.begin(), mesh_.normals.end());
+    if (!t.shifts_only()) normals.assign(mesh_.normals.begin(), mesh_.normals.end());
   }
-  for (Point3& p : positions) p = t(p);
-  for (Normal3& n : normals) n = unit_or_zero(t(n));
+  for (Point3& p : positions) p = Point3(t(DoublePoint3(p)));
   mesh_.positions = positions;
-  mesh_.normals = normals;
+  if (!t.shifts_only()) {
+    for (Normal3& n : normals) n = unit_or_zero(t(n));
+    mesh_.normals = normals;
+  }
   if (!t.flips()) return;
   // So that edges still turn around the front.
   changed_.triangles.assign(mesh_.triangles.begin(), mesh_.triangles.end());

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 
+#include "own_centre.h"
 #include "triangle_object.h"
 #include "triangle_test.h"
 
@@ -25,7 +26,7 @@ void append_normals(std::span<const Point3> positions, std::span<const std::arra
 
 class TriangleMesh final : public TriangleObject {
   FilePath file;
-  std::vector<Point3> positions;
+  std::vector<DoublePoint3> positions;
   std::vector<std::uint32_t> triangles;
   std::vector<Normal3> normals;
   std::vector<Point2> uvs;
@@ -33,7 +34,7 @@ class TriangleMesh final : public TriangleObject {
   bool flat = false;
   std::vector<float> times;
   std::vector<FilePath> motion_files;
-  std::vector<Point3> motion_positions;
+  std::vector<DoublePoint3> motion_positions;
   std::vector<Normal3> motion_normals;
 
  public:
@@ -87,6 +88,7 @@ class TriangleMesh final : public TriangleObject {
       mesh = std::move(bare);
       motion.normals = {};
     }
+    if (!file.empty()) warn_if_coarse(*mesh);
     attributes_.clear();
     for (const VertexAttribute& a : mesh->attributes)
       attributes_.push_back({attribute_number(a.name), a.width, a.values.data()});
@@ -187,7 +189,8 @@ class TriangleMesh final : public TriangleObject {
     motion.normals = mesh->normals;
     bool normals_known = from_lists ? !motion_normals.empty() : true;
     if (from_lists) {
-      motion.positions.insert(motion.positions.end(), motion_positions.begin(), motion_positions.end());
+      const std::vector<Point3> later_positions = counted_from(mesh->centre, motion_positions);
+      motion.positions.insert(motion.positions.end(), later_positions.begin(), later_positions.end());
       for (const Normal3& normal : motion_normals) {
         const float l = length(Vector3(normal));
         motion.normals.push_back(l > 0 && l < infinity ? Normal3(Vector3(normal) / l) : Normal3{});
@@ -198,7 +201,8 @@ class TriangleMesh final : public TriangleObject {
       if (key->positions.size() != n + 1)
         fail("motion_files", "'" + path.resolved() + "' has " + std::to_string(key->positions.size() - 1) +
                                  " vertices, the first key " + std::to_string(n));
-      motion.positions.insert(motion.positions.end(), key->positions.begin(), key->positions.end() - 1);
+      const DoubleVector3 between = key->centre - mesh->centre;
+      for (size_t i = 0; i < n; ++i) motion.positions.push_back(Point3(DoublePoint3(key->positions[i]) + between));
       motion.normals.insert(motion.normals.end(), key->normals.begin(), key->normals.end());
       normals_known = normals_known && !key->normals.empty();
     }
@@ -227,6 +231,25 @@ class TriangleMesh final : public TriangleObject {
     return motion;
   }
 
+  /// Whether the file's numbers, where they are floats, can hold its triangles.
+  void warn_if_coarse(const MeshData& mesh) const {
+    double sum = 0;
+    float away = 0;
+    for (const auto& t : mesh.triangles) {
+      sum += double(length(area_vector(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]])));
+      away = std::max(away, max_component(abs(mesh.positions[t[0]] - Point3{})));
+    }
+    const double edge = std::sqrt(sum / double(std::max<size_t>(mesh.triangles.size(), 1))),
+                 step = double(rounding_bound(2) * away);
+    if (edge < 32 * step)
+      warn(fmt::format(
+               "'{}': its triangles are about {:.2g} m large, but its vertices lie {:.3g} m from the origin, where floats "
+               "are {:.2g} m apart: their shape is spoilt. Write the vertices as doubles, or relative to their middle, "
+               "and move the mesh by its transform",
+               file.resolved(), edge, away, step),
+           location_of("file"));
+  }
+
   MeshData listed() const {
     const size_t n = positions.size();
     if (n == 0) fail("", "a mesh needs either a file or positions and triangles");
@@ -240,8 +263,8 @@ class TriangleMesh final : public TriangleObject {
     if (!colors.empty() && colors.size() != n)
       fail("colors", std::to_string(colors.size()) + " colours for " + std::to_string(n) + " positions");
     MeshData mesh;
-    mesh.positions.reserve(n + 1);
-    mesh.positions = positions;
+    mesh.centre = own_centre(positions);
+    mesh.positions = counted_from(mesh.centre, positions);
     mesh.normals = normals;
     mesh.uvs = uvs;
     if (!colors.empty()) {

@@ -118,6 +118,8 @@ TriangleObject::Plane TriangleObject::plane_of(const Point3& p0, const Vector3& 
   const Vector3 a = abs(e1), b = abs(e2), extent = a + b;
   const Vector3 x{a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
   const Vector3 furthest = Vector3{std::abs(p0.x), std::abs(p0.y), std::abs(p0.z)} + extent;
+  const float longest = std::sqrt(std::max({dot(e1, e1), dot(e2, e2), length_squared(e2 - e1)}));
+  plane.margin = std::min(border * max_component(furthest) * longest * inverse_length, 0.125f);
   plane.error = along(plane.normal, rounding_bound(3) * furthest + rounding_bound(8) * extent) +
                 std::min(rounding_bound(3) * inverse_length * dot(x, extent), 1e-3f * (extent.x + extent.y + extent.z));
   return plane;
@@ -139,14 +141,24 @@ inline void TriangleObject::fill_at(std::uint32_t primitive, float u, float v, f
   const Point3& p0 = moving ? corners.p[0] : mesh_.positions[t[0]];
   const Vector3 e1 = (moving ? corners.p[1] : mesh_.positions[t[1]]) - p0;
   const Vector3 e2 = (moving ? corners.p[2] : mesh_.positions[t[2]]) - p0;
+  float margin = 0;
   if (!planes_.empty()) {
     const Plane& plane = planes_[primitive];
     p.normal = plane.normal;
     p.error = plane.error;
+    margin = plane.margin;
   } else {
     const Plane plane = plane_of(p0, e1, e2);
     p.normal = plane.normal;
     p.error = plane.error;
+    margin = plane.margin;
+  }
+  if (std::min({u, v, 1 - u - v}) < margin) [[unlikely]] {
+    u = std::max(u, margin);
+    v = std::max(v, margin);
+    const float inside = std::min(1.0f, (1 - margin) / (u + v));
+    u *= inside;
+    v *= inside;
   }
   if (moving) p.error += motion_error(primitive, now, p.normal);
   p.position = p0 + (u * e1 + v * e2);
@@ -176,9 +188,9 @@ inline void TriangleObject::fill_at(std::uint32_t primitive, float u, float v, f
   p.u = u;
   p.v = v;
   if (!transform.animated()) [[likely]] {
-    fill_object_coordinates(transform.still(), p);
+    fill_object_coordinates(transform, transform.still(), p);
   } else {
-    p.object_position = p.position;
+    p.object_position = own_place(transform, p.position);
     p.object_normal = p.normal;
     carry_out(transform.at(time), p);
   }

@@ -105,7 +105,8 @@ class TriangleObject : public SceneObject, public NumberedParts {
 
   struct Plane {
     Normal3 normal;
-    float error = 0;  // see SurfacePoint
+    float error = 0;   // see SurfacePoint
+    float margin = 0;  // what barycentric coordinates of points are at least: see `border`
   };
   static Plane plane_of(const Point3&, const Vector3& e1, const Vector3& e2);
 

@@ -89,7 +89,7 @@ class Tube final : public PlacedObject {
     if (hit.primitive == outer || hit.primitive == inner) {
       // Onto the side: t may come from a longer ray than was asked (of a solid).
       const double around = std::sqrt(x * x + y * y), scale = around > 0 ? r_[hit.primitive] / around : 1;
-      side_point(int(hit.primitive), scale * x, scale * y, std::clamp(r.at(t, 2), -half_, half_), p);
+      side_point(int(hit.primitive), scale * x, scale * y, within(r.at(t, 2), -half_, half_), p);
     } else
       end_point(int(hit.primitive), x, y, p);
   }
@@ -164,7 +164,7 @@ class Tube final : public PlacedObject {
   void point_on(int part, double phi, double share, OwnPoint& p) const {
     const double cosine = std::cos(phi), sine = std::sin(phi);
     if (part == outer || part == inner) {
-      side_point(part, r_[part] * cosine, r_[part] * sine, (2 * share - 1) * half_, p);
+      side_point(part, r_[part] * cosine, r_[part] * sine, within((2 * share - 1) * half_, -half_, half_), p);
     } else {
       const double r = std::sqrt(r_[1] * r_[1] + share * (r_[0] - r_[1]) * (r_[0] + r_[1]));
       end_point(part, r * cosine, r * sine, p);
@@ -185,7 +185,8 @@ class Tube final : public PlacedObject {
   }
 
   void end_point(int part, double x, double y, OwnPoint& p) const {
-    flat_point(x, y, part == high_end ? half_ : -half_, r_[0], part == high_end, extent(), p);
+    const double around = std::sqrt(x * x + y * y), inward = around > 0 ? within(around, r_[1], r_[0]) / around : 1;
+    flat_point(inward * x, inward * y, part == high_end ? half_ : -half_, r_[0], part == high_end, extent(), p);
     p.primitive = std::uint32_t(part);
   }
 

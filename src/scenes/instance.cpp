@@ -21,6 +21,7 @@ class Reshaded final : public SceneObject {
 
   Reshaded(const SceneObject& other, const Ref<Shader>& with) : object(const_cast<SceneObject*>(&other)) {
     transform = object->transform;
+    world_centre = object->world_centre;
     shader = with;
     emission = object->emission;
     interior = object->interior;
@@ -148,6 +149,7 @@ void Instance::prepare() {
   if (!scene) fail("scene", "an instance needs a scene, such as EmbreeScene { objects: [...] }");
   if (emission) fail("emission", "an instance emits what the objects in its scene do");
   if (interior) fail("interior", "an instance is filled as the objects in its scene are");
+  transform.count_from(transform.outer(), scene->transform.inner());
   replacement_ = shader ? ShaderReplacement::shared(*scene, shader) : nullptr;
 }
 

@@ -142,6 +142,7 @@ PlacedLuminaire::PlacedLuminaire(const SceneObject& inner, const Placement& plac
     : inner_(&inner), place_(place), all_(all) {
   transform = inner.transform;
   for (const Placement* p = &place; p != nullptr; p = p->outer) transform = p->scene->transform * transform;
+  world_centre = inner.world_centre;
   shader = inner.shader;
   emission = inner.emission;
   interior = inner.interior;

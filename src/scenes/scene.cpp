@@ -24,6 +24,52 @@ void for_nested(const Scene& scene, std::unordered_set<const Scene*>& seen, cons
   }
 }
 
+/// Finds objects that floats cannot hold where they are.
+class Coarse {
+ public:
+  void look(const SceneObject& object, const Bounds3& box) {
+    const float size = max_component(box.diagonal()), away = max_component(abs(box.centre() - Point3{}));
+    // Of one that is a point there is nothing to spoil. Areas of what is smaller than `least` have squares that are no floats.
+    constexpr float least = 1e-9f;
+    if (!(size > 0) || object.unbounded() || (size > 8 * rounding_bound(2) * away && size > least)) return;
+    if (count_++ > 0) return;
+    first_ = &object;
+    size_ = size;
+    away_ = away;
+  }
+  void say() const {
+    if (count_ == 0) return;
+    const std::string who = fmt::format("{}{}", first_->class_info().name,
+                                        count_ > 1 ? fmt::format(" and {} other objects", count_ - 1) : std::string());
+    if (size_ > 8 * rounding_bound(2) * away_)
+      warn(fmt::format("{}: {:.3g} m large; below 1e-9 m light is not computed exactly. Give lengths in another unit", who,
+                       size_),
+           first_->location_of());
+    else
+      warn(fmt::format(
+               "{}: {:.3g} m large and {:.3g} m away from where the scene is counted from, where places are told apart by "
+               "{:.3g} m: it is misshapen or not seen. Move the camera nearer, or leave it out",
+               who, size_, away_, rounding_bound(2) * away_),
+           first_->location_of());
+  }
+
+ private:
+  const SceneObject* first_ = nullptr;
+  size_t count_ = 0;
+  float size_ = 0, away_ = 0;
+};
+
+/// Lets an object count from another point outside, and all that stands within it if it is no scene; prepares it again.
+void count_within(SceneObject& object, const DoublePoint3& centre, float time) {
+  DoublePoint3 inner = object.transform.inner();
+  if (object.follows_scene && !scene_within(object)) {
+    inner = object.transform.written(time).back(centre);
+    for (SceneObject* part : object.placed_within()) count_within(*part, inner, time);
+  }
+  object.transform.count_from(centre, inner);
+  object.prepare();
+}
+
 /// More boxes than this are searched by a tree.
 constexpr size_t few_interiors = 16;
 
@@ -41,6 +87,28 @@ void Scene::describe(Description<Scene>& d) {
        "they are asked for (a power in watts) are those of each place, whatever its size. A nested scene's own shader, "
        "emission, interior, sides and priority say nothing.")
       .member<&Scene::objects>("objects", "", "what is in it", Effect::rebuild);
+}
+
+std::vector<SceneObject*> Scene::placed_within() const {
+  std::vector<SceneObject*> all;
+  for (const Ref<SceneObject>& object : objects) all.push_back(object.get());
+  return all;
+}
+
+// Of the objects' places no more is known before than what they give as their bounds, by floats far from where these count
+// from. That is good enough to choose a better point; from there they are prepared once more.
+void Scene::choose_centre() {
+  Bounds3 all;
+  for (const Ref<SceneObject>& object : objects)
+    if (object && !object->infinite() && !object->unbounded()) all.add(object->bounds());
+  if (all.empty() || !is_finite(all.low) || !is_finite(all.high)) return;
+  // Where floats count from there, places are rounded by no more than 4e-6 of the objects' extent.
+  constexpr float far = 64;
+  const Vector3 away = all.centre() - Point3{};
+  if (!(max_component(abs(away)) > far * max_component(all.diagonal()))) return;
+  const DoublePoint3 centre = transform.inner() + DoubleVector3(away);
+  transform.count_from(transform.outer(), centre);
+  for (const Ref<SceneObject>& object : objects) count_within(*object, centre, *chooses_centre);
 }
 
 void Scene::prepare() {
@@ -82,6 +150,7 @@ void Scene::prepare() {
   }
   if (nesting_ > Hit::deepest_nesting)
     fail("objects", "scenes nest more than " + std::to_string(Hit::deepest_nesting) + " deep");
+  if (chooses_centre) choose_centre();
 
   // Others stand for luminaires of nested scenes; those scenes gave them places in their own lists before.
   std::unordered_set<const Scene*> visited;
@@ -99,6 +168,7 @@ void Scene::prepare() {
   nested_ = nested;
 
   std::vector<const SceneObject*> finite;
+  Coarse coarse;
   for (const Ref<SceneObject>& object : objects) {
     const Scene* inner = scene_within(*object);
     object->luminaire_index = -1;
@@ -119,6 +189,7 @@ void Scene::prepare() {
     constexpr float largest = 2 * SceneObject::endless;
     if (!object->unbounded() && max_component(box.diagonal()) > largest)
       object->fail("", "the object is larger than 2e9 m, which is beyond what can be counted with");
+    coarse.look(*object, box);
     if (object->unbounded()) {
       unbounded_ = true;
       if (object->luminaire() && !inner) object->fail("emission", "an object without end would give off endless power");
@@ -127,6 +198,7 @@ void Scene::prepare() {
     }
     finite.push_back(object.get());
   }
+  coarse.say();
   if (interiors_.size() > few_interiors) {
     std::vector<Bounds3> boxes;
     boxes.swap(interiors_);

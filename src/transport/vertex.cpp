@@ -48,8 +48,14 @@ Ray leaving_ray(const Vertex& from, const Vector3& direction) {
 }
 
 Ray connecting_ray(const Vertex& from, const Vertex& to) {
-  Ray ray = leaving_ray(from, normalize(to.point.position - from.point.position));
-  SurfacePoint::end_at(to.point, ray);
+  const Vector3 direction = normalize(to.point.position - from.point.position);
+  Ray ray = leaving_ray(from, direction);
+  // At both ends on the side for which scattering was asked, which between two points of one wall is a matter of rounding: with
+  // light on its outside, a ray that ended within would bring it in.
+  const Vector3 way = to.point.exit(-direction) - ray.origin;
+  const float distance = length(way);
+  ray.direction = 1 / distance * way;
+  ray.maximum = distance * SurfacePoint::almost_there;
   return ray;
 }
 
