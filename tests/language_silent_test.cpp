@@ -51,6 +51,21 @@ TEST(NothingSilent, NumbersOfCallsTellTheirBounds) {
             "1:18: Conductor.ior: k must be at least 0 and less than 100, and is -1 at 360 nm");
 }
 
+TEST(NothingSilent, WhatToWriteInstead) {
+  const auto said = [](const std::string& text) { return part_errors("x = " + text + "\nLanguagePart {}"); };
+  EXPECT_EQ(said("Dielectric { ior: \"N-BK7\" }"),
+            "1:23: Dielectric.ior expects a colour or spectrum, not a string: write glass(\"N-BK7\")");
+  EXPECT_NE(said("Conductor { ior: \"Au\" }").find("not a string: write metal(\"Au\")"), std::string::npos);
+  EXPECT_NE(said("DiffuseEmission { radiance: \"D65\" }").find("write illuminant(\"D65\")"), std::string::npos);
+  EXPECT_NE(said("DiffuseEmission { radiance: \"#ff8000\" }").find("write srgb(\"#ff8000\")"), std::string::npos);
+  EXPECT_NE(said("DiffuseEmission { radiance: \"paint.csv\" }").find("write spectrum(\"paint.csv\")"), std::string::npos);
+  EXPECT_NE(said("DiffuseEmission { radiance: \"red\" }").find("expects a colour or spectrum, not a string"),
+            std::string::npos);
+  EXPECT_NE(
+      said("BvhScene { objects: Sphere {} }").find("BvhScene.objects expects a list, even of one: write [ Sphere { … } ]"),
+      std::string::npos);
+}
+
 TEST(NothingSilent, NamesThatMeanSomethingElse) {
   EXPECT_NE(warnings([] {
               part("visible = 3\nLanguagePart {   mode: visible, count: visible }");
