@@ -99,7 +99,8 @@ TEST(ImageBuffer, TableGivesTheFiltersOwnWeights) {
     // Of the filter at the middles of the 64 cells within its radius.
     const float cell = f->radius() / 64;
     const auto weight = [&](float dx, float dy) {
-      return double(f->weight((std::floor(std::abs(dx) / cell) + 0.5f) * cell, (std::floor(std::abs(dy) / cell) + 0.5f) * cell));
+      return double(
+          f->weight((std::floor(std::abs(dx) / cell) + 0.5f) * cell, (std::floor(std::abs(dy) / cell) + 0.5f) * cell));
     };
     constexpr int fine = 400;  // its integral over the pixel
     double share = 0;
