@@ -267,16 +267,18 @@ TEST_F(MeshFiles, UnusableTrianglesAreLeftOut) {
 
 TEST(MeshReference, KnownFiles) {
   const std::filesystem::path data = std::filesystem::path(ETENDUE_SOURCE_DIR) / "../shared/validation";
-  if (!std::filesystem::exists(data)) GTEST_SUCCEED();
+  if (!std::filesystem::exists(data / "mesh/bunny.ply")) GTEST_SKIP() << "no validation data";
   const auto triangles = [&](const std::string& name) { return read_mesh((data / name).string()).triangles.size(); };
-  if (std::filesystem::exists(data / "mesh/bunny.ply")) {
-    EXPECT_EQ(triangles("mesh/bunny.ply"), 69451u);
-    EXPECT_EQ(triangles("mesh/teapot.obj"), 6320u);
-    EXPECT_EQ(triangles("mesh/spot.obj"), 5856u);
-    EXPECT_EQ(triangles("mesh/cow.obj"), 5804u);
-    EXPECT_EQ(triangles("mesh/suzanne.obj"), 2u * 468 + 32);
-  }
-  if (!std::filesystem::exists(data / "import/broken")) return;
+  EXPECT_EQ(triangles("mesh/bunny.ply"), 69451u);
+  EXPECT_EQ(triangles("mesh/teapot.obj"), 6320u);
+  EXPECT_EQ(triangles("mesh/spot.obj"), 5856u);
+  EXPECT_EQ(triangles("mesh/cow.obj"), 5804u);
+  EXPECT_EQ(triangles("mesh/suzanne.obj"), 2u * 468 + 32);
+}
+
+TEST(MeshReference, BrokenFilesAreRefused) {
+  const std::filesystem::path data = std::filesystem::path(ETENDUE_SOURCE_DIR) / "../shared/validation";
+  if (!std::filesystem::exists(data / "import/broken")) GTEST_SKIP() << "no validation data";
   for (const auto& entry : std::filesystem::directory_iterator(data / "import/broken")) {
     const std::string ending = entry.path().extension().string();
     if (ending != ".ply" && ending != ".obj") continue;
