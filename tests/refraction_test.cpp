@@ -52,9 +52,9 @@ class Refraction : public testing::TestWithParam<Walk> {
       const auto& path = walk.from_camera ? record.vertices : record.light_vertices;
       if (path.size() < turns.size() + 2) continue;
       std::string met;
-      Vector3 direction = path[1].position - path[0].position;
+      Vector3 direction(path[1].position - path[0].position);
       for (size_t i = 1; i <= turns.size(); ++i) {
-        const Vector3 next = normalize(path[i + 1].position - path[i].position);
+        const Vector3 next = normalize(Vector3(path[i + 1].position - path[i].position));
         met += dot(path[i].normal, direction) * dot(path[i].normal, next) > 0 ? 't' : 'r';
         direction = next;
       }
