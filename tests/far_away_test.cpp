@@ -190,7 +190,7 @@ TEST(FarAway, NestedScenesBringBackWhatIsFarFromTheirOwnOrigin) {
   const std::string lamp = "Sphere { center: [0.4, 0.5, 1.4] m, radius: 0.3 m, emission: DiffuseEmission { radiance: 10 } }\n";
   const auto ball = [&](const Where& w, double x) {
     return fmt::format(
-        "Box {{ center: {} m, size: [0.5, 0.5, 0.5] m, {} }} Sphere {{ center: {} m, radius: 0.3 m, {} }} TriangleMesh {{ "
+        "Box {{ center: {} m, size: [0.5, 0.5, 0.5] m, {} }}, Sphere {{ center: {} m, radius: 0.3 m, {} }}, TriangleMesh {{ "
         "positions: "
         "[{}, {}, {}] m, triangles: [[0, 1, 2]], {} }}",
         w.at(x, 1, 0), matte, w.at(x, 0.8, 0.5), matte, w.at(x, 1, 0.4), w.at(x + 0.5, 1, 0.4), w.at(x, 1, 0.9), matte);
@@ -198,20 +198,20 @@ TEST(FarAway, NestedScenesBringBackWhatIsFarFromTheirOwnOrigin) {
   const Where far = away(1e7), home = away(0);
   const std::string back = fmt::format("translate({})", Where{-far.x, -far.y, -far.z}.at(0, 0, 0));
   const auto picture = [&](const std::string& objects) {
-    return render(job_at(home, renderer, "EmbreeScene", lamp + objects + "\nBox { size: [4, 4, 4] m, " + matte + " }"));
+    return render(job_at(home, renderer, "EmbreeScene", lamp + objects + ",\nBox { size: [4, 4, 4] m, " + matte + " }"));
   };
-  const Image once = picture(ball(home, -0.5)), twice = picture(ball(home, -0.5) + ball(home, 0.5));
+  const Image once = picture(ball(home, -0.5)), twice = picture(ball(home, -0.5) + ", " + ball(home, 0.5));
   const std::string inner = "EmbreeScene { objects: [ " + ball(far, -0.5) + " ] }";
   EXPECT_LT(difference(picture("Instance { scene: " + inner + ", transform: " + back + " }"), once), 0.02);
   EXPECT_LT(difference(picture("BvhScene { objects: [ Instance { scene: " + inner +
                                ", transform: translate(0, 5, 0) } ], transform: " + back + " * translate(0, -5, 0) }"),
                        once),
             0.02);
-  const std::string shared = "let inner = " + inner + ";\n";
-  const std::string both = "Instance { scene: inner, transform: " + back + " } Instance { scene: inner, transform: " + back +
+  const std::string shared = "inner = " + inner + "\n";
+  const std::string both = "Instance { scene: inner, transform: " + back + " }, Instance { scene: inner, transform: " + back +
                            " * translate(1, 0, 0) }";
   EXPECT_LT(difference(render(shared + job_at(home, renderer, "EmbreeScene",
-                                              lamp + both + "\nBox { size: [4, 4, 4] m, " + matte + " }")),
+                                              lamp + both + ",\nBox { size: [4, 4, 4] m, " + matte + " }")),
                        twice),
             0.02);
 }
@@ -220,11 +220,11 @@ TEST(FarAway, NestedScenesBringBackWhatIsFarFromTheirOwnOrigin) {
 TEST(FarAway, ScenesShareObjects) {
   const auto picture = [](double distance) {
     const Where w = away(distance);
-    const std::string shared =
-        fmt::format("let ball = Sphere {{ center: {} m, radius: 0.4 m, {} }};\n", w.at(-0.6, 0.8, 0), matte);
+    const std::string shared = fmt::format("ball = Sphere {{ center: {} m, radius: 0.4 m, {} }}\n", w.at(-0.6, 0.8, 0), matte);
     return render(
-        shared + job_at(w, "PathTracer { samples: 32, max_depth: 4 }", "BvhScene",
-                        "ball Instance { transform: translate(1.2, 0, 0), scene: EmbreeScene { objects: [ ball ] } }\n" + sky));
+        shared +
+        job_at(w, "PathTracer { samples: 32, max_depth: 4 }", "BvhScene",
+               "ball, Instance { transform: translate(1.2, 0, 0), scene: EmbreeScene { objects: [ ball ] } },\n" + sky));
   };
   EXPECT_LT(difference(picture(1e4), picture(0)), 0.02);
 }
@@ -296,7 +296,7 @@ TEST(FarAway, FilesOfMeshesKeepTheirDoubles) {
     Where near = w;
     near.scale = 1e-3;
     return render(job_at(near, "PathTracer { samples: 16 }", "EmbreeScene",
-                         "TriangleMesh { file: \"" + file + "\", " + matte + " }\n" + sky));
+                         "TriangleMesh { file: \"" + file + "\", " + matte + " },\n" + sky));
   };
   const Image here = picture(away(0), pyramid_file("here.ply", "float", away(0)));
   EXPECT_LT(difference(picture(away(1e7), pyramid_file("far.ply", "double", away(1e7))), here), 0.01);
@@ -312,7 +312,7 @@ TEST(FarAway, SpoiltMeshesAreTold) {
   testing::internal::CaptureStderr();
   prepare_tree(*job);
   const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("far_away.etd:3:"), std::string::npos) << said;
+  EXPECT_NE(said.find("far_away.etd:4:"), std::string::npos) << said;
   EXPECT_NE(said.find("their shape is spoilt"), std::string::npos) << said;
 }
 

@@ -18,6 +18,7 @@ TEST(Point, IsFoundWhereItIs) {
   EXPECT_TRUE(point->bounds().empty());
   EXPECT_EQ(point->area(0), 4);
   point->transform = Transform::translate({0, 0, 1}) * Transform::scale({2, 2, 2});
+  prepare_tree(*point);
   const SurfaceSample a = point->sample_area({0.3f, 0.6f}, 0.25f);
   EXPECT_EQ(a.density, 1);
   EXPECT_TRUE(a.delta);
@@ -41,6 +42,7 @@ TEST(Point, IsFoundWhereItIs) {
   EXPECT_EQ(point->sample_visible({2, 4, 7}, {0.3f, 0.6f}, 0).density, 0);
 
   point->transform = motion(Transform(), Transform::translate({4, 0, 0}));
+  prepare_tree(*point);
   EXPECT_LT(distance(point->sample_area({0.5f, 0.5f}, 0.5f).point.position, {3, 2, 3}), 1e-5f);
 }
 

@@ -10,7 +10,6 @@
 #include "app/text.h"
 #include "component/guard.h"
 #include "etendue/language.h"
-#include "files/input_files.h"
 #include "job/checkpoint.h"
 
 namespace etendue {
@@ -141,10 +140,7 @@ Ref<Job> RenderOptions::load() const {
   if (!every.empty()) interval = every == "0" || every == "0s" ? 0 : parse_duration(every, "--every");
   if (!every.empty() && checkpoint_file().empty())
     throw Error("there is no checkpoint to be written: give --checkpoint as well", {intern("--every"), 0, 0});
-  if (const std::string from = resumed_file(); !from.empty()) {
-    note_input(from);
-    read_checkpoint_header(from);
-  }
+  if (const std::string from = resumed_file(); !from.empty()) read_checkpoint_header(from);
   Ref<Job> job = SceneOptions::load();
   std::vector<Error> errors;
   for (const Override& override : list) {

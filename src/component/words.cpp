@@ -35,8 +35,8 @@ bool is_of(const ClassInfo& info, std::string_view ancestor) {
 
 /// Whether what is told fits a class of the interface that the entry is of: it names another class, or a member of this one.
 bool speaks_of(const ForeignWord& entry, const ClassInfo& info) {
-  for (size_t at = entry.here.find('\''); at + 1 < entry.here.size(); at = entry.here.find('\'', at + 1))
-    if (std::isupper(static_cast<unsigned char>(entry.here[at + 1]))) return true;
+  for (size_t at = entry.here.find('\''); at != std::string_view::npos; at = entry.here.find('\'', at + 1))
+    if (at + 1 < entry.here.size() && std::isupper(static_cast<unsigned char>(entry.here[at + 1]))) return true;
   return info.find(first_quoted(entry.here)) != nullptr;
 }
 

@@ -452,6 +452,7 @@ constexpr ForeignWord members[] = {
     {"Job", "integrator", many, "'renderer'"},
     {"Job", "algorithm", many, "'renderer'"},
     {"Job", "sensor", mitsuba, "'camera'"},
+    {"ImageMap", "filter", many, "'interpolation'; averages over what a pixel sees are 'map_filter' of the 'Renderer'"},
     {"Job", "film", many, "'image', and 'outputs' for what it is written to"},
     {"Job", "resolution", many, "'image', such as 'ImageBuffer' with 'width' and 'height'"},
     {"Job", "width", many, "'image', such as 'ImageBuffer' with 'width' and 'height'"},

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "etendue/error.h"
+#include "files/input_files.h"
 
 namespace etendue {
 namespace {
@@ -59,6 +60,7 @@ void require_regular_file(const std::string& path) {
   if (::stat(path.c_str(), &status) != 0) refuse(errno);
   require_regular(status);
   if (::access(path.c_str(), R_OK) != 0) refuse(errno);
+  note_input(path);
 }
 
 RegularFile::RegularFile(const std::string& path) {

@@ -1,6 +1,7 @@
 #pragma once
 // Files that are read. All of them are opened here: a named pipe, a device or a socket would be waited for without end or fill
-// the memory, and a file that another program shortens would end this one if it were mapped into memory.
+// the memory, and a file that another program shortens would end this one if it were mapped into memory. What is opened is
+// noted as an input (input_files.h), which no output may replace.
 
 #include <cstdint>
 #include <cstdio>

@@ -79,7 +79,8 @@ class JsonWriter : public Writer {
     for (size_t row = 0; row < n.rows(); ++row) {
       std::string item = width > 1 ? "[" : "";
       for (size_t k = 0; k < width; ++k)
-        item += (k > 0 ? ", " : "") + number_text(n.values[row * width + k], factor, member.kind == Kind::integer);
+        item += (k > 0 ? ", " : "") +
+                number_text(n.values[row * width + k], factor, member.kind == Kind::integer, member.in_double);
       if (width > 1) item += ']';
       if (row + 1 < n.rows()) item += ',';
       if (!line.empty() && margin.size() + line.size() + item.size() > line_width) {
@@ -108,7 +109,7 @@ class JsonWriter : public Writer {
     }
     if (const auto* still = v.as<Transform>()) {
       std::vector<std::string> entries;
-      for (const float x : still->matrix()) entries.push_back(number_text(double(x), 1, false));
+      for (const double x : still->exact()) entries.push_back(number_text(x, 1, false, true));
       return bracketed(entries, '[', indent);
     }
     if (v.as<AnimatedTransform>()) {

@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "etendue/job.h"
-#include "files/input_files.h"
 #include "language/json.h"
 
 namespace etendue::language {
@@ -67,7 +66,6 @@ void Loader::load(const std::string& path, Location named_at) {
     return;
   }
   files_.push_back(spelling);
-  note_input(path);
   Source source;
   try {
     source = {intern(path), std::filesystem::path(path).parent_path().string(), read_text_file(path, named_at)};
