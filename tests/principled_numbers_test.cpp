@@ -59,7 +59,8 @@ double more(double ax, double ay, double color, const Vector3& out, const Vector
 
 double value(const Ref<Shader>& shader, const Vector3& out, const Vector3& in, Lobes which = smooth_lobes) {
   Arena arena;
-  return double(shader->bind(flat_point(), test::wavelengths(), arena)->evaluate(out, in, Transport::radiance, which)[0]);
+  return double(shader->bind(flat_point(), test::wavelengths(), arena)->evaluate(out, in, Transport::radiance, which)[0]) /
+         std::abs(double(in.z));
 }
 
 struct Pair {

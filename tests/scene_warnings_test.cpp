@@ -205,13 +205,14 @@ TEST(SceneWarnings, ReflectancesThatTogetherAreMoreThanArrives) {
 // After rendering.
 TEST(PictureWarnings, TooDarkOrTooBrightByHowMuch) {
   const auto after = [](double radiance, const std::string& tone = "ExposureToneMap {}") {
-    const Ref<Job> job = load_job_text(fmt::format("Job {{ renderer: PathTracer {{ samples: 1 }}\n camera: {}\n image: "
-                                                   "ImageBuffer {{ width: 8, height: 8 }}\n tone_map: {}\n "
-                                                   "outputs: [ PngOutput {{}} ]\n scene: BruteForceScene {{ objects: [ "
-                                                   "Environment {{ emission: EnvironmentEmission {{ "
-                                                   "radiance: {} }} }} ] }} }}\n",
-                                                   camera, tone, radiance),
-                                       "tone.etd");
+    const Ref<Job> job =
+        load_job_text(fmt::format("Job {{ renderer: PathTracer {{ samples: 1 }}\n camera: {}\n image: "
+                                  "ImageBuffer {{ width: 8, height: 8, filter: BoxFilter {{}} }}\n tone_map: {}\n "
+                                  "outputs: [ PngOutput {{}} ]\n scene: BruteForceScene {{ objects: [ "
+                                  "Environment {{ emission: EnvironmentEmission {{ "
+                                  "radiance: {} }} }} ] }} }}\n",
+                                  camera, tone, radiance),
+                      "tone.etd");
     job->render();
     return picture_warnings(*job);
   };

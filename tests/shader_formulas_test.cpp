@@ -69,7 +69,7 @@ void expect_formula(const std::string& name, const Ref<Shader>& shader, double r
       if (in.z * out.z < 0) in.z = -in.z;
     }
     if (std::abs(out.z) < 0.03f || std::abs(in.z) < 0.03f) continue;
-    const Spectrum f = scatter->evaluate(out, in, Transport::radiance, which);
+    const Spectrum f = scatter->evaluate(out, in, Transport::radiance, which) / scatter->cosine(in);
     const V o = turned({double(out.x), double(out.y), std::abs(double(out.z))}, rotation),
             t = turned({double(in.x), double(in.y), std::abs(double(in.z))}, rotation);
     for (int k = 0; k < spectrum_size; ++k) {
@@ -184,7 +184,8 @@ TEST(ShaderFormulas, RoughDielectric) {
       if (std::abs(out.z) < 0.05f || std::abs(in.z) < 0.05f) continue;
       const V o = turned({double(out.x), double(out.y), double(out.z)}, 0.3),
               t = turned({double(in.x), double(in.y), double(in.z)}, 0.3);
-      const Spectrum radiance = s.evaluate(out, in), importance = s.evaluate(out, in, Transport::importance);
+      const Spectrum radiance = s.evaluate(out, in) / s.cosine(in),
+                     importance = s.evaluate(out, in, Transport::importance) / s.cosine(in);
       for (int k = 0; k < spectrum_size; ++k) {
         const double above = 1, below = n(double(w[k])), no = out.z > 0 ? above : below, ni = in.z > 0 ? above : below;
         double expected = 0;
@@ -230,8 +231,7 @@ TEST(ShaderFormulas, RoughDielectricLosesNothing) {
         for (int k = 0; k < steps; ++k) {
           const double z = -1 + 2 * (i + 0.5) / steps, phi = M_PI * (k + 0.5) / steps, r = std::sqrt(1 - z * z);
           const Vector3 in{float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)};
-          sums[z * double(out.z) < 0] +=
-              double(s.evaluate(out, in, Transport::importance)[0]) * std::abs(z) * 4 * M_PI / (steps * steps);
+          sums[z * double(out.z) < 0] += double(s.evaluate(out, in, Transport::importance)[0]) * 4 * M_PI / (steps * steps);
         }
       EXPECT_NEAR(sums[0] + sums[1], 1, 0.006) << alpha << " at " << angle;
       EXPECT_NEAR(double(s.albedo(out, reflection_lobes)[0]), sums[0], 0.01) << alpha << " at " << angle;
@@ -340,7 +340,7 @@ TEST(ShaderFormulas, LambertianAndTransmitter) {
   for (int i = 0; i < 200; ++i) {
     const Vector3 out = random.direction(), in = random.direction();
     const bool crosses = out.z * in.z < 0;
-    const Spectrum f = s.evaluate(out, in);
+    const Spectrum f = s.evaluate(out, in) / s.cosine(in);
     for (int k = 0; k < spectrum_size; ++k)
       EXPECT_NEAR(double(f[k]) * M_PI, crosses ? through(double(w[k])) : back(double(w[k])), 1e-5);
     double r = 0, t = 0;

@@ -283,9 +283,9 @@ class ScatterAnswers {
       s.density += m.local_density(other, o, which);
     }
     s.density *= chance(m, slope) / float(light.count * to.count);
-    s.weight = value * (visibility(m, s.direction, slope) * projected(m, out, s.direction) / s.density);
-    if (s.weight.black()) return std::nullopt;
-    return s;
+    const float visible = visibility(m, s.direction, slope);
+    s.weight = value * (visible * projected(m, out, s.direction) / s.density);
+    return visible > 0 ? std::optional(s) : std::nullopt;
   }
 
   /// Whether something of a probability is chosen; `choice` is what is left of it.

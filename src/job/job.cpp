@@ -73,7 +73,7 @@ void Job::prepare() {
   for (const Ref<Output>& output : outputs)
     if (!output) fail("outputs", "an output is none");
   // Seen from far away the scene would be coarse where the picture is fine.
-  constexpr float far = 32;
+  constexpr float far = 4;
   const Vector3 away = scene->centre() - Point3{};
   if (camera->place() && length(away) > far * scene->radius() && is_finite(away)) {
     count_from(centre_ + DoubleVector3(away));

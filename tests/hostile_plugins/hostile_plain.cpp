@@ -1,0 +1,2 @@
+// The same plugin, compiled for another instruction set than the program (tests/CMakeLists.txt).
+#include "hostile.cpp"
