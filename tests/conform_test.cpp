@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
     Conform, Faulty,
     ::testing::Values(Fault{"WrongDensityShader", "samples follow the density"},
                       Fault{"GainingShader", "no more light leaves than arrives"}, Fault{"OneWayShader", "f is reciprocal"},
-                      Fault{"WrongWeightShader", "a sample's weight is value times cosine over density"},
+                      Fault{"WrongWeightShader", "a sample's weight is value over density"},
                       Fault{"MaskIgnoringShader", "samples follow the density"},
                       Fault{"GrazingShader", "values and densities are finite and not negative, at grazing angles too"},
                       Fault{"EndlessFilter", "weights are zero beyond the radius"},

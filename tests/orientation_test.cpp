@@ -92,7 +92,7 @@ TEST_P(UvOf, ObjectsIsWhatTheirPagesSay) {
   const UvCase& c = GetParam();
   const Ref<Job> job =
       load_job_text(job_text("PathTracer {}", "PerspectiveCamera { from: [0, 0, 50], to: [0, 0, 0] }", 4, c.object), "uv.etd");
-  prepare_tree(*job);
+  prepare_tree(*job->scene);  // alone, it counts from the origin
   Ray ray;
   ray.origin = c.point + 0.5f * c.outward;
   ray.direction = normalize(-c.outward);
