@@ -457,8 +457,7 @@ TEST(ShaderFormulas, CoupledMatteSpecular) {
       ASSERT_TRUE(sample);
       if (sample->specular()) continue;
       const ScatterValue v = s.value_and_density(out, sample->direction);
-      for (int k = 0; k < spectrum_size; ++k)
-        EXPECT_NEAR(sample->weight[k], v.value[k] / v.density, 1e-4f * sample->weight[k]);
+      for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(sample->weight[k], v.value[k] / v.density, 1e-4f * sample->weight[k]);
     }
   }
 }
