@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "etendue/color.h"
-#include "etendue/job.h"
-#include "etendue/language.h"
-#include "etendue/warp.h"
+#include "etendue/core/warp.h"
+#include "etendue/describe/color.h"
+#include "etendue/language/language.h"
+#include "etendue/render/job.h"
 
 namespace {
 

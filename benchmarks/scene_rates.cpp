@@ -10,10 +10,10 @@
 #include <map>
 #include <memory>
 
-#include "etendue/job.h"
-#include "etendue/language.h"
+#include "etendue/core/warp.h"
+#include "etendue/language/language.h"
+#include "etendue/render/job.h"
 #include "etendue/sampler.h"
-#include "etendue/warp.h"
 
 namespace {
 

@@ -12,13 +12,13 @@
 #include <map>
 #include <memory>
 
-#include "conform/fixtures.h"
-#include "etendue/arena.h"
-#include "etendue/language.h"
+#include "check/conform/fixtures.h"
+#include "etendue/core/arena.h"
+#include "etendue/core/warp.h"
+#include "etendue/language/language.h"
 #include "etendue/sampler.h"
 #include "etendue/scene_object.h"
 #include "etendue/shader.h"
-#include "etendue/warp.h"
 #include "etendue/wavelength_sampler.h"
 
 namespace {

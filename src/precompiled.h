@@ -13,5 +13,5 @@
 #include <string>
 #include <vector>
 
-#include "etendue/description.h"
-#include "etendue/renderer.h"
+#include "etendue/describe/description.h"
+#include "etendue/render/renderer.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Turns the data set of the Hosek-Wilkie sky model into the tables of src/emission.
+"""Turns the data set of the Hosek-Wilkie sky model into the tables of src/components/emission.
 
     tools/make_sky_tables.py sunsky_datasets.bin
 
@@ -79,7 +79,7 @@ def write(path, parts):
             "// Data of the sky model of Hosek & Wilkie 2012 (An analytic model for full spectral sky-dome radiance) and 2013 (Adding\n"
             "// a solar-radiance function to the Hosek-Wilkie skylight model), as in the file sunsky_datasets.bin of Mitsuba 3.\n//\n" +
             LICENCE + "\n"
-            '#include "emission/sky_tables.h"\n\nnamespace etendue::sky_tables {\n\n' + "\n".join(parts) +
+            '#include "components/emission/sky_tables.h"\n\nnamespace etendue::sky_tables {\n\n' + "\n".join(parts) +
             "\n}  // namespace etendue::sky_tables\n")
     path.write_text(text, encoding="utf-8")
 

@@ -4,10 +4,10 @@
 
 #include <optional>
 
-#include "etendue/component.h"
-#include "etendue/description.h"
-#include "etendue/ray.h"
-#include "etendue/transform.h"
+#include "etendue/core/ray.h"
+#include "etendue/core/transform.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 
 namespace etendue {
 

@@ -1,10 +1,10 @@
 #pragma once
 // EmissionShader: how light leaves a luminaire. An object that has one is a luminaire.
 
-#include "etendue/component.h"
-#include "etendue/description.h"
-#include "etendue/ray.h"
-#include "etendue/spectrum.h"
+#include "etendue/core/ray.h"
+#include "etendue/core/spectrum.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 
 namespace etendue {
 

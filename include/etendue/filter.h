@@ -1,8 +1,8 @@
 #pragma once
 // Filter: how much a sample counts for a pixel, by its offset from the pixel's centre.
 
-#include "etendue/component.h"
-#include "etendue/description.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 
 namespace etendue {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "etendue/component.h"
-#include "etendue/description.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 
 namespace etendue {
 

@@ -1,8 +1,8 @@
 #pragma once
 // LightSampler: which luminaire to ask for light, and with what probability.
 
-#include "etendue/component.h"
-#include "etendue/description.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 #include "etendue/scene.h"
 
 namespace etendue {

@@ -1,10 +1,10 @@
 #pragma once
 // ObjectMap (a texture): a scalar or a colour at a surface point.
 
-#include "etendue/component.h"
-#include "etendue/description.h"
-#include "etendue/ray.h"
-#include "etendue/spectral_function.h"
+#include "etendue/core/ray.h"
+#include "etendue/core/spectral_function.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 
 namespace etendue {
 

@@ -1,8 +1,8 @@
 #pragma once
 // Output: writes a picture to a file, beside it first and renamed when whole.
 
-#include "etendue/component.h"
-#include "etendue/description.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 #include "etendue/tone_map.h"
 
 namespace etendue {

@@ -1,9 +1,9 @@
 #pragma once
 // Sampler: numbers in [0, 1) by pixel, sample and dimension.
 
-#include "etendue/component.h"
-#include "etendue/description.h"
-#include "etendue/vector.h"
+#include "etendue/core/vector.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 
 namespace etendue {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "etendue/component.h"
-#include "etendue/description.h"
+#include "etendue/core/ray.h"
+#include "etendue/core/transform.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 #include "etendue/emission_shader.h"
-#include "etendue/ray.h"
-#include "etendue/transform.h"
 #include "etendue/volume_shader.h"
 
 namespace etendue {

@@ -4,12 +4,12 @@
 
 #include <optional>
 
-#include "etendue/arena.h"
-#include "etendue/component.h"
-#include "etendue/description.h"
-#include "etendue/ray.h"
+#include "etendue/core/arena.h"
+#include "etendue/core/ray.h"
+#include "etendue/core/spectrum.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 #include "etendue/scene_object.h"
-#include "etendue/spectrum.h"
 
 namespace etendue {
 

@@ -1,9 +1,9 @@
 #pragma once
 // ToneMap: one picture into another, from CIE XYZ without bounds to values a display or file takes.
 
-#include "etendue/component.h"
-#include "etendue/description.h"
-#include "etendue/image.h"
+#include "etendue/core/image.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 
 namespace etendue {
 

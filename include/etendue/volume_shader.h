@@ -2,10 +2,10 @@
 // VolumeShader: a participating medium. Distance sampling and transmittance are not here but in the transport library,
 // once for all media.
 
-#include "etendue/component.h"
-#include "etendue/description.h"
-#include "etendue/ray.h"
-#include "etendue/spectrum.h"
+#include "etendue/core/ray.h"
+#include "etendue/core/spectrum.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 
 namespace etendue {
 

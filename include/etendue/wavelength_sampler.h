@@ -1,10 +1,10 @@
 #pragma once
 // WavelengthSampler: the wavelengths of a path.
 
-#include "etendue/component.h"
-#include "etendue/description.h"
+#include "etendue/core/spectrum.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/description.h"
 #include "etendue/sampler.h"
-#include "etendue/spectrum.h"
 
 namespace etendue {
 

@@ -1,14 +1,14 @@
 // What a renderer cannot find of the light in a scene, and which renderers can.
 
-#include "app/advice.h"
+#include "advice.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "app/text.h"
-#include "component/guard.h"
-#include "etendue/registry.h"
+#include "describe/guard.h"
+#include "etendue/describe/registry.h"
+#include "text.h"
 
 namespace etendue {
 

@@ -1,12 +1,12 @@
 // The samples that brought most light.
 
-#include "app/fireflies.h"
+#include "fireflies.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "app/replay.h"
+#include "replay.h"
 
 namespace etendue {
 

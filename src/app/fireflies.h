@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "etendue/job.h"
+#include "etendue/render/job.h"
 
 namespace etendue {
 

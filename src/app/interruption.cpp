@@ -1,6 +1,6 @@
 // Ctrl-C while a job renders.
 
-#include "app/interruption.h"
+#include "interruption.h"
 
 #include <unistd.h>
 

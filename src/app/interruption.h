@@ -1,7 +1,7 @@
 #pragma once
 // Ctrl-C while a job renders.
 
-#include "etendue/job.h"
+#include "etendue/render/job.h"
 
 namespace etendue {
 

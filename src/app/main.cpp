@@ -4,9 +4,9 @@
 
 #include <sstream>
 
-#include "app/commands.h"
-#include "app/report.h"
-#include "app/streams.h"
+#include "commands.h"
+#include "report.h"
+#include "streams.h"
 
 using namespace etendue;
 

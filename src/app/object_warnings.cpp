@@ -5,11 +5,11 @@
 #include <set>
 #include <unordered_set>
 
-#include "app/scene_warnings.h"
-#include "app/text.h"
-#include "etendue/medium_stack.h"
+#include "etendue/describe/registry.h"
 #include "etendue/object_map.h"
-#include "etendue/registry.h"
+#include "etendue/transport/medium_stack.h"
+#include "scene_warnings.h"
+#include "text.h"
 
 namespace etendue {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/scene_warnings.h"
+#include "scene_warnings.h"
 
 namespace etendue {
 namespace {

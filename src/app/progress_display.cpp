@@ -1,6 +1,6 @@
 // How far a render is, shown to people or programs.
 
-#include "app/progress_display.h"
+#include "progress_display.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "app/text.h"
+#include "text.h"
 
 namespace etendue {
 

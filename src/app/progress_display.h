@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "etendue/job.h"
+#include "etendue/render/job.h"
 
 namespace etendue {
 

@@ -1,16 +1,16 @@
 // What `etendue render` takes, and how it changes a Job.
 
-#include "app/render_options.h"
+#include "render_options.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "app/text.h"
-#include "component/guard.h"
-#include "etendue/language.h"
-#include "job/checkpoint.h"
+#include "describe/guard.h"
+#include "etendue/language/language.h"
+#include "render/checkpoint.h"
+#include "text.h"
 
 namespace etendue {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "app/scene_options.h"
 #include "files/output_files.h"
+#include "scene_options.h"
 
 namespace etendue {
 

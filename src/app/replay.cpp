@@ -1,7 +1,7 @@
 // Samples of one pixel computed again. Any sample is a function of the description, the seed, its pixel and its number, so
 // it can be computed alone: first all samples of the pixel for their values, then the brightest again with a record.
 
-#include "app/replay.h"
+#include "replay.h"
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>

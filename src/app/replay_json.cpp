@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/replay.h"
+#include "replay.h"
 
 namespace etendue {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "app/replay.h"
+#include "replay.h"
 
 namespace etendue {
 

@@ -1,6 +1,6 @@
 // What goes wrong, told to the user.
 
-#include "app/report.h"
+#include "report.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <cstdio>
 #include <vector>
 
-#include "component/guard.h"
-#include "component/words.h"
-#include "etendue/error.h"
-#include "etendue/language.h"
-#include "etendue/registry.h"
+#include "describe/guard.h"
+#include "describe/words.h"
+#include "etendue/core/error.h"
+#include "etendue/describe/registry.h"
+#include "etendue/language/language.h"
 
 namespace etendue {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/commands.h"
+#include "commands.h"
 
 namespace etendue {
 

@@ -1,10 +1,11 @@
 // What every command takes that reads a render description.
 
-#include "app/scene_options.h"
+#include "scene_options.h"
 
 #include <filesystem>
 
-#include "etendue/language.h"
+#include "etendue/language/language.h"
+#include "etendue/render/job.h"
 
 namespace etendue {
 

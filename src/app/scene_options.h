@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/commands.h"
-#include "etendue/job.h"
+#include "commands.h"
+#include "etendue/render/job.h"
 
 namespace etendue {
 

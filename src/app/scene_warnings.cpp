@@ -1,10 +1,10 @@
-#include "app/scene_warnings.h"
+#include "scene_warnings.h"
 
 #include <fmt/format.h>
 
 #include <map>
 
-#include "app/text.h"
+#include "text.h"
 
 namespace etendue {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "etendue/job.h"
+#include "etendue/render/job.h"
 
 namespace etendue {
 

@@ -3,7 +3,7 @@
 // Both become streams of ours (fopencookie) that hand their bytes to the descriptor and report success to whoever prints, so
 // that no print in the program needs to expect failure. The first error is kept and told at the end.
 
-#include "app/streams.h"
+#include "streams.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 #include <cstdio>
 #include <system_error>
 
-#include "app/commands.h"
+#include "commands.h"
 
 namespace etendue {
 

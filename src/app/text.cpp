@@ -1,6 +1,6 @@
 // Numbers and times as people read and write them, and text files.
 
-#include "app/text.h"
+#include "text.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "etendue/error.h"
+#include "etendue/core/error.h"
 #include "files/regular_file.h"
 
 namespace etendue {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "app/scene_warnings.h"
-#include "etendue/medium_stack.h"
+#include "etendue/transport/medium_stack.h"
+#include "scene_warnings.h"
 
 namespace etendue {
 namespace {

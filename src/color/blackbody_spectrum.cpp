@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "color/dense_table.h"
-#include "color/named.h"
-#include "etendue/color.h"
-#include "etendue/error.h"
+#include "dense_table.h"
+#include "etendue/core/error.h"
+#include "etendue/describe/color.h"
+#include "named.h"
 
 namespace etendue {
 

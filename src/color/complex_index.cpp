@@ -1,10 +1,10 @@
 // Complex refractive indices n + i k.
 
-#include "color/named.h"
-#include "color/table_spectrum.h"
-#include "color/tables.h"
-#include "etendue/color.h"
-#include "etendue/error.h"
+#include "etendue/core/error.h"
+#include "etendue/describe/color.h"
+#include "named.h"
+#include "table_spectrum.h"
+#include "tables.h"
 
 namespace etendue {
 

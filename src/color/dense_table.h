@@ -4,8 +4,8 @@
 #include <array>
 #include <cstring>
 
-#include "color/tables.h"
-#include "etendue/spectrum.h"
+#include "etendue/core/spectrum.h"
+#include "tables.h"
 
 namespace etendue {
 

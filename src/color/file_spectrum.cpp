@@ -5,11 +5,11 @@
 #include <optional>
 #include <sstream>
 
-#include "color/named.h"
-#include "color/table_spectrum.h"
-#include "etendue/color.h"
-#include "etendue/error.h"
+#include "etendue/core/error.h"
+#include "etendue/describe/color.h"
 #include "files/regular_file.h"
+#include "named.h"
+#include "table_spectrum.h"
 
 namespace etendue {
 

@@ -1,5 +1,5 @@
-#include "color/named.h"
-#include "etendue/spectral_function.h"
+#include "etendue/core/spectral_function.h"
+#include "named.h"
 
 namespace etendue {
 

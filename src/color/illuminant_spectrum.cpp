@@ -1,7 +1,7 @@
-#include "color/named.h"
-#include "color/stepped_table.h"
-#include "color/tables.h"
-#include "etendue/color.h"
+#include "etendue/describe/color.h"
+#include "named.h"
+#include "stepped_table.h"
+#include "tables.h"
 
 namespace etendue {
 

@@ -1,9 +1,9 @@
-#include "color/named.h"
+#include "named.h"
 
 #include <algorithm>
 #include <charconv>
 
-#include "etendue/error.h"
+#include "etendue/core/error.h"
 
 namespace etendue {
 

@@ -6,11 +6,11 @@
 #include <memory>
 #include <mutex>
 
-#include "color/named.h"
-#include "color/sigmoid_fit.h"
-#include "etendue/color.h"
-#include "etendue/component.h"
-#include "etendue/error.h"
+#include "etendue/core/error.h"
+#include "etendue/describe/color.h"
+#include "etendue/describe/component.h"
+#include "named.h"
+#include "sigmoid_fit.h"
 
 namespace etendue {
 

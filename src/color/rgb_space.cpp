@@ -3,11 +3,11 @@
 #include <cmath>
 #include <memory>
 
-#include "color/named.h"
-#include "color/rgb_table.h"
-#include "color/tables.h"
-#include "etendue/color.h"
-#include "etendue/error.h"
+#include "etendue/core/error.h"
+#include "etendue/describe/color.h"
+#include "named.h"
+#include "rgb_table.h"
+#include "tables.h"
 
 namespace etendue {
 

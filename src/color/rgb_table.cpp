@@ -1,10 +1,10 @@
-#include "color/rgb_table.h"
+#include "rgb_table.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "color/sigmoid_fit.h"
+#include "sigmoid_fit.h"
 
 namespace etendue {
 

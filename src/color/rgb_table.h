@@ -7,8 +7,8 @@
 #include <mutex>
 #include <vector>
 
-#include "color/sigmoid_fit.h"
-#include "etendue/color.h"
+#include "etendue/describe/color.h"
+#include "sigmoid_fit.h"
 
 namespace etendue {
 

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "color/named.h"
-#include "etendue/color.h"
-#include "etendue/error.h"
+#include "etendue/core/error.h"
+#include "etendue/describe/color.h"
+#include "named.h"
 
 namespace etendue {
 

@@ -1,9 +1,9 @@
-#include "color/sigmoid_fit.h"
+#include "sigmoid_fit.h"
 
 #include <algorithm>
 
-#include "color/tables.h"
-#include "etendue/color.h"
+#include "etendue/describe/color.h"
+#include "tables.h"
 
 namespace etendue {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "etendue/spectrum.h"
+#include "etendue/core/spectrum.h"
 
 namespace etendue {
 

@@ -1,7 +1,7 @@
 // The estimate of a path's colour, made once per path.
 
-#include "color/tables.h"
-#include "etendue/spectrum.h"
+#include "etendue/core/spectrum.h"
+#include "tables.h"
 
 namespace etendue {
 

@@ -1,4 +1,4 @@
-#include "color/stepped_table.h"
+#include "stepped_table.h"
 
 #include <algorithm>
 #include <limits>

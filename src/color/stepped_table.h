@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "color/dense_table.h"
+#include "dense_table.h"
 
 namespace etendue {
 

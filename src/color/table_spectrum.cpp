@@ -1,15 +1,15 @@
 // Measured values, linear between, 0 outside.
 
-#include "color/table_spectrum.h"
+#include "table_spectrum.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "color/named.h"
-#include "color/stepped_table.h"
-#include "etendue/color.h"
-#include "etendue/error.h"
+#include "etendue/core/error.h"
+#include "etendue/describe/color.h"
+#include "named.h"
+#include "stepped_table.h"
 
 namespace etendue {
 

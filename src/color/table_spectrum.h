@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "etendue/spectral_function.h"
+#include "etendue/core/spectral_function.h"
 
 namespace etendue {
 

@@ -1,7 +1,7 @@
 // Made by tools/make_color_tables.py; do not edit.
 // clang-format off
 
-#include "color/tables.h"
+#include "tables.h"
 
 namespace etendue::tables {
 

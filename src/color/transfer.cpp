@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "color/named.h"
-#include "color/tables.h"
-#include "etendue/color.h"
+#include "etendue/describe/color.h"
+#include "named.h"
+#include "tables.h"
 
 namespace etendue {
 

@@ -1,6 +1,6 @@
 // The least and the largest value of a spectrum.
 
-#include "etendue/spectral_function.h"
+#include "etendue/core/spectral_function.h"
 
 namespace etendue {
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <numeric>
 
-#include "color/tables.h"
-#include "etendue/color.h"
+#include "etendue/describe/color.h"
+#include "tables.h"
 
 namespace etendue {
 

@@ -1,12 +1,11 @@
-#include "files/input_files.h"
+#include "input_files.h"
 
 #include <sys/stat.h>
 
 #include <filesystem>
 #include <mutex>
 #include <set>
-
-#include "job/checkpoint.h"
+#include <string>
 
 namespace etendue {
 namespace {
@@ -35,10 +34,6 @@ void note_input(const std::string& path) {
   Noted& all = noted();
   const std::lock_guard lock(all.mutex);
   all.paths.insert(error ? path : full.string());
-}
-
-void note_inputs_of(const Component& component) {
-  for (const std::string& path : files_named_by(component)) note_input(path);
 }
 
 std::string input_at(const std::string& path) {

@@ -1,12 +1,12 @@
-#include "files/output_files.h"
+#include "output_files.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <filesystem>
 
-#include "files/input_files.h"
-#include "outputs/whole_file.h"
+#include "input_files.h"
+#include "whole_file.h"
 
 namespace etendue {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "etendue/error.h"
+#include "etendue/core/error.h"
 
 namespace etendue {
 

@@ -1,4 +1,4 @@
-#include "files/regular_file.h"
+#include "regular_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,8 +11,8 @@
 #include <cstring>
 #include <utility>
 
-#include "etendue/error.h"
-#include "files/input_files.h"
+#include "etendue/core/error.h"
+#include "input_files.h"
 
 namespace etendue {
 namespace {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "etendue/color.h"
-#include "etendue/image_tools.h"
+#include "etendue/describe/color.h"
+#include "etendue/film/image_tools.h"
 
 namespace etendue {
 namespace {

@@ -1,4 +1,4 @@
-#include "images/image_library.h"
+#include "image_library.h"
 
 #include <dlfcn.h>
 
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "etendue/error.h"
+#include "etendue/core/error.h"
 
 namespace etendue {
 namespace {

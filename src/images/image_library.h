@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "etendue/image.h"
-#include "etendue/image_buffer.h"
+#include "etendue/core/image.h"
+#include "etendue/film/image_buffer.h"
 
 namespace etendue {
 
@@ -58,7 +58,7 @@ class ImageLibrary {
   virtual ~ImageLibrary();
   virtual StoredImage read(const std::string& path) const = 0;
   virtual LinearImage read_linear(const std::string& path, const std::string& transfer) const = 0;
-  /// See maps/linear_image.h.
+  /// See images/linear_image.h.
   virtual void check_channel(const std::string& path, const std::string& channel) const = 0;
   /// See ImageTexture::open.
   virtual std::shared_ptr<const ImageTexture> open_texture(const std::string& path, const std::string& transfer,

@@ -1,9 +1,9 @@
-#include "images/numpy_array.h"
+#include "numpy_array.h"
 
 #include <charconv>
 #include <cstring>
 
-#include "etendue/error.h"
+#include "etendue/core/error.h"
 
 namespace etendue {
 namespace {

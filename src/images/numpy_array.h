@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "etendue/image.h"
+#include "etendue/core/image.h"
 
 namespace etendue {
 

@@ -3,13 +3,13 @@
 #include <filesystem>
 #include <system_error>
 
-#include "etendue/color.h"
-#include "etendue/image_tools.h"
+#include "etendue/describe/color.h"
+#include "etendue/film/image_tools.h"
 #include "etendue/output.h"
 #include "files/regular_file.h"
-#include "images/image_library.h"
-#include "images/numpy_array.h"
-#include "images/stated_encoding.h"
+#include "image_library.h"
+#include "numpy_array.h"
+#include "stated_encoding.h"
 
 namespace etendue {
 namespace {

@@ -1,4 +1,4 @@
-#include "images/stated_encoding.h"
+#include "stated_encoding.h"
 
 #include <fmt/format.h>
 

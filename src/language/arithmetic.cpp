@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "etendue/color.h"
-#include "language/evaluator.h"
+#include "etendue/describe/color.h"
+#include "evaluator.h"
 
 namespace etendue::language {
 

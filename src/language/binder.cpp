@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "component/words.h"
-#include "language/evaluator.h"
+#include "describe/words.h"
+#include "evaluator.h"
 
 namespace etendue::language {
 

@@ -1,11 +1,11 @@
-#include "language/calls.h"
+#include "calls.h"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 
-#include "component/words.h"
+#include "describe/words.h"
 
 namespace etendue::language {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "etendue/vector.h"
-#include "language/evaluator.h"
+#include "etendue/core/vector.h"
+#include "evaluator.h"
 
 namespace etendue::language {
 

@@ -5,8 +5,8 @@
 #include <charconv>
 #include <filesystem>
 
-#include "etendue/color.h"
-#include "language/calls.h"
+#include "calls.h"
+#include "etendue/describe/color.h"
 
 namespace etendue::language {
 

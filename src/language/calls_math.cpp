@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "language/calls.h"
+#include "calls.h"
 
 namespace etendue::language {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "language/calls.h"
+#include "calls.h"
 
 namespace etendue::language {
 

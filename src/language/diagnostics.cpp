@@ -10,10 +10,10 @@
 #include <mutex>
 #include <tuple>
 
-#include "etendue/language.h"
+#include "etendue/language/language.h"
 #include "files/regular_file.h"
-#include "language/json.h"
-#include "language/source.h"
+#include "json.h"
+#include "source.h"
 
 namespace etendue {
 namespace language {

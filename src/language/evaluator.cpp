@@ -1,14 +1,14 @@
 // Names, lists and the way through expressions.
 
-#include "language/evaluator.h"
+#include "evaluator.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "component/words.h"
-#include "language/json.h"
-#include "language/turns.h"
+#include "describe/words.h"
+#include "json.h"
+#include "turns.h"
 
 namespace etendue::language {
 

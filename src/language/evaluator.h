@@ -7,9 +7,9 @@
 #include <string>
 #include <unordered_map>
 
-#include "etendue/registry.h"
-#include "language/source.h"
-#include "language/syntax.h"
+#include "etendue/describe/registry.h"
+#include "source.h"
+#include "syntax.h"
 
 namespace etendue::language {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "language/parser.h"
+#include "parser.h"
 
 namespace etendue::language {
 

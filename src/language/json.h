@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "etendue/component.h"
-#include "language/syntax.h"
+#include "etendue/describe/component.h"
+#include "syntax.h"
 
 namespace etendue {
 

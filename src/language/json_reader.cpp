@@ -4,9 +4,9 @@
 
 #include <map>
 
-#include "language/json.h"
-#include "language/json_tokens.h"
-#include "language/lexer.h"
+#include "json.h"
+#include "json_tokens.h"
+#include "lexer.h"
 
 namespace etendue::language {
 

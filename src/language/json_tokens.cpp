@@ -1,8 +1,8 @@
-#include "language/json_tokens.h"
+#include "json_tokens.h"
 
 #include <fmt/format.h>
 
-#include "language/json.h"
+#include "json.h"
 
 namespace etendue::language {
 

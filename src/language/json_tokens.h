@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "language/source.h"
+#include "source.h"
 
 namespace etendue::language {
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "etendue/color.h"
-#include "language/evaluator.h"
-#include "language/json.h"
+#include "etendue/describe/color.h"
+#include "evaluator.h"
+#include "json.h"
 
 namespace etendue::language {
 

@@ -5,8 +5,8 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "language/json.h"
-#include "language/writer.h"
+#include "json.h"
+#include "writer.h"
 
 namespace etendue::language {
 

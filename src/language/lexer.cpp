@@ -1,4 +1,4 @@
-#include "language/lexer.h"
+#include "lexer.h"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,11 @@
-#include "language/loader.h"
+#include "loader.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "etendue/job.h"
-#include "language/json.h"
+#include "json.h"
 
 namespace etendue::language {
 
@@ -185,23 +184,6 @@ Ref<Component> Loader::result(bool job) {
 }  // namespace etendue::language
 
 namespace etendue {
-
-Ref<Job> load_job(const std::string& path, const LoadOptions& options) {
-  try {
-    language::Loader loader(options);
-    loader.add_file(path);
-    return ref_cast<Job>(loader.result(true));
-  } catch (const std::bad_alloc&) {
-    throw Error("there is not enough memory for what it describes", {intern(path), 0, 0});
-  }
-}
-
-Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder,
-                       const LoadOptions& options) {
-  language::Loader loader(options);
-  loader.add_text(text, name, folder);
-  return ref_cast<Job>(loader.result(true));
-}
 
 Ref<Component> parse_component(const std::string& text, const std::string& name, const std::string& folder) {
   const LoadOptions options;

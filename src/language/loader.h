@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "etendue/language.h"
-#include "language/evaluator.h"
+#include "etendue/language/language.h"
+#include "evaluator.h"
 
 namespace etendue::language {
 

@@ -1,6 +1,6 @@
 // Statements and component blocks, and going on after errors.
 
-#include "language/parser.h"
+#include "parser.h"
 
 #include <fmt/format.h>
 

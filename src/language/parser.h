@@ -4,8 +4,8 @@
 #include <memory>
 #include <unordered_map>
 
-#include "language/lexer.h"
-#include "language/syntax.h"
+#include "lexer.h"
+#include "syntax.h"
 
 namespace etendue::language {
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "component/words.h"
-#include "etendue/registry.h"
-#include "language/parser.h"
+#include "describe/words.h"
+#include "etendue/describe/registry.h"
+#include "parser.h"
 
 namespace etendue::language {
 

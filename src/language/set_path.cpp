@@ -4,11 +4,11 @@
 
 #include <charconv>
 
-#include "component/words.h"
-#include "etendue/language.h"
-#include "etendue/registry.h"
-#include "language/evaluator.h"
-#include "language/lexer.h"
+#include "describe/words.h"
+#include "etendue/describe/registry.h"
+#include "etendue/language/language.h"
+#include "evaluator.h"
+#include "lexer.h"
 
 namespace etendue {
 namespace {

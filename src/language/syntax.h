@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "etendue/value.h"
-#include "language/source.h"
+#include "etendue/describe/value.h"
+#include "source.h"
 
 namespace etendue::language {
 

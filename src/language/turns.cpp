@@ -1,10 +1,10 @@
-#include "language/turns.h"
+#include "turns.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "etendue/component.h"
+#include "etendue/describe/component.h"
 
 namespace etendue::language {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "language/syntax.h"
+#include "syntax.h"
 
 namespace etendue::language {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "color/named.h"
-#include "language/writer.h"
+#include "writer.h"
 
 namespace etendue::language {
 

@@ -1,15 +1,15 @@
 // Components: what is shared, what is named, what is written at all, and in which order.
 
-#include "language/writer.h"
+#include "writer.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
 #include "color/named.h"
-#include "etendue/description.h"
-#include "etendue/language.h"
-#include "language/lexer.h"
+#include "etendue/describe/description.h"
+#include "etendue/language/language.h"
+#include "lexer.h"
 
 namespace etendue::language {
 

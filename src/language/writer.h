@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "etendue/registry.h"
+#include "etendue/describe/registry.h"
 
 namespace etendue::language {
 

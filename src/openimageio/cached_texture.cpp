@@ -1,16 +1,16 @@
 // Reading images into levels of averages.
 
-#include "openimageio/cached_texture.h"
+#include "cached_texture.h"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <map>
 
-#include "etendue/error.h"
-#include "openimageio/image_cache.h"
-#include "openimageio/linear_input.h"
-#include "openimageio/refuse.h"
+#include "etendue/core/error.h"
+#include "image_cache.h"
+#include "linear_input.h"
+#include "refuse.h"
 
 namespace etendue {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "maps/image_texture.h"
+#include "components/maps/image_texture.h"
 
 namespace etendue {
 

@@ -1,14 +1,14 @@
-#include "openimageio/checked_open.h"
+#include "checked_open.h"
 
 #include <fmt/format.h>
 
 #include <cctype>
 #include <string_view>
 
-#include "etendue/error.h"
+#include "etendue/core/error.h"
+#include "exr_header.h"
 #include "files/regular_file.h"
-#include "openimageio/exr_header.h"
-#include "openimageio/refuse.h"
+#include "refuse.h"
 
 namespace etendue {
 namespace {

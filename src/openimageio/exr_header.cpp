@@ -5,7 +5,7 @@
 // chunk (some rows of pixels, or a tile). A header is a list of attributes: name and type, each ended by a zero, a 32-bit size
 // and that many bytes; a zero ends it. All numbers are little endian.
 
-#include "openimageio/exr_header.h"
+#include "exr_header.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include <cstring>
 #include <optional>
 
-#include "etendue/error.h"
+#include "etendue/core/error.h"
 #include "files/regular_file.h"
 
 namespace etendue {

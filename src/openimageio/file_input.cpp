@@ -1,12 +1,12 @@
-#include "openimageio/file_input.h"
+#include "file_input.h"
 
 #include <OpenImageIO/imageio.h>
 
 #include <string_view>
 
+#include "checked_open.h"
 #include "files/regular_file.h"
-#include "openimageio/checked_open.h"
-#include "openimageio/refuse.h"
+#include "refuse.h"
 
 namespace etendue {
 namespace {

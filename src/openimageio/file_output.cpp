@@ -1,4 +1,4 @@
-#include "openimageio/file_output.h"
+#include "file_output.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "openimageio/refuse.h"
+#include "refuse.h"
 
 namespace etendue {
 namespace {

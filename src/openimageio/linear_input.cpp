@@ -1,13 +1,13 @@
-#include "openimageio/linear_input.h"
+#include "linear_input.h"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "etendue/color.h"
+#include "checked_open.h"
+#include "etendue/describe/color.h"
 #include "files/regular_file.h"
-#include "maps/linear_image.h"
-#include "openimageio/checked_open.h"
-#include "openimageio/refuse.h"
+#include "images/linear_image.h"
+#include "refuse.h"
 
 namespace etendue {
 namespace {

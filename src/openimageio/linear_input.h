@@ -14,7 +14,7 @@ struct LinearImage;
 OIIO::ImageInput* make_linear_input();
 std::string linear_image_key(const std::string& path, const std::string& transfer, const std::string& channel = {});
 
-// See maps/linear_image.h; errors in reading tell the reason alone.
+// See images/linear_image.h; errors in reading tell the reason alone.
 void check_file_channel(const std::string& path, const std::string& channel);
 LinearImage read_linear_file(const std::string& path, const std::string& transfer);
 

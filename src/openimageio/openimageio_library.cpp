@@ -1,11 +1,11 @@
 // The image library as the rest sees it.
 
+#include "cached_texture.h"
+#include "file_input.h"
+#include "file_output.h"
 #include "images/image_library.h"
-#include "maps/linear_image.h"
-#include "openimageio/cached_texture.h"
-#include "openimageio/file_input.h"
-#include "openimageio/file_output.h"
-#include "openimageio/linear_input.h"
+#include "images/linear_image.h"
+#include "linear_input.h"
 
 namespace etendue {
 namespace {

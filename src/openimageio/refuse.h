@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "etendue/error.h"
+#include "etendue/core/error.h"
 
 namespace etendue {
 

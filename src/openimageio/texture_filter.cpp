@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "openimageio/cached_texture.h"
-#include "openimageio/image_cache.h"
+#include "cached_texture.h"
+#include "image_cache.h"
 
 namespace etendue {
 

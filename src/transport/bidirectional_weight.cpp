@@ -1,6 +1,6 @@
-#include "transport/bidirectional_weight.h"
+#include "bidirectional_weight.h"
 
-#include "transport/seeded_bug.h"
+#include "seeded_bug.h"
 
 namespace etendue {
 

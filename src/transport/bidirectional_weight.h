@@ -12,8 +12,8 @@
 // A strategy that would connect at a vertex whose scattering is specular, or meet a luminaire without extent, cannot
 // happen and is left out, as is meeting the lens.
 
-#include "transport/multiple_importance.h"
-#include "transport/vertex.h"
+#include "multiple_importance.h"
+#include "vertex.h"
 
 namespace etendue {
 

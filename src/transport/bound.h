@@ -1,6 +1,6 @@
 #pragma once
 
-#include "component/guard.h"
+#include "describe/guard.h"
 #include "etendue/shader.h"
 
 namespace etendue {

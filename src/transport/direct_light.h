@@ -5,7 +5,7 @@
 #include "etendue/sampler.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
-#include "transport/multiple_importance.h"
+#include "multiple_importance.h"
 
 namespace etendue {
 

@@ -1,6 +1,6 @@
-#include "transport/luminaire_sampling.h"
+#include "luminaire_sampling.h"
 
-#include "etendue/warp.h"
+#include "etendue/core/warp.h"
 
 namespace etendue {
 namespace {

@@ -1,10 +1,10 @@
-#include "transport/media.h"
+#include "media.h"
 
 #include <vector>
 
 #include "etendue/shader.h"
-#include "transport/medium_tracking.h"
-#include "transport/seeded_bug.h"
+#include "medium_tracking.h"
+#include "seeded_bug.h"
 
 namespace etendue {
 namespace {

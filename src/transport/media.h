@@ -11,9 +11,9 @@
 // the throughputs changes by absorption alone, however long the walk: one walk is what the balance heuristic over whole
 // paths would give (Miller, Georgiev & Jarosz 2019, "A null-scattering path integral formulation of light transport").
 
-#include "etendue/medium_stack.h"
 #include "etendue/sampler.h"
 #include "etendue/scene.h"
+#include "etendue/transport/medium_stack.h"
 
 namespace etendue {
 

@@ -1,4 +1,4 @@
-#include "transport/medium_tracking.h"
+#include "medium_tracking.h"
 
 namespace etendue {
 namespace {

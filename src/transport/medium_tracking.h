@@ -1,8 +1,8 @@
 #pragma once
 // What a path does to its medium stack when it crosses a surface.
 
-#include "etendue/medium_stack.h"
 #include "etendue/scene.h"
+#include "etendue/transport/medium_stack.h"
 
 namespace etendue {
 

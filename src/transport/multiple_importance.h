@@ -1,7 +1,7 @@
 #pragma once
 // Weights for combining sampling strategies (Veach & Guibas 1995, "Optimally combining sampling techniques").
 
-#include "etendue/math.h"
+#include "etendue/core/math.h"
 
 namespace etendue {
 

@@ -1,9 +1,9 @@
-#include "transport/random_walk.h"
+#include "random_walk.h"
 
-#include "transport/media.h"
-#include "transport/medium_tracking.h"
-#include "transport/ray_steps.h"
-#include "transport/seeded_bug.h"
+#include "media.h"
+#include "medium_tracking.h"
+#include "ray_steps.h"
+#include "seeded_bug.h"
 
 namespace etendue {
 namespace {

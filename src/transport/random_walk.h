@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "etendue/renderer.h"
-#include "transport/vertex.h"
+#include "etendue/transport/sample_context.h"
+#include "vertex.h"
 
 namespace etendue {
 

@@ -1,10 +1,10 @@
 #pragma once
 // Steps that renderers which follow rays from the camera have in common.
 
-#include "etendue/renderer.h"
-#include "transport/bound.h"
-#include "transport/media.h"
-#include "transport/medium_tracking.h"
+#include "bound.h"
+#include "etendue/transport/sample_context.h"
+#include "media.h"
+#include "medium_tracking.h"
 
 namespace etendue {
 

@@ -1,8 +1,8 @@
-#include "transport/record.h"
+#include "record.h"
 
 #include <algorithm>
 
-#include "etendue/color.h"
+#include "etendue/describe/color.h"
 
 namespace etendue {
 

@@ -2,8 +2,8 @@
 // What a renderer notes for people: a replayed path's vertices, and the features of the first surface. All calls do
 // nothing when nobody listens.
 
-#include "etendue/renderer.h"
 #include "etendue/shader.h"
+#include "etendue/transport/sample_context.h"
 
 namespace etendue {
 

@@ -1,8 +1,8 @@
-#include "transport/record_walk.h"
+#include "record_walk.h"
 
-#include "transport/bound.h"
-#include "transport/medium_tracking.h"
-#include "transport/record.h"
+#include "bound.h"
+#include "medium_tracking.h"
+#include "record.h"
 
 namespace etendue {
 

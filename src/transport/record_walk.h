@@ -1,8 +1,8 @@
 #pragma once
 // What walks and connections note for people; like record.h, nothing when nobody listens.
 
-#include "etendue/renderer.h"
-#include "transport/vertex.h"
+#include "etendue/transport/sample_context.h"
+#include "vertex.h"
 
 namespace etendue {
 

@@ -1,6 +1,6 @@
 // What kinds of light transport a scene asks for.
 
-#include "etendue/scene_traits.h"
+#include "etendue/transport/scene_traits.h"
 
 #include <set>
 

@@ -1,7 +1,7 @@
-#include "transport/subpaths.h"
+#include "subpaths.h"
 
-#include "transport/media.h"
-#include "transport/random_walk.h"
+#include "media.h"
+#include "random_walk.h"
 
 namespace etendue {
 

@@ -4,9 +4,9 @@
 #include <functional>
 
 #include "etendue/camera.h"
-#include "etendue/renderer.h"
-#include "transport/luminaire_sampling.h"
-#include "transport/vertex.h"
+#include "etendue/transport/sample_context.h"
+#include "luminaire_sampling.h"
+#include "vertex.h"
 
 namespace etendue {
 

@@ -1,7 +1,7 @@
-#include "transport/vertex.h"
+#include "vertex.h"
 
-#include "transport/medium_tracking.h"
-#include "transport/seeded_bug.h"
+#include "medium_tracking.h"
+#include "seeded_bug.h"
 
 namespace etendue {
 

@@ -13,10 +13,10 @@
 // the path: S and s_b are means over the path's wavelengths, and specular scattering counts 1.
 
 #include "etendue/camera.h"
-#include "etendue/medium_stack.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
-#include "transport/luminaire_sampling.h"
+#include "etendue/transport/medium_stack.h"
+#include "luminaire_sampling.h"
 
 namespace etendue {
 

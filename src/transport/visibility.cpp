@@ -1,8 +1,8 @@
-#include "transport/visibility.h"
+#include "visibility.h"
 
-#include "transport/bound.h"
-#include "transport/media.h"
-#include "transport/medium_tracking.h"
+#include "bound.h"
+#include "media.h"
+#include "medium_tracking.h"
 
 namespace etendue {
 

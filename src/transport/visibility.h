@@ -1,10 +1,10 @@
 #pragma once
 // How much of the light gets along a ray: past surfaces that let it pass straight on, and through media.
 
-#include "etendue/medium_stack.h"
 #include "etendue/sampler.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
+#include "etendue/transport/medium_stack.h"
 
 namespace etendue {
 

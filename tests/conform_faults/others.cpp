@@ -1,12 +1,12 @@
 // Emission, objects, maps, filters, media and cameras that are wrong in one way each: what `etendue conform` must find.
 
 #include "etendue/camera.h"
+#include "etendue/core/warp.h"
 #include "etendue/filter.h"
 #include "etendue/object_map.h"
 #include "etendue/scene_object.h"
 #include "etendue/shader.h"
 #include "etendue/volume_shader.h"
-#include "etendue/warp.h"
 
 namespace etendue {
 namespace {

@@ -1,6 +1,6 @@
 // A renderer that is wrong: what `etendue conform` must find.
 
-#include "etendue/renderer.h"
+#include "etendue/render/renderer.h"
 #include "etendue/shader.h"
 
 namespace etendue {

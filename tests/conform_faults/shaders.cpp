@@ -1,8 +1,8 @@
 // Shaders that are wrong in one way each: what `etendue conform` must find.
 
+#include "etendue/core/warp.h"
 #include "etendue/object_map.h"
 #include "etendue/shader.h"
-#include "etendue/warp.h"
 
 namespace etendue {
 namespace {

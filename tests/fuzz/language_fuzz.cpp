@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "etendue/job.h"
-#include "etendue/language.h"
+#include "etendue/language/language.h"
+#include "etendue/render/job.h"
 
 namespace {
 

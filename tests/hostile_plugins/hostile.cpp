@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "etendue/color.h"
-#include "etendue/description.h"
+#include "etendue/describe/color.h"
+#include "etendue/describe/description.h"
 #include "etendue/object_map.h"
 #include "etendue/shader.h"
 

@@ -1,6 +1,6 @@
 // A shader in one file, out of tree: gold that scatters diffusely.
-#include "etendue/color.h"
-#include "etendue/description.h"
+#include "etendue/describe/color.h"
+#include "etendue/describe/description.h"
 #include "etendue/shader.h"
 
 using namespace etendue;

@@ -1,8 +1,8 @@
 // A shader with textures, out of tree: a dusty surface after Minnaert 1941, darker towards its rim than a matt one.
-#include "etendue/description.h"
+#include "etendue/core/warp.h"
+#include "etendue/describe/description.h"
 #include "etendue/object_map.h"
 #include "etendue/shader.h"
-#include "etendue/warp.h"
 
 using namespace etendue;
 

@@ -1,6 +1,6 @@
 // A path tracer with next event estimation, in one file, out of tree.
-#include "etendue/description.h"
-#include "etendue/renderer.h"
+#include "etendue/describe/description.h"
+#include "etendue/render/renderer.h"
 #include "etendue/shader.h"
 
 using namespace etendue;

@@ -1,0 +1,191 @@
+#pragma once
+// The light a path carries: values at the path's few wavelengths.
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "etendue/core/math.h"
+
+namespace etendue {
+
+/// Wavelengths per path; docs/decisions tells how the number was chosen.
+inline constexpr int spectrum_size = 8;
+
+/// The range of visible light all spectral data covers [nm].
+inline constexpr float wavelength_low = 360, wavelength_high = 830;
+
+namespace detail {
+using Lanes = float __attribute__((vector_size(spectrum_size * sizeof(float))));
+using IntLanes = std::int32_t __attribute__((vector_size(spectrum_size * sizeof(std::int32_t))));
+}  // namespace detail
+
+/// The thesis's Spectrum: one value for each wavelength of the path it belongs to. What the values mean (radiance,
+/// throughput, reflectance) is said where they are declared.
+class Spectrum {
+ public:
+  constexpr Spectrum() : v_{} {}
+  constexpr Spectrum(float all) : v_(all - detail::Lanes{}) {}  // NOLINT: a number is a flat spectrum
+  explicit constexpr Spectrum(detail::Lanes v) : v_(v) {}
+
+  float operator[](int i) const { return v_[i]; }
+  void set(int i, float value) { v_[i] = value; }
+  const detail::Lanes& lanes() const { return v_; }
+
+  friend Spectrum operator+(Spectrum a, Spectrum b) { return Spectrum(a.v_ + b.v_); }
+  friend Spectrum operator-(Spectrum a, Spectrum b) { return Spectrum(a.v_ - b.v_); }
+  friend Spectrum operator*(Spectrum a, Spectrum b) { return Spectrum(a.v_ * b.v_); }
+  friend Spectrum operator/(Spectrum a, Spectrum b) { return Spectrum(a.v_ / b.v_); }
+  friend Spectrum operator*(Spectrum a, float s) { return Spectrum(a.v_ * s); }
+  friend Spectrum operator*(float s, Spectrum a) { return Spectrum(a.v_ * s); }
+  friend Spectrum operator/(Spectrum a, float s) { return Spectrum(a.v_ * (1 / s)); }
+  Spectrum operator-() const { return Spectrum(-v_); }
+  Spectrum& operator+=(Spectrum b) {
+    v_ += b.v_;
+    return *this;
+  }
+  Spectrum& operator*=(Spectrum b) {
+    v_ *= b.v_;
+    return *this;
+  }
+  Spectrum& operator*=(float s) {
+    v_ *= s;
+    return *this;
+  }
+  Spectrum& operator/=(float s) {
+    v_ *= 1 / s;
+    return *this;
+  }
+
+  bool black() const { return none(v_ != detail::Lanes{}); }
+  float maximum() const {
+    float m = v_[0];
+    for (int i = 1; i < spectrum_size; ++i) m = std::max(m, v_[i]);
+    return m;
+  }
+  float minimum() const {
+    float m = v_[0];
+    for (int i = 1; i < spectrum_size; ++i) m = std::min(m, v_[i]);
+    return m;
+  }
+  float average() const {
+    float sum = 0;
+    for (int i = 0; i < spectrum_size; ++i) sum += v_[i];
+    return sum / spectrum_size;
+  }
+  /// Neither infinite nor not-a-number: x - x is 0 for numbers only.
+  bool finite() const { return none((v_ - v_) != detail::Lanes{}); }
+
+ private:
+  static bool none(const detail::IntLanes& mask) {
+    std::uint64_t all = 0;
+    for (const std::uint64_t part : std::bit_cast<std::array<std::uint64_t, spectrum_size / 2>>(mask)) all |= part;
+    return all == 0;
+  }
+
+  detail::Lanes v_;
+};
+
+/// Applies a function of one number to each value: map(s, [](float x) { return std::exp(-x); }).
+template <class F>
+Spectrum map(Spectrum a, F&& f) {
+  Spectrum r;
+  for (int i = 0; i < spectrum_size; ++i) r.set(i, f(a[i]));
+  return r;
+}
+inline Spectrum max(Spectrum a, float b) {
+  return map(a, [b](float x) { return std::max(x, b); });
+}
+inline Spectrum clamp(Spectrum a, float low, float high) {
+  return map(a, [=](float x) { return clamp(x, low, high); });
+}
+inline Spectrum exp(Spectrum a) {
+  return map(a, [](float x) { return std::exp(x); });
+}
+inline Spectrum sqrt(Spectrum a) {
+  return map(a, [](float x) { return safe_sqrt(x); });
+}
+
+/// A colour in the CIE 1931 XYZ space of the 2 degree observer, scaled so that a flat spectrum of 1 has Y = 1:
+/// X = integral of S(lambda) xbar(lambda) over 106.8569 nm, the integral of ybar. A radiance's luminance [cd/m^2] is
+/// Y times 683 times 106.8569.
+struct Xyz {
+  double x = 0, y = 0, z = 0;
+  Xyz& operator+=(const Xyz& b) {
+    x += b.x;
+    y += b.y;
+    z += b.z;
+    return *this;
+  }
+  friend Xyz operator*(double s, const Xyz& c) { return {s * c.x, s * c.y, s * c.z}; }
+  friend Xyz operator+(Xyz a, const Xyz& b) { return a += b; }
+  bool operator==(const Xyz&) const = default;
+};
+
+/// The wavelengths [nm] of one path and the density [1/nm] each was drawn with. The first is the hero: it alone
+/// decides where a dispersive surface sends the path, and it alone goes on after that.
+class Wavelengths {
+ public:
+  Wavelengths() = default;
+  Wavelengths(const std::array<float, spectrum_size>& lambda, const std::array<float, spectrum_size>& density) {
+    for (int i = 0; i < spectrum_size; ++i) place(i, lambda[size_t(i)], density[size_t(i)]);
+  }
+
+  /// The same, given as vectors.
+  Wavelengths(const detail::Lanes& lambda, const detail::Lanes& density) : lambda_(lambda), density_(density) {
+    constexpr float length = wavelength_high - wavelength_low;
+    detail::Lanes x = lambda - wavelength_low;
+    x = x > 0 ? x : detail::Lanes{};  // zero for what is not a number
+    x = x < length ? x : length - detail::Lanes{};
+    const detail::IntLanes k = __builtin_convertvector(x, detail::IntLanes), last = int(length) - 1 - detail::IntLanes{};
+    index_ = k < last ? k : last;
+    fraction_ = x - __builtin_convertvector(index_, detail::Lanes);
+  }
+
+  float operator[](int i) const { return lambda_[i]; }
+  float hero() const { return lambda_[0]; }
+  /// [1/nm]
+  float density(int i) const { return density_[i]; }
+
+  /// The path goes on with the hero only. Returns what its throughput must be multiplied by: size for the hero, 0 for the
+  /// others. So the mean over wavelengths in `to_xyz` stays an unbiased estimate, and what the path gathered before
+  /// keeps all its wavelengths. 1 when that was done already.
+  Spectrum drop_secondary() {
+    Spectrum factor(1.0f);
+    if (single_) return factor;
+    single_ = true;
+    factor = Spectrum();
+    factor.set(0, float(spectrum_size));
+    return factor;
+  }
+  bool single() const { return single_; }
+
+  /// Position in tables of one entry a nanometre from 360 nm: entry i and the fraction towards i + 1.
+  int table_index(int i) const { return index_[i]; }
+  float table_fraction(int i) const { return fraction_[i]; }
+  const detail::IntLanes& table_indices() const { return index_; }
+  const detail::Lanes& table_fractions() const { return fraction_; }
+  /// All of them [1/nm].
+  const detail::Lanes& densities() const { return density_; }
+
+  void place(int i, float lambda, float density) {
+    lambda_[i] = lambda;
+    density_[i] = density;
+    const float x = clamp(lambda - wavelength_low, 0, wavelength_high - wavelength_low);
+    const int k = std::min(int(x), int(wavelength_high - wavelength_low) - 1);
+    index_[i] = k;
+    fraction_[i] = x - float(k);
+  }
+
+ private:
+  detail::Lanes lambda_{}, density_{}, fraction_{};
+  detail::IntLanes index_{};
+  bool single_ = false;
+};
+
+/// The estimate of a spectrum's colour from its values at a path's wavelengths:
+/// X = 1/size * sum_i S_i xbar(lambda_i) / (p(lambda_i) * 106.8569), and so for Y and Z.
+Xyz to_xyz(const Spectrum&, const Wavelengths&);
+
+}  // namespace etendue

@@ -1,0 +1,150 @@
+#pragma once
+// Affine transforms, and transforms keyed by time.
+
+#include <array>
+#include <vector>
+
+#include "etendue/core/vector.h"
+
+namespace etendue {
+
+/// An affine map with its inverse. Rows of a 3x4 matrix, row major; the last row is (0 0 0 1). It is kept in double; rays and
+/// points take floats of it.
+class Transform {
+ public:
+  using Matrix = std::array<float, 12>;
+  using DoubleMatrix = std::array<double, 12>;
+
+  Transform() = default;
+  /// From a matrix; a singular one gives a transform that is not valid().
+  explicit Transform(const DoubleMatrix& matrix);
+  explicit Transform(const Matrix& matrix);
+
+  static Transform translate(const DoubleVector3& by);
+  /// By an angle [rad] about an axis through the origin, counter-clockwise seen against the axis.
+  static Transform rotate(double angle, const DoubleVector3& axis);
+  static Transform scale(const DoubleVector3& by);
+  /// Camera convention: +z looks from `from` to `to`, +y is up, +x is to the left of the picture (right-handed frame).
+  static Transform look_at(const DoublePoint3& from, const DoublePoint3& to, const DoubleVector3& up);
+
+  const DoubleMatrix& exact() const { return exact_; }
+  const Matrix& matrix() const { return m_; }
+  bool valid() const { return valid_; }
+  bool identity() const { return identity_; }
+  /// Whether it only moves, and neither turns nor stretches.
+  bool shifts_only() const { return shifts_only_; }
+  /// Where the origin comes from.
+  Vector3 shift_back() const { return {inverse_[3], inverse_[7], inverse_[11]}; }
+  /// Whether it mirrors: the determinant is negative.
+  bool flips() const { return flips_; }
+  Transform inverse() const;
+  /// First b, then this.
+  Transform operator*(const Transform& b) const;
+  bool operator==(const Transform& b) const { return exact_ == b.exact_; }
+
+  Point3 operator()(const Point3& p) const {
+    return {m_[0] * p.x + m_[1] * p.y + m_[2] * p.z + m_[3], m_[4] * p.x + m_[5] * p.y + m_[6] * p.z + m_[7],
+            m_[8] * p.x + m_[9] * p.y + m_[10] * p.z + m_[11]};
+  }
+  Vector3 operator()(const Vector3& v) const {
+    return {m_[0] * v.x + m_[1] * v.y + m_[2] * v.z, m_[4] * v.x + m_[5] * v.y + m_[6] * v.z,
+            m_[8] * v.x + m_[9] * v.y + m_[10] * v.z};
+  }
+  /// Not normalised; keeps the side the normal points to even under mirroring.
+  Normal3 operator()(const Normal3& n) const {
+    const auto& i = inverse_;
+    return {i[0] * n.x + i[4] * n.y + i[8] * n.z, i[1] * n.x + i[5] * n.y + i[9] * n.z, i[2] * n.x + i[6] * n.y + i[10] * n.z};
+  }
+  Bounds3 operator()(const Bounds3& b) const;
+
+  // The same in double, for what is done once.
+  DoublePoint3 operator()(const DoublePoint3& p) const { return times(exact_, p); }
+  DoublePoint3 back(const DoublePoint3& p) const { return times(exact_inverse_, p); }
+
+  Point3 back(const Point3& p) const {
+    const auto& i = inverse_;
+    return {i[0] * p.x + i[1] * p.y + i[2] * p.z + i[3], i[4] * p.x + i[5] * p.y + i[6] * p.z + i[7],
+            i[8] * p.x + i[9] * p.y + i[10] * p.z + i[11]};
+  }
+  Vector3 back(const Vector3& v) const {
+    const auto& i = inverse_;
+    return {i[0] * v.x + i[1] * v.y + i[2] * v.z, i[4] * v.x + i[5] * v.y + i[6] * v.z, i[8] * v.x + i[9] * v.y + i[10] * v.z};
+  }
+
+  /// A bound of the absolute rounding error of transforming p, itself known to within `error`.
+  Vector3 error_bound(const Point3& p, const Vector3& error = {}) const;
+
+ private:
+  static DoublePoint3 times(const DoubleMatrix& m, const DoublePoint3& p) {
+    return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+            m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+  }
+
+  Matrix m_{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  Matrix inverse_{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  DoubleMatrix exact_{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  DoubleMatrix exact_inverse_{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  bool valid_ = true, identity_ = true, shifts_only_ = true, flips_ = false;
+};
+
+/// A transform keyed by time [s]. Between keys, translation is interpolated linearly, rotation on the sphere and
+/// stretch linearly (polar decomposition, Shoemake & Duff 1992), so a rotating object keeps its size. Outside the
+/// keys the nearest key holds.
+///
+/// The keys are as they were written. What points and rays go through, still() and at(), counts on either side from a point
+/// that is chosen when a scene is prepared (see docs/decisions/020-rendering-space.md): it takes p - inner to M p - outer,
+/// which is found in double and only then rounded. Both points are the origins unless someone says otherwise.
+class AnimatedTransform {
+ public:
+  struct Key {
+    float time = 0;
+    Transform transform;
+    bool operator==(const Key&) const = default;
+  };
+
+  AnimatedTransform() : keys_{{}} {}
+  AnimatedTransform(const Transform& still) : keys_{{0, still}}, still_(still) {}  // NOLINT: a still transform is one
+  /// Keys in increasing time; at least one.
+  explicit AnimatedTransform(std::vector<Key> keys);
+  /// First b, then this. Each goes on between its own keys as it does alone; the product's are at the times of both. It counts
+  /// from this one's outer and b's inner point.
+  AnimatedTransform operator*(const AnimatedTransform& b) const;
+
+  /// Counts from other points: places outside from `outer`, those inside from `inner`.
+  void count_from(const DoublePoint3& outer, const DoublePoint3& inner);
+  const DoublePoint3& outer() const { return outer_; }
+  const DoublePoint3& inner() const { return inner_; }
+
+  bool animated() const { return keys_.end() > keys_.begin() + 1; }  // size() would divide
+  /// The transform of the first key: the only one when not animated.
+  const Transform& still() const { return still_; }
+  Transform at(float time) const { return counted(written(time)); }
+  /// The same from true own coordinates.
+  Transform from_origin(float time) const { return counted(written(time), {}); }
+  /// As written, from and to true coordinates.
+  Transform written(float time) const;
+  const std::vector<Key>& keys() const { return keys_; }
+  bool valid() const;
+  bool operator==(const AnimatedTransform& b) const { return keys_ == b.keys_ && factors_ == b.factors_; }
+
+  /// Bounds of a moving box over [begin, end], found by sampling the motion finely and widened by the largest step.
+  Bounds3 sweep(const Bounds3& box, float begin, float end) const;
+
+ private:
+  struct Parts {
+    std::array<double, 3> translation{};
+    std::array<double, 4> rotation{};  // quaternion x y z w
+    std::array<double, 9> stretch{};   // 3x3, row major
+  };
+  static Parts decompose(const Transform&);
+  Transform counted(const Transform& written) const { return counted(written, inner_); }
+  Transform counted(const Transform& written, const DoublePoint3& inner) const;
+
+  std::vector<Key> keys_;                   // as written
+  std::vector<Parts> parts_;                // one for each key when animated
+  std::vector<AnimatedTransform> factors_;  // of a product that is animated, the last to be applied first
+  DoublePoint3 outer_, inner_;
+  Transform still_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,353 @@
+#pragma once
+// How a class says what its members are, once: parser, saver, command line, schema, manual and tests derive from it.
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "etendue/describe/abi.h"
+#include "etendue/describe/registry.h"
+
+namespace etendue {
+
+// ---- options of a member ------------------------------------------------------------------------------------------
+
+inline Range range(double low, double high) { return {low, high, false}; }
+inline Range at_least(double low) { return {low, std::numeric_limits<double>::infinity(), false}; }
+inline Range more_than(double low) { return {low, std::numeric_limits<double>::infinity(), true}; }
+/// Marks a member that must be written.
+struct Required {};
+inline constexpr Required required{};
+/// Names for the values of an enum, in order: choices("both", "front") for values 0 and 1.
+template <class... S>
+std::vector<std::string> choices(S... names) {
+  return {std::string(names)...};
+}
+
+// ---- conversion between C++ types and values ----------------------------------------------------------------------
+
+namespace detail {
+
+// Defined in src/describe/conversion.cpp. All throw Error("…") at the value's place.
+bool to_bool(const Value&);
+double to_number(const Value&, const Member&);
+std::int64_t to_integer(const Value&, const Member&, std::int64_t low, std::int64_t high);
+std::string to_string(const Value&);
+FilePath to_file(const Value&);
+int to_choice(const Value&, const Member&);
+void to_numbers(const Value&, const Member&, double* out, int count);
+Color to_color(const Value&, const Member&);
+AnimatedTransform to_transform(const Value&);
+Ref<Component> to_component(const Value&, const Member&);
+/// Rows of `width` numbers appended through `push`; accepts flat and nested lists.
+void to_rows(const Value&, const Member&, int width, void (*push)(void* to, const double* row), void* to,
+             void (*reserve)(void* to, size_t rows));
+void to_integers(const Value&, const Member&, std::int64_t low, std::int64_t high, void (*push)(void* to, std::int64_t),
+                 void* to, void (*reserve)(void* to, size_t count));
+const Value::List& to_list(const Value&, Value::List& scratch);
+Value from_number(double, const Member&);
+Value from_numbers(const double*, int count, const Member&);
+
+template <class T>
+struct Convert;  // no member: a type the language does not have
+
+template <>
+struct Convert<bool> {
+  static constexpr Kind kind = Kind::boolean;
+  static void read(const Value& v, const Member&, bool& out) { out = to_bool(v); }
+  static Value write(bool v, const Member&) { return Value(v); }
+};
+
+template <class T>
+  requires(std::is_integral_v<T> && !std::is_same_v<T, bool>)
+struct Convert<T> {
+  static constexpr Kind kind = Kind::integer;
+  static constexpr std::int64_t low = std::is_signed_v<T> ? std::int64_t(std::numeric_limits<T>::min()) : 0;
+  static constexpr std::int64_t high = sizeof(T) == 8 ? (std::int64_t(1) << 53) : std::int64_t(std::numeric_limits<T>::max());
+  static void read(const Value& v, const Member& m, T& out) { out = T(to_integer(v, m, low, high)); }
+  static Value write(T v, const Member&) { return Value(Number{double(v)}); }
+};
+
+template <class T>
+  requires std::is_floating_point_v<T>
+struct Convert<T> {
+  static constexpr Kind kind = Kind::number;
+  static void read(const Value& v, const Member& m, T& out) { out = T(to_number(v, m)); }
+  static Value write(T v, const Member& m) { return from_number(double(v), m); }
+};
+
+template <class T>
+  requires std::is_enum_v<T>
+struct Convert<T> {
+  static constexpr Kind kind = Kind::choice;
+  static void read(const Value& v, const Member& m, T& out) { out = T(to_choice(v, m)); }
+  static Value write(T v, const Member& m) { return Value(m.choices.at(size_t(v))); }
+};
+
+template <>
+struct Convert<std::string> {
+  static constexpr Kind kind = Kind::string;
+  static void read(const Value& v, const Member&, std::string& out) { out = to_string(v); }
+  static Value write(const std::string& v, const Member&) { return Value(v); }
+};
+
+template <>
+struct Convert<FilePath> {
+  static constexpr Kind kind = Kind::file;
+  static void read(const Value& v, const Member&, FilePath& out) { out = to_file(v); }
+  static Value write(const FilePath& v, const Member&) { return v.empty() ? Value(std::string()) : Value(v); }
+};
+
+template <class T, Kind K, int N>
+struct ConvertTuple {
+  static constexpr Kind kind = K;
+  static constexpr int width = N;
+  using Scalar = decltype(T::x);
+  static T make(const double* f) {
+    if constexpr (N == 2)
+      return T{Scalar(f[0]), Scalar(f[1])};
+    else
+      return T{Scalar(f[0]), Scalar(f[1]), Scalar(f[2])};
+  }
+  static void read(const Value& v, const Member& m, T& out) {
+    double f[N];
+    to_numbers(v, m, f, N);
+    out = make(f);
+  }
+  static void get(const T& v, double* f) {
+    f[0] = double(v.x);
+    f[1] = double(v.y);
+    if constexpr (N == 3) f[2] = double(v.z);
+  }
+  static Value write(const T& v, const Member& m) {
+    double f[N];
+    get(v, f);
+    return from_numbers(f, N, m);
+  }
+};
+template <>
+struct Convert<Vector2> : ConvertTuple<Vector2, Kind::vector2, 2> {};
+template <>
+struct Convert<Point2> : ConvertTuple<Point2, Kind::vector2, 2> {};
+template <>
+struct Convert<Vector3> : ConvertTuple<Vector3, Kind::vector3, 3> {};
+template <>
+struct Convert<Point3> : ConvertTuple<Point3, Kind::point3, 3> {};
+template <>
+struct Convert<DoublePoint3> : ConvertTuple<DoublePoint3, Kind::point3, 3> {};
+template <>
+struct Convert<Normal3> : ConvertTuple<Normal3, Kind::normal3, 3> {};
+
+template <>
+struct Convert<Color> {
+  static constexpr Kind kind = Kind::color;
+  static void read(const Value& v, const Member& m, Color& out) { out = to_color(v, m); }
+  static Value write(const Color& v, const Member&) { return v ? Value(v) : Value(); }
+};
+
+template <>
+struct Convert<AnimatedTransform> {
+  static constexpr Kind kind = Kind::transform;
+  static void read(const Value& v, const Member&, AnimatedTransform& out) { out = to_transform(v); }
+  static Value write(const AnimatedTransform& v, const Member&) {
+    return v.animated() ? Value(AnimatedTransform(v.keys())) : Value(v.keys().front().transform);
+  }
+};
+
+template <class C>
+struct Convert<Ref<C>> {
+  static constexpr Kind kind = Kind::component;
+  static void read(const Value& v, const Member& m, Ref<C>& out) { out = ref_cast<C>(to_component(v, m)); }
+  static Value write(const Ref<C>& v, const Member&) { return v ? Value(Ref<Component>(v)) : Value(); }
+};
+
+template <class T>
+concept Tuple = requires { Convert<T>::width; };
+
+template <class T>
+struct Convert<std::vector<T>> {
+  static constexpr Kind kind = Convert<T>::kind;
+  using List = std::vector<T>;
+  static void reserve(void* to, size_t n) { static_cast<List*>(to)->reserve(n); }
+
+  static void read(const Value& v, const Member& m, List& out) {
+    List list;
+    if constexpr (Tuple<T>) {
+      to_rows(
+          v, m, Convert<T>::width, [](void* to, const double* f) { static_cast<List*>(to)->push_back(Convert<T>::make(f)); },
+          &list, reserve);
+    } else if constexpr (std::is_floating_point_v<T>) {
+      to_rows(v, m, 1, [](void* to, const double* f) { static_cast<List*>(to)->push_back(T(*f)); }, &list, reserve);
+    } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+      to_integers(
+          v, m, Convert<T>::low, Convert<T>::high, [](void* to, std::int64_t i) { static_cast<List*>(to)->push_back(T(i)); },
+          &list, reserve);
+    } else {
+      Value::List scratch;
+      for (const Value& item : to_list(v, scratch)) Convert<T>::read(item, m, list.emplace_back());
+    }
+    out = std::move(list);
+  }
+
+  static Value write(const List& v, const Member& m) {
+    if constexpr (Tuple<T>) {
+      Numbers n;
+      n.width = Convert<T>::width;
+      n.values.reserve(v.size() * size_t(n.width));
+      for (const T& item : v) {
+        double f[3];
+        Convert<T>::get(item, f);
+        n.values.insert(n.values.end(), f, f + n.width);
+      }
+      return Value(std::move(n));
+    } else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+      Numbers n;
+      n.values.assign(v.begin(), v.end());
+      return Value(std::move(n));
+    } else {
+      Value::List list;
+      for (const T& item : v) list.push_back(Convert<T>::write(item, m));
+      return Value(std::move(list));
+    }
+  }
+};
+
+template <class T>
+struct IsVector : std::false_type {};
+template <class T>
+struct IsVector<std::vector<T>> : std::true_type {};
+
+/// The bare name of a class, from the compiler's name for it.
+std::string bare_class_name(const std::type_info&);
+
+template <class T>
+std::string referred_class() {
+  return {};
+}
+template <class T>
+  requires requires { typename T::Referred; }
+std::string referred_class() {
+  return bare_class_name(typeid(typename T::Referred));
+}
+template <class T>
+struct Referee {};
+template <class C>
+struct Referee<Ref<C>> {
+  using Referred = C;
+};
+template <>
+struct Referee<Color> {};
+template <class C>
+struct Referee<std::vector<C>> : Referee<C> {};
+
+template <auto P>
+struct PointerTo;
+template <class C, class T, T C::* P>
+struct PointerTo<P> {
+  using Class = C;
+  using Type = T;
+};
+
+}  // namespace detail
+
+// ---- the description itself ---------------------------------------------------------------------------------------
+
+/// Filled by `static void describe(Description<T>&)` of a component class.
+template <class T>
+class Description {
+ public:
+  explicit Description(ClassInfo& info) : info_(info) {}
+
+  /// One sentence on what the class is, and where it comes from (a paper, a standard), if anywhere.
+  Description& summary(std::string text, std::string source = {}) {
+    info_.summary = std::move(text);
+    info_.source = std::move(source);
+    return *this;
+  }
+
+  /// A member: its name in files, its unit ("1" for a pure number, "" for what is no number), what it is, and any of
+  /// range(), at_least(), more_than(), choices(), required, Effect. The member holds its value in this unit.
+  template <auto P, class... Options>
+  Description& member(std::string name, std::string unit, std::string text, Options... options) {
+    using Type = typename detail::PointerTo<P>::Type;
+    Member m;
+    m.name = std::move(name);
+    m.unit = std::move(unit);
+    m.text = std::move(text);
+    m.kind = detail::Convert<Type>::kind;
+    m.list = detail::IsVector<Type>::value;
+    m.in_double = std::is_same_v<Type, DoublePoint3> || std::is_same_v<Type, std::vector<DoublePoint3>>;
+    m.component_class = detail::referred_class<detail::Referee<Type>>();
+    m.owner = &info_;
+    m.get = [](const Component& c, const Member& self) {
+      return detail::Convert<Type>::write(static_cast<const T&>(c).*P, self);
+    };
+    m.store = [](Component& c, const Member& self, const Value& v) {
+      detail::Convert<Type>::read(v, self, static_cast<T&>(c).*P);
+    };
+    (option(m, std::move(options)), ...);
+    info_.members.push_back(std::move(m));
+    return *this;
+  }
+
+  /// A plain value where this class's interface is expected becomes an object of this class with that member set.
+  Description& literal(std::string member) {
+    info_.literal = std::move(member);
+    return *this;
+  }
+
+ private:
+  static void option(Member& m, Range r) { m.range = r; }
+  static void option(Member& m, Effect e) { m.effect = e; }
+  static void option(Member& m, Required) { m.required = true; }
+  static void option(Member& m, std::vector<std::string> names) { m.choices = std::move(names); }
+
+  ClassInfo& info_;
+};
+
+// ---- registration -------------------------------------------------------------------------------------------------
+
+/// A node that waits for the registry. Interfaces name themselves `Interface` and their own parent `Parent`;
+/// concrete classes inherit the former, which makes it their parent.
+struct RegistrationNode {
+  const std::type_info& type;
+  const std::type_info& parent;
+  void (*describe)(ClassInfo&);
+  Ref<Component> (*create)();
+  RegistrationNode* next;
+};
+
+void enlist(RegistrationNode&) noexcept;
+
+template <class T>
+const std::type_info& parent_type() {
+  if constexpr (std::is_same_v<T, Component>)
+    return typeid(void);
+  else if constexpr (std::is_same_v<T, typename T::Interface>)
+    return typeid(typename T::Parent);
+  else
+    return typeid(typename T::Interface);
+}
+
+/// `static const Register<PhongShader> registered;` makes a class known. It only links a node into a list.
+template <class T>
+class Register {
+ public:
+  Register() noexcept { enlist(node_); }
+
+ private:
+  static Ref<Component> (*factory())() {
+    if constexpr (std::is_abstract_v<T>)
+      return nullptr;
+    else
+      return [] { return Ref<Component>(make<T>()); };
+  }
+  static void describe(ClassInfo& info) {
+    Description<T> d(info);
+    T::describe(d);
+  }
+  static inline RegistrationNode node_{typeid(T), parent_type<T>(), describe, factory(), nullptr};
+};
+
+}  // namespace etendue

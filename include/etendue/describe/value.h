@@ -1,0 +1,98 @@
+#pragma once
+// A value of the render description language, on its way into or out of a component's member.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "etendue/core/error.h"
+#include "etendue/core/ref.h"
+#include "etendue/core/spectral_function.h"
+#include "etendue/core/transform.h"
+
+namespace etendue {
+
+class Component;
+
+enum class Dimension : std::uint8_t {
+  none,
+  length,
+  angle,
+  temperature,
+  power,
+  luminous_flux,
+  luminous_intensity,
+  illuminance,
+  time
+};
+
+/// A unit the language knows: `value in base units = factor * number`. Base units: m, rad, K, W, lm, cd, lx, s.
+struct Unit {
+  std::string_view name;
+  Dimension dimension;
+  double factor;
+};
+
+/// Null when no unit has this name.
+const Unit* find_unit(std::string_view name);
+const std::vector<Unit>& units();
+std::string_view name(Dimension);
+/// "a length", "an angle"
+std::string with_article(std::string_view);
+
+/// A number with the dimension its unit gave it, in base units; `none` for a plain number.
+struct Number {
+  double value = 0;
+  Dimension dimension = Dimension::none;
+  bool operator==(const Number&) const = default;
+};
+
+/// A list of numbers, or of rows of 2 to 4 numbers each, packed: lists of millions stay small. A vector such as
+/// [1, 2, 3] is three rows of width 1; [[1,2,3],[4,5,6]] is two rows of width 3. In base units.
+struct Numbers {
+  std::vector<double> values;
+  int width = 1;
+  Dimension dimension = Dimension::none;
+  size_t rows() const { return values.size() / size_t(width); }
+  bool operator==(const Numbers&) const = default;
+};
+
+/// A string that names a file, and the folder it is relative to (that of the file which named it).
+struct FilePath {
+  std::string text;    ///< as written
+  std::string folder;  ///< empty: the working folder
+  /// The path to open.
+  std::string resolved() const;
+  bool empty() const { return text.empty(); }
+  bool operator==(const FilePath& b) const { return resolved() == b.resolved(); }
+};
+
+struct Value {
+  using List = std::vector<Value>;
+  /// monostate is `none`.
+  std::variant<std::monostate, bool, Number, std::string, Numbers, FilePath, Color, Transform, AnimatedTransform,
+               Ref<Component>, List>
+      data;
+  Location location;
+  std::string folder;  ///< of the file a string was written in
+
+  Value() = default;
+  template <class T>
+  explicit Value(T v, Location at = {}) : data(std::move(v)), location(at) {}
+
+  template <class T>
+  const T* as() const {
+    return std::get_if<T>(&data);
+  }
+  bool none() const { return data.index() == 0; }
+  /// "a number [length]", "a list", … for messages.
+  std::string kind() const;
+};
+
+/// Whether two values are equal; components are equal when their classes and all their members are (sharing aside).
+bool equal(const Value&, const Value&);
+inline bool operator==(const Value& a, const Value& b) { return equal(a, b); }
+
+}  // namespace etendue

@@ -1,0 +1,50 @@
+// etendue classes [NAME]: what is known of the classes a render description can contain.
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "describe/words.h"
+#include "etendue/describe/reflection.h"
+
+namespace etendue {
+
+namespace {
+
+struct ClassesOptions {
+  std::string name;
+  bool json = false;
+  std::vector<std::string> plugins;
+};
+
+int show_classes(const ClassesOptions& options) {
+  Registry& registry = Registry::instance();
+  for (const std::string& plugin : options.plugins) registry.load_plugin(plugin);
+  if (options.name.empty()) {
+    fmt::print("{}{}", options.json ? classes_json() : class_tree_text(), options.json ? "\n" : "");
+    return exit_status::done;
+  }
+  const ClassInfo* info = registry.find(options.name);
+  if (!info) throw Error("there is no class '" + options.name + "'" + meant_class(options.name));
+  fmt::print("{}{}", options.json ? class_json(*info) : class_text(*info), options.json ? "\n" : "");
+  return exit_status::done;
+}
+
+}  // namespace
+
+void add_classes_command(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand("classes", "List all classes, or show one with its members");
+  auto options = std::make_shared<ClassesOptions>();
+  command->add_option("NAME", options->name, "A class, such as PathTracer, or an interface, such as Shader")->type_name("");
+  command->add_flag("--json", options->json, "As JSON, for programs");
+  command->add_option("--plugin", options->plugins, "Load a shared library of further classes; may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command->footer(
+      "\nExamples\n"
+      "  etendue classes                    the tree of all classes\n"
+      "  etendue classes Shader             all shaders\n"
+      "  etendue classes PathTracer         its members: type, unit, range, default, meaning");
+  command->callback([options, &run] { run = [options] { return show_classes(*options); }; });
+}
+
+}  // namespace etendue

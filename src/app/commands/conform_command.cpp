@@ -1,0 +1,148 @@
+// etendue conform [CLASS...]: whether parts do what their interfaces promise.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+
+#include "app/commands.h"
+#include "app/scene_options.h"
+#include "check/conform/conformance.h"
+#include "files/output_files.h"
+#include "files/whole_file.h"
+
+namespace etendue {
+
+namespace {
+
+struct ConformOptions {
+  std::vector<std::string> classes, plugins;
+  bool quick = false, thorough = false, parts = false;
+  int drawn = 3, threads = 0;
+  std::uint64_t seed = 1;
+  std::string report;
+
+  void add_to(CLI::App& command);
+  std::string command_line() const;
+};
+
+void ConformOptions::add_to(CLI::App& command) {
+  command.add_option("CLASS", classes, "Classes, such as PhongShader, or interfaces, such as Shader; none: all")->type_name("");
+  command.add_option("--plugin", plugins, "Load a shared library of further classes; may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  CLI::Option* quick_flag = command.add_flag("--quick", quick, "A quarter of the samples");
+  command.add_flag("--thorough", thorough, "Ten times the samples")->excludes(quick_flag);
+  command.add_option("--drawn", drawn, "How many parts of random members to try of each class, beside the one with defaults")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(CLI::Range(0, 100000).description(""));
+  command.add_option("--seed", seed, "Draw other parts and samples")->capture_default_str()->type_name("N");
+  command.add_option("--report", report, "Write all outcomes as an HTML page")->type_name("FILE");
+  command.add_flag("--parts", parts, "Print the parts that were tried");
+  command.add_option("--threads", threads, "Threads to use; 0: all cores")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""));
+}
+
+std::string ConformOptions::command_line() const {
+  std::string text = "etendue conform";
+  for (const std::string& name : classes) text += " " + shell_quoted(name);
+  for (const std::string& plugin : plugins) text += " --plugin " + shell_quoted(plugin);
+  if (quick) text += " --quick";
+  if (thorough) text += " --thorough";
+  return text + fmt::format(" --drawn {} --seed {}", drawn, seed);
+}
+
+/// Each line set in, and no line empty.
+std::string set_in(const std::string& text, const std::string& margin) {
+  std::string out;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    if (end > begin) out += margin + text.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  return out;
+}
+
+/// Failures, and what could not be tried, in full; the rest in one line for each class.
+void print(const std::vector<conform::Outcome>& outcomes, bool parts) {
+  struct Tally {
+    int passed = 0, failed = 0, not_tried = 0;
+  };
+  std::map<std::string, Tally> classes;
+  Tally all;
+  for (const conform::Outcome& o : outcomes)
+    for (Tally* t : {&classes[o.class_name], &all})
+      ++(o.result == conform::Result::passed ? t->passed : o.result == conform::Result::failed ? t->failed : t->not_tried);
+
+  const std::string* last_part = nullptr;
+  for (const auto& [name, tally] : classes) {
+    fmt::print("{:32} {:4} passed{}{}\n", name, tally.passed, tally.failed > 0 ? fmt::format(", {} FAILED", tally.failed) : "",
+               tally.not_tried > 0 ? fmt::format(", {} not tried", tally.not_tried) : "");
+    for (const conform::Outcome& o : outcomes) {
+      if (o.class_name != name) continue;
+      if (parts && (!last_part || *last_part != o.part)) fmt::print("{}", set_in(o.part, "    "));
+      last_part = &o.part;
+      if (o.result == conform::Result::passed) continue;
+      fmt::print("  {}: {}\n{}", o.result == conform::Result::failed ? "FAILED" : "not tried", o.check,
+                 set_in(o.detail, "    "));
+      if (!parts) fmt::print("{}", set_in(o.part, "    | "));
+    }
+  }
+  fmt::print("{} classes, {} checks passed, {} failed, {} not tried\n", classes.size(), all.passed, all.failed, all.not_tried);
+}
+
+int run_conform(const ConformOptions& options) {
+  for (const std::string& plugin : options.plugins) Registry::instance().load_plugin(plugin);
+  if (!options.report.empty()) {
+    OutputFiles files;
+    files.add(options.report, {intern("--report"), 0, 0});
+    files.raise();
+  }
+  conform::Options asked;
+  asked.classes = options.classes;
+  asked.effort = options.quick      ? conform::Effort::quick
+                 : options.thorough ? conform::Effort::thorough
+                                    : conform::Effort::standard;
+  asked.drawn = options.drawn;
+  asked.seed = options.seed;
+  asked.threads = options.threads;
+  const bool show = isatty(STDERR_FILENO);
+  if (show)
+    asked.progress = [](const std::string& name, int done, int of) {
+      fmt::print(stderr, "\r\x1b[K[{}/{}] {}", done, of, name);
+      std::fflush(stderr);
+    };
+  const std::vector<conform::Outcome> outcomes = conform::conform(asked);
+  if (show) fmt::print(stderr, "\r\x1b[K");
+  print(outcomes, options.parts);
+  if (!options.report.empty()) write_whole_file(options.report, conform::html_report(outcomes, options.command_line()));
+  const auto any = [&](conform::Result result) {
+    return std::ranges::find(outcomes, result, &conform::Outcome::result) != outcomes.end();
+  };
+  if (any(conform::Result::failed)) return exit_status::failed;
+  if (any(conform::Result::passed)) return exit_status::done;
+  fmt::print(stderr, "nothing was tested, so nothing is known: no check is made of what was named, or none could be\n");
+  return exit_status::failed;
+}
+
+}  // namespace
+
+void add_conform_command(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand("conform", "Test whether parts, plugins' too, do what their interfaces promise");
+  auto options = std::make_shared<ConformOptions>();
+  options->add_to(*command);
+  command->footer(
+      "\nExamples\n"
+      "  etendue conform                                        everything\n"
+      "  etendue conform Shader --quick                         all shaders, a quick look\n"
+      "  etendue conform GoldShader --plugin ./libgold.so --drawn 20\n"
+      "  etendue conform --thorough --report conform.html\n"
+      "\nExit status: 0 nothing failed, 1 something did or nothing was tested, 2 bad input. docs/conform.md tells what is "
+      "tested.");
+  command->callback([options, &run] { run = [options] { return run_conform(*options); }; });
+}
+
+}  // namespace etendue

@@ -1,0 +1,97 @@
+// etendue image merge: one picture of parts rendered apart.
+
+#include "image_merge.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "app/render_options.h"
+#include "app/text.h"
+#include "etendue/language/language.h"
+#include "files/input_files.h"
+#include "render/checkpoint.h"
+
+namespace etendue {
+
+namespace {
+
+struct MergeOptions {
+  std::vector<std::string> parts, outputs;
+  std::string checkpoint;
+  bool quiet = false;
+};
+
+/// Says what no part holds of the samples that were wanted.
+void report_gaps(const Checkpoint& merged) {
+  std::uint32_t end = merged.samples_wanted;
+  if (!merged.done.empty()) end = std::max(end, merged.done.back().end);
+  const std::vector<IndexRange> gaps = missing(merged.done, {0, end});
+  if (gaps.empty()) return;
+  std::string passes;
+  for (const auto [begin, last] : gaps) {
+    const std::uint32_t step = merged.samples_per_pass;
+    passes += fmt::format("{}{}:{}", passes.empty() ? "" : ", ", begin / step, (last + step - 1) / step);
+  }
+  fmt::print(stderr, "note: {} (--passes {}) are in none of the parts; the picture is made of the {} others\n",
+             samples_text(gaps), passes, count(merged.done));
+}
+
+int merge(const MergeOptions& options) {
+  for (const std::string& part : options.parts) note_input(part);
+  const Checkpoint merged = merge_checkpoints(options.parts);
+  if (merged.done.empty()) throw Error("the parts hold no samples");
+  const Ref<Job> job = job_with_picture(merged);
+  choose_outputs(*job, options.outputs);
+  const auto file = merged.metadata.find("file");
+  const std::string stem = stem_of(file == merged.metadata.end() ? "merged" : file->second);
+  OutputFiles files;
+  add_outputs(*job, stem, files);
+  if (!options.checkpoint.empty()) files.add(options.checkpoint, {intern("--checkpoint"), 0, 0});
+  files.raise();
+  report_gaps(merged);
+
+  std::vector<Error> errors;
+  const std::vector<std::string> written = write_each_output(*job, stem, errors);
+  if (!options.checkpoint.empty()) {
+    try {
+      write_checkpoint(merged, options.checkpoint);
+    } catch (const Error& error) {
+      errors.push_back(error);
+    }
+  }
+  if (!options.quiet) {
+    for (const std::string& path : written) fmt::print("{}\n", path);
+    fmt::print("{} samples per pixel of {} part{}, rendered in {}\n", count(merged.done), options.parts.size(),
+               options.parts.size() == 1 ? "" : "s", duration_text(merged.seconds));
+    std::fflush(stdout);
+  }
+  for (const Error& error : errors) fmt::print(stderr, "{}\n", show(error));
+  return errors.empty() ? exit_status::done : exit_status::failed;
+}
+
+}  // namespace
+
+void add_image_merge(CLI::App& image, Run& run) {
+  CLI::App* command = image.add_subcommand("merge", "Make one picture of checkpoints that hold different passes of a render");
+  auto options = std::make_shared<MergeOptions>();
+  command->add_option("PART", options->parts, "Checkpoints of 'etendue render --passes', in any order")
+      ->required()
+      ->type_name("");
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "Write to this file instead of those the render description names; may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command->add_option("--checkpoint", options->checkpoint, "Write a checkpoint of all parts together, to go on from")
+      ->type_name("FILE");
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors and notes");
+  command->footer(
+      "\nExample\n"
+      "  etendue render box.etd --passes 0:8 --checkpoint a.part      on one machine\n"
+      "  etendue render box.etd --passes 8:16 --checkpoint b.part     on another\n"
+      "  etendue image merge a.part b.part -o box.exr -o box.png");
+  command->callback([options, &run] { run = [options] { return merge(*options); }; });
+}
+
+}  // namespace etendue

@@ -1,0 +1,186 @@
+// etendue render FILE: from a description to pictures.
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/advice.h"
+#include "app/fireflies.h"
+#include "app/interruption.h"
+#include "app/progress_display.h"
+#include "app/render_options.h"
+#include "app/replay.h"
+#include "app/scene_warnings.h"
+#include "app/text.h"
+#include "etendue/language/language.h"
+#include "files/input_files.h"
+#include "files/whole_file.h"
+#include "render/checkpoint.h"
+
+namespace etendue {
+
+namespace {
+
+int replay(Job& job, const RenderOptions& options) {
+  int pixel[2];
+  parse_integers(options.pixel, ',', 2, pixel, "--pixel", "X,Y");
+  if (!options.replay.empty()) {
+    note_inputs_of(job);
+    OutputFiles files;
+    files.add(options.replay, {intern("--replay"), 0, 0});
+    files.raise();
+  }
+  prepare_tree(job);
+  const PixelReplay paths = options.sample ? replay_sample(job, pixel[0], pixel[1], *options.sample)
+                                           : replay_pixel(job, pixel[0], pixel[1], size_t(options.paths));
+  const std::string command = options.picture_command();
+  if (!options.replay.empty()) {
+    const std::string json = replay_json(job, paths, options.file, command);
+    write_whole_file(options.replay, json.data(), json.size());
+  }
+  if (!options.quiet) fmt::print("{}", replay_text(paths, command));
+  return exit_status::done;
+}
+
+std::string_view kind_text(BadSample::Kind kind) {
+  switch (kind) {
+    case BadSample::Kind::not_a_number: return "not a number";
+    case BadSample::Kind::infinite: return "infinite";
+    case BadSample::Kind::negative: return "negative";
+  }
+  return "";
+}
+
+void report_bad_samples(const ImageBuffer& image, const RenderOptions& options) {
+  if (image.bad_samples() == 0) return;
+  fmt::print(stderr, "{} of {} samples were not finite and non-negative; they count as black. To see the path of one:\n",
+             grouped(image.bad_samples()), grouped(image.samples()));
+  constexpr size_t most = 5;
+  const auto& first = image.first_bad_samples();
+  for (size_t i = 0; i < std::min(first.size(), most); ++i) {
+    const BadSample& bad = first[i];
+    fmt::print(stderr, "  {} --pixel {},{} --sample {}    # {}\n", options.picture_command(), bad.x, bad.y, bad.sample,
+               kind_text(bad.kind));
+  }
+}
+
+std::string reason_text(Ended ended) {
+  switch (ended) {
+    case Ended::samples: return "";
+    case Ended::time: return ", stopped by the time limit";
+    case Ended::error: return ", stopped by the error limit";
+    case Ended::interrupted: return ", interrupted";
+    case Ended::aborted: return ", aborted";
+  }
+  return "";
+}
+
+/// What was rendered of the whole, when not all of it was asked for.
+std::string passes_text(const Job& job) {
+  if (!job.passes) return "";
+  const auto step = std::int64_t(job.samples_per_pass());
+  return fmt::format("passes {}:{} of 0:{}, {} samples per pixel each\n", job.passes->begin, job.passes->end,
+                     (job.renderer->samples + step - 1) / step, step);
+}
+
+void report_result(const Progress& progress, Ended ended, const std::vector<std::string>& written, ProgressDisplay::Kind kind,
+                   const Job& job, const RenderOptions& options) {
+  if (kind == ProgressDisplay::Kind::json) {
+    nlohmann::ordered_json json = {{"event", "done"},
+                                   {"outputs", written},
+                                   {"seconds", progress.seconds},
+                                   {"samples", progress.samples},
+                                   {"samples_per_second", progress.samples_per_second},
+                                   {"bad_samples", job.image->bad_samples()},
+                                   {"ended", name(ended)}};
+    if (!job.checkpoint_file.empty()) json["checkpoint"] = job.checkpoint_file;
+    if (job.passes) json["samples_per_pass"] = job.samples_per_pass();
+    fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  } else if (!options.quiet) {
+    for (const std::string& path : written) fmt::print("{}\n", path);
+    fmt::print("{} samples per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, duration_text(progress.seconds),
+               progress.samples_per_second * 1e-6, reason_text(ended), passes_text(job));
+    if (ended == Ended::interrupted && !job.checkpoint_file.empty()) fmt::print("to go on: {}\n", options.resume_command());
+  }
+  std::fflush(stdout);
+}
+
+/// All that will be written, before hours are spent on it.
+void require_outputs(const Job& job, const RenderOptions& options) {
+  note_inputs_of(job);
+  OutputFiles files;
+  add_outputs(job, stem_of(options.file), files);
+  const std::string checkpoint_option = !options.continue_file.empty() ? "--continue"
+                                        : options.checkpoint.empty()   ? "--resume"
+                                                                       : "--checkpoint";
+  if (!job.checkpoint_file.empty()) files.add(job.checkpoint_file, {intern(checkpoint_option), 0, 0}, options.resumed_file());
+  files.raise();
+}
+
+int render(const RenderOptions& options) {
+  const Ref<Job> job = options.load();
+  if (!options.pixel.empty()) return replay(*job, options);
+
+  // A checkpoint remembers the outputs of the file, whatever -o says; a part of the passes is not what they are for.
+  const std::vector<Ref<Output>> described = job->outputs;
+  const bool no_outputs = job->passes && options.outputs.empty();
+  choose_outputs(*job, options.outputs);
+  if (no_outputs) job->outputs.clear();
+  const std::vector<Ref<Output>> chosen = job->outputs;
+  require_outputs(*job, options);
+  prepare_tree(*job);
+  show_warnings(scene_warnings(*job));
+  advise(*job);
+  if (options.fireflies > 0) job->image->keep_largest(size_t(options.fireflies));
+
+  const ProgressDisplay::Kind kind = ProgressDisplay::kind_for(options.progress, options.quiet);
+  ProgressDisplay display(kind, options.open_ended());
+  const std::string resumed = options.resumed_file();
+  Ended ended;
+  std::vector<Error> errors;
+  std::vector<std::string> written;
+  {
+    const Interruption interruption(*job);
+    job->on_progress = [&](const Progress& progress) { display.show(progress); };
+    job->outputs = described;
+    ended = resumed.empty() ? job->render() : job->resume(resumed);
+    job->outputs = chosen;
+    display.clear();
+    if (ended != Ended::aborted) written = write_each_output(*job, stem_of(options.file), errors);
+  }
+
+  if (!job->checkpoint_failure().empty()) errors.emplace_back(job->checkpoint_failure());
+  if (!written.empty()) show_warnings(picture_warnings(*job));
+  report_bad_samples(*job->image, options);
+  report_result(display.last(), ended, written, kind, *job, options);
+  if (options.fireflies > 0 && ended != Ended::aborted)
+    report_fireflies(*job, options.picture_command(), kind == ProgressDisplay::Kind::json ? stderr : stdout);
+  for (const Error& error : errors) fmt::print(stderr, "{}\n", show(error));
+  if (!errors.empty()) return exit_status::failed;
+  return ended == Ended::interrupted || ended == Ended::aborted ? exit_status::interrupted : exit_status::done;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand("render", "Render a file to the pictures it names");
+  auto options = std::make_shared<RenderOptions>();
+  options->add_to(*command);
+  command->footer(
+      "\nExamples\n"
+      "  etendue render scenes/cornell_box.etd                    as the file says\n"
+      "  etendue render box.etd -o box.png -o box.exr             to these files instead\n"
+      "  etendue render box.etd -D samples=16 --size 160x120      with a param replaced, small\n"
+      "  etendue render box.etd --set renderer.max_depth=2        direct light only\n"
+      "  etendue render box.etd --time 5m                         five minutes' worth of samples\n"
+      "  etendue render box.etd --pixel 17,40 --sample 3          the path of one sample, vertex by vertex\n"
+      "  etendue render box.etd --pixel 17,40                     the brightest paths of a pixel\n"
+      "  etendue render box.etd --fireflies 10                    and where the brightest samples are\n"
+      "  etendue render box.etd --continue box.checkpoint         begin, or go on after whatever stopped it\n"
+      "  etendue render box.etd --passes 0:8 --checkpoint a.part  a part, for 'etendue image merge'\n"
+      "\nThe first Ctrl-C ends the render after the current pass and writes what there is, a second one aborts it.\n"
+      "The picture depends on the file and the seed alone, never on the number of threads.");
+  command->callback([options, &run] { run = [options] { return render(*options); }; });
+}
+
+}  // namespace etendue

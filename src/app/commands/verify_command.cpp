@@ -1,0 +1,202 @@
+// etendue verify FILE: whether algorithms agree.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "app/interruption.h"
+#include "app/scene_options.h"
+#include "app/text.h"
+#include "check/verify/report.h"
+#include "etendue/language/language.h"
+#include "files/input_files.h"
+#include "files/output_files.h"
+#include "files/whole_file.h"
+#include "render/checkpoint.h"
+#include "verify_text.h"
+
+namespace etendue {
+
+namespace {
+
+struct VerifyOptions : SceneOptions {
+  std::string renderers, samples, time, seed, size, report;  ///< as written; empty: as the file says
+  int passes = 16, lengths = 8, tile = 0, threads = 0;
+  double significance = 0.01, inject = 1;
+  bool force = false, json = false, quiet = false;
+
+  void add_to(CLI::App& command);
+  Ref<Job> load() const;
+  std::string command_line() const;
+};
+
+void VerifyOptions::add_to(CLI::App& command) {
+  SceneOptions::add_to(command);
+  command
+      .add_option(
+          "--renderers", renderers,
+          "Compare these: classes, or expressions such as 'PathTracer{next_event: false}', with commas between. Without: "
+          "the file's own and all others that find all the light of the scene")
+      ->type_name("A,B,…");
+  command.add_flag("--force", force, "Compare the named renderers even if they miss light that the scene has");
+  command.add_option("--samples", samples, "Samples per pixel of each renderer, in all passes together")->type_name("N");
+  command.add_option("--passes", passes, "Independent passes of each renderer")
+      ->capture_default_str()
+      ->type_name("K")
+      ->check(CLI::Range(8, 10000).description(""));
+  command
+      .add_option(
+          "--time", time,
+          "As many passes as this time takes, for each renderer (at least 8); --samples over --passes are the size of one")
+      ->type_name("TIME");
+  command.add_option("--lengths", lengths, "Compare path lengths from 1 to this one by one, and all longer ones together")
+      ->capture_default_str()
+      ->type_name("L")
+      ->check(CLI::Range(0, 63).description(""));
+  command.add_option("--tile", tile, "Side of the tiles compared [pixels]; 0: 32, less in small pictures")
+      ->type_name("PX")
+      ->check(CLI::Range(0, 65536).description(""));
+  command.add_option("--significance", significance, "Probability of reporting any disagreement where there is none")
+      ->capture_default_str()
+      ->type_name("P")
+      ->check(CLI::Range(1e-12, 0.5).description(""));
+  command.add_option("--report", report, "Write a report with maps of the differences, one HTML file")->type_name("FILE");
+  command.add_flag("--json", json, "Print everything as JSON");
+  command.add_option("--seed", seed, "Choose other random numbers")->type_name("N");
+  command.add_option("--size", size, "Size of the picture in pixels")->type_name("WxH");
+  command.add_option("--threads", threads, "Threads to use; 0: all cores")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""));
+  command.add_flag("--quiet", quiet, "Print nothing but errors: the exit status tells");
+  command.add_option("--inject", inject, "Self test: multiply what the first renderer measures, to see that it is noticed")
+      ->type_name("FACTOR")
+      ->group("Self test")
+      ->check(CLI::Range(0.0, 1e6).description(""));
+}
+
+Ref<Job> VerifyOptions::load() const {
+  Ref<Job> job = SceneOptions::load();
+  const auto change = [&](const char* path, const std::string& expression) {
+    if (!expression.empty()) set_path(*job, path, expression);
+  };
+  change("renderer.samples", samples);
+  change("seed", seed);
+  if (!size.empty()) {
+    int n[2];
+    parse_integers(size, 'x', 2, n, "--size", "WxH, such as 640x480");
+    change("image.width", std::to_string(n[0]));
+    change("image.height", std::to_string(n[1]));
+  }
+  job->threads = threads;
+  return job;
+}
+
+std::string VerifyOptions::command_line() const {
+  std::string text = "etendue verify" + SceneOptions::command_line();
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) text += fmt::format(" {} {}", option, shell_quoted(value));
+  };
+  const VerifyOptions defaults;
+  const auto add_number = [&](const char* option, double value, double by_default) {
+    if (value != by_default) add(option, fmt::format("{}", value));
+  };
+  add("--renderers", renderers);
+  if (force) text += " --force";
+  add("--samples", samples);
+  add_number("--passes", passes, defaults.passes);
+  add("--time", time);
+  add_number("--lengths", lengths, defaults.lengths);
+  add_number("--tile", tile, defaults.tile);
+  add_number("--significance", significance, defaults.significance);
+  add("--seed", seed);
+  add("--size", size);
+  add_number("--inject", inject, defaults.inject);
+  return text;
+}
+
+/// The tone map of the report's pictures: the job's, unless that leaves them as they are.
+Ref<ToneMap> display_tone_map(const Job& job) {
+  if (job.tone_map && job.tone_map->clips()) return job.tone_map;
+  Ref<ToneMap> map = make<Job>()->tone_map;
+  prepare_tree(*map);
+  return map;
+}
+
+verify::Collected collect(Job& job, const verify::Choice& choice, const VerifyOptions& options) {
+  verify::CollectOptions collecting;
+  collecting.passes = options.passes;
+  collecting.samples = std::max(1, job.renderer->samples / options.passes);
+  collecting.inject = options.inject;
+  if (!options.time.empty()) collecting.seconds = parse_duration(options.time, "--time");
+  const bool show = !options.quiet && isatty(STDERR_FILENO);
+  const Interruption interruption(job);
+  collecting.go_on = [&](size_t renderer, size_t passes) {
+    if (show) {
+      fmt::print(stderr, "\r\x1b[K[{}/{}] {}: {} passes", renderer + 1, choice.candidates.size(),
+                 choice.candidates[renderer].name, passes);
+      std::fflush(stderr);
+    }
+    return !interruption.asked();
+  };
+  verify::Collected collected =
+      verify::collect(job, choice.candidates, options.tile > 0 ? options.tile : verify::default_tile(*job.image), collecting);
+  if (show) fmt::print(stderr, "\r\x1b[K");
+  return collected;
+}
+
+int verify_file(const VerifyOptions& options) {
+  const Ref<Job> job = options.load();
+  if (!options.report.empty()) {
+    note_inputs_of(*job);
+    OutputFiles files;
+    files.add(options.report, {intern("--report"), 0, 0});
+    files.raise();
+  }
+  verify::prepare_picture(*job, options.lengths + 1);
+  prepare_tree(*job);
+
+  const verify::Choice choice = verify::choose_renderers(*job, options.renderers, options.force);
+  if (choice.candidates.size() < 2) {
+    std::string message = choice.candidates.empty()
+                              ? "there is no renderer to compare"
+                              : "there is only " + choice.candidates.front().name + ", and nothing to compare it with";
+    for (const verify::LeftOut& left : choice.left_out) message += fmt::format("\n  {}: {}", left.name, left.reason);
+    throw Error(message +
+                "\nname others with --renderers, such as 'PathTracer{next_event: false}'; --force keeps those that miss light");
+  }
+  const verify::Collected collected = collect(*job, choice, options);
+  if (!collected.complete) {
+    fmt::print(stderr, "interrupted: no verdict\n");
+    return exit_status::interrupted;
+  }
+  const verify::Agreement agreement = verify::compare(collected.layout, collected.measured, options.significance);
+  if (!options.report.empty()) {
+    const Ref<ToneMap> tone_map = display_tone_map(*job);
+    const std::string html =
+        verify::html_report({options.file, options.command_line(), tone_map.get()}, choice, collected, agreement);
+    write_whole_file(options.report, html.data(), html.size());
+  }
+  if (options.json)
+    fmt::print("{}\n",
+               verify_json(choice, collected, agreement).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  else if (!options.quiet)
+    fmt::print("{}", verify_text(choice, collected, agreement));
+  return agreement.disagrees() ? exit_status::failed : exit_status::done;
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand("verify", "Prove that renderers agree on a scene, or show where they do not");
+  auto options = std::make_shared<VerifyOptions>();
+  options->add_to(*command);
+  command->footer(
+      "\nExamples\n"
+      "  etendue verify scenes/cornell_box.etd --size 64x64 --samples 256\n"
+      "  etendue verify box.etd --renderers 'PathTracer,PathTracer{next_event: false}' --report box.html\n"
+      "  etendue verify box.etd --time 1m --json\n"
+      "\nWhole renders with independent random numbers are compared by tiles and path lengths. Exit status: 0 no disagreement, "
+      "1 disagreement, 2 bad input. docs/verify.md tells the statistics.");
+  command->callback([options, &run] { run = [options] { return verify_file(*options); }; });
+}
+
+}  // namespace etendue

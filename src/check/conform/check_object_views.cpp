@@ -1,0 +1,127 @@
+// What holds of every scene object: how it is seen, and that it may be moved.
+
+#include <fmt/format.h>
+
+#include "etendue/describe/registry.h"
+#include "etendue/shader.h"
+#include "object_trial.h"
+#include "statistics.h"
+
+namespace etendue::conform {
+
+/// In eight cells around the direction to the middle, by angle and azimuth: the solid angle in which the object is seen, by
+/// rays, and by points sampled to be seen from there, as the mean of 1 / density of those that are.
+void check_seen_from(const ObjectTrial& o, const Point3& from) {
+  constexpr size_t cells = 8;
+  const Vector3 to = o.centre - from;
+  const float d = length(to), sine = 1.02f * o.radius / d;
+  const bool around = sine >= 1;
+  const float height = around ? 2 : sine * sine / (1 + std::sqrt(1 - sine * sine));  // 1 - cos of the ball's angle
+  const Frame frame(Normal3(to / d));
+  const auto cell = [&](const Vector3& v) {
+    const float h = length_squared(v - Vector3(frame.n)) / 2;
+    return size_t(2 * int(dot(v, frame.s) > 0) + int(dot(v, frame.t) > 0) + (h > height / 4 ? 4 : 0));
+  };
+  // Of a luminaire what is seen is what shines: points on a dark side need not be chosen.
+  const auto shines = [&](const SurfacePoint& p, const Vector3& v) {
+    return !o.object.emission || o.object.emission->emits(p, -v);
+  };
+  const auto meets = [&](const Vector3& v) {
+    const Ray ray = o.ray(from, v);
+    if (!o.object.emission) return o.object.occludes(ray);
+    Hit hit;
+    return o.object.intersect(ray, hit) && shines(o.located(ray, hit), v);
+  };
+  std::array<statistics::Mean, cells> rays, samples;
+  const int n = o.trial.samples(40000);
+  for (int i = 0; i < n; ++i) {
+    const float h = height * o.trial.uniform(), phi = 2 * pi * o.trial.uniform(), r = safe_sqrt(h * (2 - h));
+    const Vector3 v = frame.to_world({r * std::cos(phi), r * std::sin(phi), 1 - h});
+    const size_t hit = meets(v) ? cell(v) : cells;
+    for (size_t k = 0; k < cells; ++k) rays[k].add(k == hit ? 2 * M_PI * double(height) : 0);
+  }
+  int disagree = 0, behind = 0;
+  for (int i = 0; i < n; ++i) {
+    const SurfaceSample s = o.object.sample_visible(from, o.trial.pair(), o.time);
+    size_t seen = cells;
+    double value = 0;
+    if (s.density > 0) {
+      const SurfacePoint& p = s.point;
+      const auto where = [&] {
+        return fmt::format("from {} to {}: direction {}, distance {}, density {}", text_of(from), text_of(p.position),
+                           text_of(s.direction), s.distance, s.density);
+      };
+      o.trial.expect(s.density < infinity && std::abs(length(s.direction) - 1) < 1e-4f && !s.delta && !s.infinite &&
+                         distance(from + s.distance * s.direction, p.position) < o.slack(p.position) + 1e-4f * s.distance,
+                     "points to be seen lie where their direction and distance say", where);
+      const float again = o.object.visible_density(from, s.direction, p);
+      disagree += !(std::abs(again - s.density) < 1e-2f * s.density) && std::abs(dot(p.normal, s.direction)) > 1e-2f;
+      Hit hit;
+      const float off = 1e-4f * s.distance + 4 * p.error;
+      if (!shines(p, s.direction)) {
+        // chosen in vain
+      } else if (o.object.intersect(o.ray(from, s.direction), hit) && hit.distance < s.distance + off) {
+        // Another part of the object may lie just before it.
+        if (hit.distance > s.distance - (hit.primitive == p.primitive ? off : 1e-6f * s.distance + p.error)) {
+          seen = cell(s.direction);
+          value = 1 / double(s.density);
+        }
+      } else {
+        ++behind;
+      }
+    }
+    for (size_t k = 0; k < cells; ++k) samples[k].add(k == seen ? value : 0);
+  }
+  const std::string place = fmt::format("from {} ({:.2f} radii away)", text_of(from), d / o.radius);
+  o.trial.expect(ObjectTrial::few(behind, n, 5e-3), "rays find the points that were sampled to be seen",
+                 [&] { return fmt::format("{}: {} of {} were not found", place, behind, n); });
+  o.trial.expect(ObjectTrial::few(disagree, n), "the density of a point seen is that of its sample",
+                 [&] { return fmt::format("{}: {} of {} differ", place, disagree, n); });
+  for (size_t k = 0; k < cells; ++k) {
+    const double margin = Trial::significant_errors * std::hypot(rays[k].error(), samples[k].error()) +
+                          10 * (2 * M_PI * double(height) + samples[k].largest()) / n + 3e-3 * rays[k].mean();
+    o.trial.expect(std::abs(rays[k].mean() - samples[k].mean()) <= margin,
+                   "points sampled to be seen have densities of the solid angle seen", [&] {
+                     return fmt::format("{}, cell {}: {:.5g} ± {:.2g} sr by rays, {:.5g} ± {:.2g} sr by samples", place, k,
+                                        rays[k].mean(), rays[k].error(), samples[k].mean(), samples[k].error());
+                   });
+  }
+}
+
+/// A copy that is moved, turned and enlarged is the same, moved, turned and enlarged.
+void check_moved(const ObjectTrial& o) {
+  if (o.object.transform.animated()) return;
+  const float scale = 1.7f;
+  const Transform by =
+      Transform::translate({1, -2, 0.5f}) * Transform::rotate(1.1f, {1, 0.3f, -0.7f}) * Transform::scale({scale, scale, scale});
+  const Ref<SceneObject> moved = ref_cast<SceneObject>(copy(o.object));
+  moved->transform = by * o.object.transform.keys().front().transform;
+  prepare_tree(*moved);
+  const float area = o.object.area(o.time);
+  o.trial.expect(std::abs(moved->area(o.time) / area - scale * scale) < 1e-3f, "a moved copy is the same elsewhere", [&] {
+    return fmt::format("area {} m^2 becomes {} m^2 at {} times the size", area, moved->area(o.time), scale);
+  });
+  int wrong = 0;
+  const int n = o.trial.samples(2000);
+  for (int i = 0; i < n; ++i) {
+    const Point3 to = o.sample_area().point.position, from = to + 0.5f * o.radius * o.trial.direction();
+    const Ray ray = o.ray(from, normalize(to - from));
+    Ray other = ray;
+    other.origin = by(ray.origin);
+    other.direction = by(ray.direction);
+    Hit near, far;
+    const bool hit = o.object.intersect(ray, near);
+    if (hit != moved->intersect(other, far)) ++wrong;
+    if (!hit || !far) continue;
+    const SurfacePoint a = o.located(ray, near);
+    SurfacePoint b;
+    moved->surface_point(other, far, b);
+    wrong += distance(by(a.position), b.position) > 10 * o.slack(b.position) ||
+             dot(normalize(by(a.normal)), Vector3(b.normal)) < 0.999f ||
+             distance(a.object_position, b.object_position) > 10 * o.slack(a.object_position) + 1e-3f * o.radius;
+  }
+  o.trial.expect(ObjectTrial::few(wrong, n, 5e-3), "a moved copy is the same elsewhere",
+                 [&] { return fmt::format("{} of {} rays differ", wrong, n); });
+}
+
+}  // namespace etendue::conform

@@ -1,0 +1,104 @@
+// What holds of every renderer that says it misses nothing of a scene: pictures with a known value have it.
+
+#include <fmt/format.h>
+
+#include <typeinfo>
+
+#include "conformance.h"
+#include "etendue/language/language.h"
+#include "etendue/render/job.h"
+#include "statistics.h"
+
+namespace etendue::conform {
+namespace {
+
+/// A scene in which the mean of the picture is known.
+struct KnownScene {
+  const char *name, *camera, *objects;
+  double expected;
+};
+
+constexpr KnownScene known_scenes[] = {
+    // Radiance 1 everywhere and half of it reflected each time: 1 / (1 - 1/2).
+    {"a furnace", "PerspectiveCamera { from: [0.3, 0.1, 0.2], to: [0, 0, 1], fov: 90 }",
+     "Sphere { shader: Lambertian { color: 0.5 }, emission: DiffuseEmission { radiance: 1, sides: back } }", 2},
+    // A plane that sees nothing but radiance 1, and reflects half of it.
+    {"a plane under an environment", "PerspectiveCamera { from: [0, 0, 2], to: [0, 0, 0], fov: 40 }",
+     "Rectangle { corner: [-4, -4, 0], edge_u: [8, 0, 0], edge_v: [0, 8, 0], shader: Lambertian { color: 0.5 } }, "
+     "Environment { emission: EnvironmentEmission { radiance: 1 } }",
+     0.5},
+    // An irradiance of pi on it, and no light to send on but upwards.
+    {"a plane under a distant light", "PerspectiveCamera { from: [0, 0, 2], to: [0, 0, 0], fov: 40 }",
+     "Rectangle { corner: [-4, -4, 0], edge_u: [8, 0, 0], edge_v: [0, 8, 0], shader: Lambertian { color: 0.5 } }, "
+     "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: 3.14159265 } }",
+     0.5},
+    // The point's intensity of pi gives an irradiance of pi, of which a radiance of 1/2 is reflected, and half of that again.
+    {"a hollow sphere around a point", "PerspectiveCamera { from: [0.3, 0.1, 0.2], to: [0, 0, 1], fov: 90 }",
+     "Sphere { shader: Lambertian { color: 0.5 } }, Point { emission: DiffuseEmission { radiance: 3.14159265 } }", 1},
+};
+
+/// The mean over pixels of Y, of renders with different seeds: their spread counts whatever correlates within one.
+statistics::Mean picture_means(Job& job, int renders, std::uint64_t& bad) {
+  statistics::Mean means;
+  for (int i = 0; i < renders; ++i) {
+    job.seed = std::uint64_t(i + 1);
+    job.render();
+    bad += job.image->bad_samples();
+    const Image image = job.image->develop();
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) sum += image.at(x, y, 1);
+    means.add(sum / (double(image.width) * image.height));
+  }
+  return means;
+}
+
+/// Returns what the renderer says that it misses; empty: it was tried.
+std::string check_scene(Trial& trial, const KnownScene& known) {
+  const std::string what = fmt::format("the value of {} is the known one", known.name);
+  const Ref<Job> job = load_job_text(fmt::format("Job {{ camera: {}, image: ImageBuffer {{ width: 8, height: 8, filter: "
+                                                 "BoxFilter {{}} }}, scene: BruteForceScene {{ objects: [ {} ] }} }}",
+                                                 known.camera, known.objects),
+                                     "known");
+  const Ref<Renderer> renderer = ref_cast<Renderer>(parse_component(trial.text(), "drawn"));
+  job->renderer = renderer;
+  job->threads = 1;
+  // Paths may be cut off where nothing is left of them, and not before.
+  if (renderer->class_info().find("max_depth")) set(*renderer, "max_depth", Value(Number{64}));
+  renderer->samples = trial.samples(16);
+  prepare_tree(*job);
+  const std::vector<Advice> missed = renderer->misses(scene_traits(*job->scene, *job->camera));
+  if (!missed.empty()) return missed.front().lost;
+  // Student's distribution with 15 degrees of freedom is beyond 9.2 standard errors as seldom as the normal one beyond 5.33.
+  constexpr double errors = 9.2;
+  std::uint64_t bad = 0;
+  const statistics::Mean means = picture_means(*job, 16, bad);
+  trial.expect(bad == 0, "no sample is not a number, infinite or negative", [&] { return fmt::format("{} are", bad); });
+  if (means.error() > 0.05 * known.expected) {
+    trial.not_tried(what, fmt::format("all is noise: {:.5f} ± {:.5f}", means.mean(), means.error()));
+    return {};
+  }
+  const double rounding = 3e-4 + (renderer->unbiased() ? 0 : 0.02);
+  trial.expect(std::abs(means.mean() - known.expected) < errors * means.error() + rounding * known.expected, what,
+               [&] { return fmt::format("{:.5f} ± {:.5f}, known to be {}", means.mean(), means.error(), known.expected); });
+  return {};
+}
+
+}  // namespace
+
+void check_renderer(Trial& trial) {
+  const Renderer& part = trial.part<Renderer>();
+  if (typeid(part) == typeid(Renderer)) return;  // the interface itself renders nothing
+  std::string missed;
+  size_t tried = 0;
+  for (const KnownScene& known : known_scenes) {
+    const std::string lost = check_scene(trial, known);
+    if (lost.empty())
+      ++tried;
+    else
+      missed = lost;
+  }
+  if (tried == 0) trial.not_tried("pictures of known value", "of all of them the renderer says that it misses " + missed);
+}
+
+}  // namespace etendue::conform

@@ -1,0 +1,222 @@
+// What holds of every scene object: one surface, whether rays meet it, points are chosen on it or areas are told. See also
+// check_object_views.cpp.
+
+#include <fmt/format.h>
+
+#include "etendue/scene.h"
+#include "etendue/shader.h"
+#include "object_trial.h"
+#include "statistics.h"
+
+namespace etendue::conform {
+
+std::string text_of(const Point3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z); }
+std::string text_of(const Vector3& v) { return text_of(Point3{} + v); }
+
+namespace {
+
+bool similar(const ObjectTrial& o) {
+  const Transform t = o.object.transform.at(o.time);
+  const float x = length(t(Vector3{1, 0, 0})), y = length(t(Vector3{0, 1, 0})), z = length(t(Vector3{0, 0, 1}));
+  return std::abs(x - y) < 1e-4f * x && std::abs(x - z) < 1e-4f * x;
+}
+
+bool rays_agree(const ObjectTrial& o, const Ray& ray, float t) {
+  const float off = 1e-3f * t;
+  Hit hit;
+  Ray other = ray;
+  other.maximum = t - off;
+  if (o.object.intersect(other, hit) || o.object.occludes(other)) return false;
+  other.maximum = t + off;
+  if (!o.object.intersect(other, hit) || std::abs(hit.distance - t) > off || !o.object.occludes(other)) return false;
+  HitList list;
+  o.object.all_hits(other, list);
+  if (list.size == 0) return false;
+  other.direction = 3 * ray.direction;
+  other.maximum = infinity;
+  return o.object.intersect(other, hit) && std::abs(3 * hit.distance - t) < off;
+}
+
+void check_hit(const ObjectTrial& o, const Ray& ray, const Hit& hit, const SurfacePoint& p) {
+  const float off = o.slack(p.position) + 4 * p.error;
+  const auto where = [&] {
+    return fmt::format("from {} towards {}: t {}, at {}, normal {}, error {}", text_of(ray.origin), text_of(ray.direction),
+                       hit.distance, text_of(p.position), text_of(Vector3(p.normal)), p.error);
+  };
+  o.trial.expect(hit.object && hit.distance > 0 && distance(p.position, ray(hit.distance)) < off,
+                 "a hit's point lies on the ray", where);
+  o.trial.expect(o.inside(o.bounds, p.position), "bounds hold all points", where);
+  o.trial.expect(std::abs(length(Vector3(p.normal)) - 1) < 1e-4f && std::abs(length(Vector3(p.shading_normal)) - 1) < 1e-4f &&
+                     dot(p.normal, Vector3(p.shading_normal)) >= 0 && p.error >= 0 && p.error < 0.01f * o.radius + off &&
+                     std::isfinite(p.uv.x) && std::isfinite(p.uv.y),
+                 "normals are unit vectors and errors small", where);
+  if (scene_within(o.object)) return;
+  o.trial.expect(p.object == &o.object && distance(o.object.transform.from_origin(o.time)(p.object_position), p.position) < off,
+                 "object coordinates are those before the transform", where);
+}
+
+/// Isotropic lines through a ball of radius R cross a surface of area A within it A / (2 pi R^2) times on average (Crofton).
+/// On the way: what a hit must be, and that shorter, longer and scaled rays agree.
+void check_lines(const ObjectTrial& o) {
+  const float r = 1.05f * o.radius;
+  statistics::Mean crossings;
+  int disagree = 0, tested = 0;
+  for (int i = o.trial.samples(30000); i > 0; --i) {
+    const Vector3 d = o.trial.direction();
+    const float across = r * std::sqrt(o.trial.uniform()), phi = 2 * pi * o.trial.uniform();
+    Ray ray = o.ray(o.centre + Frame(Normal3(d)).to_world({across * std::cos(phi), across * std::sin(phi), -r}), d);
+    int n = 0;
+    for (Hit hit; n < 1000 && o.object.intersect(ray, hit); ++n) {
+      const SurfacePoint p = o.located(ray, hit);
+      if (n == 0) {
+        ++tested;
+        disagree += !rays_agree(o, ray, hit.distance);
+        check_hit(o, ray, hit, p);
+      }
+      p.leave(d, ray);
+      hit = {};
+    }
+    if (n == 0) disagree += o.object.occludes(ray);
+    crossings.add(n);
+  }
+  o.trial.expect(ObjectTrial::few(disagree, tested), "shorter, longer and scaled rays and occlusion agree with the hit",
+                 [&] { return fmt::format("{} of {} do not", disagree, tested); });
+  const double scale = 2 * M_PI * double(r) * double(r), found = scale * crossings.mean(), said = double(o.object.area(o.time));
+  o.trial.expect(
+      std::abs(found - said) <
+              scale * (Trial::significant_errors * crossings.error() + 10 / double(crossings.count())) + 1e-3 * said ||
+          (scene_within(o.object) && !similar(o)),
+      "the area is that which lines find",
+      [&] { return fmt::format("{} m^2, but {} ± {} by lines", said, found, scale * crossings.error()); });
+}
+
+/// A short ray towards a point meets the surface there, perhaps after other parts of it, and finds the same normal.
+bool found_nearby(const ObjectTrial& o, const SurfacePoint& p) {
+  Vector3 away = o.trial.direction();
+  if (std::abs(dot(p.normal, away)) < 0.2f) away = normalize(away + 0.5f * Vector3(p.normal));
+  const float h = 0.02f * o.radius, off = o.slack(p.position) + 8 * p.error;
+  Ray ray = o.ray(p.position + h * away, -away, 2 * h);
+  for (int i = 0; i < 100; ++i) {
+    Hit hit;
+    if (!o.object.intersect(ray, hit)) return false;
+    const SurfacePoint q = o.located(ray, hit);
+    if (distance(q.position, p.position) < off + 0.01f * h && dot(q.normal, Vector3(p.normal)) > 0.99f) return true;
+    q.leave(-away, ray);
+    ray.maximum = 2 * h;
+  }
+  return false;
+}
+
+void check_points(const ObjectTrial& o) {
+  const Bounds3 lit = o.object.luminaire_bounds();
+  const NormalCone cone = o.object.normals();
+  statistics::Mean area;
+  int missed = 0;
+  const int n = o.trial.samples(20000);
+  for (int i = 0; i < n; ++i) {
+    const SurfaceSample s = o.sample_area();
+    const SurfacePoint& p = s.point;
+    const auto where = [&] {
+      return fmt::format("{}, normal {}, density {}", text_of(p.position), text_of(Vector3(p.normal)), s.density);
+    };
+    if (!o.trial.expect(
+            s.density > 0 && s.density < infinity && !s.delta && !s.infinite && p.object == &o.object && is_finite(p.position),
+            "points by area are finite and have a density", where))
+      return;
+    o.trial.expect(std::abs(o.object.area_density(p) - s.density) < 1e-3f * s.density,
+                   "a sample's density by area is that of its point", where);
+    o.trial.expect(o.inside(o.bounds, p.position) && o.inside(lit, p.position), "bounds hold all points", where);
+    o.trial.expect(dot(cone.axis, Vector3(p.normal)) >= cone.cosine - 1e-4f, "the cone of normals holds them", where);
+    area.add(1 / double(s.density));
+    missed += !found_nearby(o, p);
+  }
+  const double said = double(o.object.area(o.time));
+  // Beside an edge a ray may find the neighbour.
+  o.trial.expect(ObjectTrial::few(missed, n, 5e-3), "rays find the points that were sampled by area",
+                 [&] { return fmt::format("{} of {} were not found", missed, n); });
+  o.trial.expect(std::abs(area.mean() - said) < Trial::significant_errors * area.error() + 1e-3 * said,
+                 "densities by area integrate to 1 over the area",
+                 [&] { return fmt::format("mean of 1 / density {} ± {} m^2, area {} m^2", area.mean(), area.error(), said); });
+}
+
+/// dpdu and dpdv span the surface, and tell where a point with slightly other coordinates lies.
+void check_tangents(const ObjectTrial& o) {
+  int wrong = 0, tested = 0;
+  const float step = 1e-3f * o.radius;  // short of what bends sharply
+  for (int i = o.trial.samples(4000); i > 0; --i) {
+    const SurfacePoint start = o.sample_area().point;
+    const auto down = [&](const Point3& over, SurfacePoint& p) {
+      Hit hit;
+      const Ray ray = o.ray(over + step * Vector3(start.normal), -Vector3(start.normal), 2 * step);
+      if (!o.object.intersect(ray, hit)) return false;
+      p = o.located(ray, hit);
+      return true;
+    };
+    SurfacePoint a, b;
+    const float phi = 2 * pi * o.trial.uniform();
+    const Frame frame(start.normal);
+    if (!down(start.position, a) || !down(start.position + step * (std::cos(phi) * frame.s + std::sin(phi) * frame.t), b))
+      continue;
+    const float du = b.uv.x - a.uv.x, dv = b.uv.y - a.uv.y;
+    if (a.primitive != b.primitive || std::abs(du) > 0.3f || std::abs(dv) > 0.3f || (du == 0 && dv == 0)) continue;  // a seam
+    o.object.tangents(a);
+    const bool spans = is_finite(a.dpdu) && is_finite(a.dpdv) &&
+                       o.trial.expect(std::abs(dot(a.normal, a.dpdu)) < 2e-3f * length(a.dpdu) &&
+                                          std::abs(dot(a.normal, a.dpdv)) < 2e-3f * length(a.dpdv),
+                                      "tangents lie in the surface", [&] {
+                                        return fmt::format("at {}, normal {}: dpdu {}, dpdv {}", text_of(a.position),
+                                                           text_of(Vector3(a.normal)), text_of(a.dpdu), text_of(a.dpdv));
+                                      });
+    const Vector3 moved = b.position - a.position;
+    ++tested;
+    wrong += !spans || length(du * a.dpdu + dv * a.dpdv - moved) > 0.06f * length(moved);
+  }
+  o.trial.expect(ObjectTrial::few(wrong, tested, 0.03), "tangents are the change of position with surface coordinates",
+                 [&] { return fmt::format("{} of {} steps lead elsewhere", wrong, tested); });
+}
+
+/// Whether some of the surface is very near, or all seen edge on.
+bool too_near(const ObjectTrial& o, const Point3& from) {
+  for (int i = 0; i < 1000; ++i)
+    if (o.object.occludes(o.ray(from, o.trial.direction(), 0.02f * o.radius))) return true;
+  float cosine = 0;
+  for (int i = 0; i < 100; ++i) {
+    const SurfacePoint p = o.sample_area().point;
+    cosine = std::max(cosine, std::abs(dot(p.normal, normalize(p.position - from))));
+  }
+  return cosine < 0.02f;
+}
+
+}  // namespace
+
+void check_scene_object(Trial& trial) {
+  const SceneObject& object = trial.part<SceneObject>();
+  if (object.unbounded()) {  // it has no area, no size and no points to choose
+    trial.expect(!(object.sample_area(trial.pair(), 0).density > 0), "on what has no end no points are chosen");
+    return;
+  }
+  if (object.infinite() || object.delta() || object.bounds().empty()) {
+    trial.expect(object.bounds().empty(), "what has no extent or lies at infinity has no bounds");
+    return;
+  }
+  const ObjectTrial o(trial, object);
+  trial.expect(is_finite(o.bounds.low) && is_finite(o.bounds.high) && o.radius > 0, "bounds are finite",
+               [&] { return text_of(o.bounds.low) + " .. " + text_of(o.bounds.high); });
+  check_lines(o);
+  if (scene_within(object)) return;  // a scene is no luminaire: no points are chosen on it
+  if (!(object.area(o.time) > 0)) {  // a solid of which nothing is left: lines agreed
+    trial.expect(!(o.sample_area().density > 0), "on what has no area no points are chosen");
+    return;
+  }
+  check_points(o);
+  check_tangents(o);
+  for (const float away : {0.3f, 1.2f, 4.0f, 40.0f}) {
+    // Neither right on the surface nor in a flat one's plane: what is seen there is sampled with almost any noise.
+    Point3 from = o.centre + away * o.radius * trial.direction();
+    for (int i = 0; i < 20 && too_near(o, from); ++i) from = o.centre + away * o.radius * trial.direction();
+    check_seen_from(o, from);
+  }
+  check_moved(o);
+}
+
+}  // namespace etendue::conform

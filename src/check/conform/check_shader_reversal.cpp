@@ -1,0 +1,160 @@
+// Light and importance: reciprocity, and that the two kinds of transport are each other's adjoint.
+//
+// With measures by the geometric normal ng, importance carried from a to b must be what radiance carried from b to a is (Veach
+// 1997, sections 5.2 and 5.3, equations 5.17 to 5.19): with v(a, b) = f(a, b) |b . ns|, the values of Scatter,
+//     v_importance(a, b) / |b . ng| = v_radiance(b, a) / |a . ng|,
+// for reflection and, as it contains the squared indices, refraction. Without a shading normal it is f_importance(a, b) =
+// f_radiance(b, a); and f_radiance(a, b) (n_b / n_a)^2 = f_radiance(b, a) is reciprocity across refraction.
+
+#include <fmt/format.h>
+
+#include "shader_trial.h"
+
+namespace etendue::conform {
+namespace {
+
+std::string text(const Spectrum& s) { return fmt::format("[{:.7g} {:.7g} ...]", s[0], s[1]); }
+
+struct Pair {
+  Vector3 a, b;
+  float eta = 1;            ///< index where b leads over index where a came from, known if sampled
+  bool hero_alone = false;  ///< other wavelengths are refracted elsewhere
+};
+
+/// Directions a sample connects, or any two.
+Pair draw_pair(Trial& trial, const Scatter& scatter, Lobes which) {
+  Pair pair{trial.direction(), trial.direction()};
+  if (trial.uniform() < 0.7f)
+    if (const auto s = scatter.sample(pair.a, trial.uniform(), trial.pair(), Transport::radiance, which)) {
+      pair.b = s->direction;
+      pair.eta = s->eta;
+      pair.hero_alone = s->dispersive;
+    }
+  return pair;
+}
+
+bool hero_alone(const Pair& pair, const BoundShader& bound, const Shader& shader) {
+  const Spectrum index = shader.interior_index(bound.wavelengths());
+  const bool crossing = dot(bound.point().normal, pair.a) * dot(bound.point().normal, pair.b) < 0;
+  return pair.hero_alone || (crossing && index.minimum() != index.maximum());
+}
+
+void check_adjoint(Trial& trial, const BoundShader& bound, const std::string& check) {
+  const Scatter& scatter = *bound.scatter();
+  const Normal3 ng = bound.point().normal;
+  for (const Lobes which : subsets_of(scatter.lobes() & smooth_lobes))
+    for (int i = trial.samples(300); i > 0; --i) {
+      const Pair pair = draw_pair(trial, scatter, which);
+      // Both sides times both cosines with ng, so that nothing is divided.
+      const auto importance = [&](const Vector3& a, const Vector3& b) {
+        return scatter.evaluate(a, b, Transport::importance, which) * std::abs(dot(ng, a));
+      };
+      const auto radiance = [&](const Vector3& a, const Vector3& b) {
+        return scatter.evaluate(b, a, Transport::radiance, which) * std::abs(dot(ng, b));
+      };
+      const Spectrum from_light = importance(pair.a, pair.b), from_camera = radiance(pair.a, pair.b);
+      trial.expect(agree(from_light, from_camera, 3e-3f, pair.hero_alone,
+                         [&] {
+                           return rounding_of([&](const Vector3& v) { return importance(pair.a, v); }, pair.b) +
+                                  rounding_of([&](const Vector3& v) { return radiance(v, pair.b); }, pair.a);
+                         }),
+                   check, [&] {
+                     return fmt::format("{}: {} as importance, {} as radiance the other way; a {}, b {}", lobe_names(which),
+                                        text(from_light), text(from_camera), bound.name(pair.a), bound.name(pair.b));
+                   });
+    }
+}
+
+void check_reciprocity(Trial& trial, const BoundShader& bound) {
+  const Scatter& scatter = *bound.scatter();
+  for (const Lobes which : subsets_of(scatter.lobes() & smooth_lobes)) {
+    // The index between two directions is known for samples of one transmitting lobe.
+    const bool reflection = (which & transmission_lobes) == 0;
+    if (!reflection && !std::has_single_bit(unsigned(which))) continue;
+    for (int i = trial.samples(300); i > 0; --i) {
+      const Pair pair = draw_pair(trial, scatter, which);
+      if (!reflection && pair.eta == 1 && (which & glossy_transmission) &&
+          trial.part<Shader>().interior_index(bound.wavelengths())[0] != 1)
+        continue;  // not sampled: the index is not known
+      // f with both cosines, so that nothing is divided.
+      const auto value = [&](const Vector3& a, const Vector3& b) {
+        return scatter.evaluate(a, b, Transport::radiance, which) * scatter.cosine(a);
+      };
+      const Spectrum ab = value(pair.a, pair.b) * square(pair.eta), ba = value(pair.b, pair.a);
+      trial.expect(agree(ab, ba, 3e-3f, hero_alone(pair, bound, trial.part<Shader>()),
+                         [&] {
+                           return rounding_of([&](const Vector3& v) { return value(pair.a, v); }, pair.b) +
+                                  rounding_of([&](const Vector3& v) { return value(v, pair.a); }, pair.b);
+                         }),
+                   "f is reciprocal", [&] {
+                     return fmt::format("{}: {} one way, {} the other; a {}, b {}, relative index {}", lobe_names(which),
+                                        text(ab), text(ba), bound.name(pair.a), bound.name(pair.b), pair.eta);
+                   });
+    }
+  }
+}
+
+/// What a specular lobe sends from one direction to another: a lobe may have several directions, and several ways to one.
+struct Connection {
+  double power = 0;  ///< the fraction of the hero's
+  float eta = 0;     ///< index where the direction leads over index where it comes from; 0: it does not lead there
+};
+
+Connection connection(const Scatter& scatter, const Vector3& out, const Vector3& in, Lobes lobe) {
+  constexpr int tries = 1024;
+  Connection c;
+  for (int i = 0; i < tries; ++i) {
+    const Point2 u{float(i * 389 % tries) / tries, float(i * 61 % tries) / tries};
+    const auto s = scatter.sample(out, (float(i) + 0.5f) / tries, u, Transport::radiance, lobe);
+    if (!s || length(s->direction - in) > 1e-3f) continue;
+    c.power += double(s->weight[0] * square(s->eta)) / tries;
+    c.eta = s->eta;
+  }
+  return c;
+}
+
+/// Specular paths can be walked both ways, with equal fractions of power; radiance has the squared index besides.
+void check_specular(Trial& trial, const BoundShader& bound) {
+  const Scatter& scatter = *bound.scatter();
+  for (Lobes rest = scatter.lobes() & specular_lobes; rest != 0; rest &= Lobes(rest - 1)) {
+    const Lobes lobe = rest & Lobes(-rest);
+    for (int i = 0; i < 100; ++i) {
+      const Vector3 out = trial.direction();
+      const float choice = trial.uniform();
+      const Point2 u = trial.pair();
+      const auto s = scatter.sample(out, choice, u, Transport::radiance, lobe);
+      if (!s) continue;
+      const auto where = [&] {
+        return fmt::format("{}: out {}, in {}", lobe_names(lobe), bound.name(out), bound.name(s->direction));
+      };
+      // At grazing angles rounding decides.
+      if (scatter.cosine(out) < 0.02f || scatter.cosine(s->direction) < 0.02f) continue;
+      if (const auto t = scatter.sample(out, choice, u, Transport::importance, lobe); t && !bound.turned())
+        trial.expect(t->direction == s->direction &&
+                         agree(s->weight * square(s->eta), t->weight, 2e-3f, s->dispersive, [] { return Spectrum(); }),
+                     "radiance and importance differ by the squared index", [&] {
+                       return fmt::format("{}: weights {} and {}, relative index {}", where(), text(s->weight), text(t->weight),
+                                          s->eta);
+                     });
+      const Connection there = connection(scatter, out, s->direction, lobe),
+                       back = connection(scatter, s->direction, out, lobe);
+      if (there.power < 0.01 && back.power < 0.01) continue;  // so rarely chosen that it may not be met the other way
+      trial.expect(std::abs(back.eta * s->eta - 1) < 1e-3f, "specular paths lead back", where);
+      trial.expect(std::abs(there.power - back.power) < 0.01 * std::max(there.power, back.power) + 5e-3,
+                   "specular paths carry the same both ways",
+                   [&] { return fmt::format("{}: {} and {} back", where(), there.power, back.power); });
+    }
+  }
+}
+
+}  // namespace
+
+void check_shader_reversal(Trial& trial, const BoundShader& plain, const BoundShader& tilted) {
+  check_adjoint(trial, plain, "importance is the adjoint of radiance");
+  check_adjoint(trial, tilted, "importance is the adjoint of radiance under shading normals");
+  if (!trial.part<Shader>().reciprocal()) return;
+  check_reciprocity(trial, plain);
+  check_specular(trial, plain);
+}
+
+}  // namespace etendue::conform

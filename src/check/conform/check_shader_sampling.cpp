@@ -1,0 +1,229 @@
+// Samples of a shader against its density, and energy: chi-square tests and quadrature over cells of the sphere.
+
+#include <fmt/format.h>
+
+#include "shader_trial.h"
+#include "sphere_cells.h"
+#include "statistics.h"
+
+namespace etendue::conform {
+namespace {
+
+using statistics::Mean;
+
+struct Drawn {
+  std::vector<Vector3> directions;  ///< local, of smooth lobes
+  std::vector<double> weights;      ///< of those, at the hero wavelength
+  Mean all;                         ///< of all weights, specular and absorbed ones included
+  int count = 0;
+};
+
+Drawn draw(Trial& trial, const Scatter& scatter, const Vector3& out, Lobes which, Transport transport, int count) {
+  Drawn drawn;
+  drawn.count = count;
+  for (int i = 0; i < count; ++i) {
+    const float choice = trial.uniform();
+    const auto s = scatter.sample(out, choice, trial.pair(), transport, which);
+    drawn.all.add(s ? double(s->weight[0]) : 0);
+    if (!s || s->specular()) continue;
+    drawn.directions.push_back(scatter.frame().to_local(s->direction));
+    drawn.weights.push_back(double(s->weight[0]));
+  }
+  return drawn;
+}
+
+std::string where(const BoundShader& bound, const Vector3& out, Lobes which) {
+  return fmt::format("{}, out {}", lobe_names(which), bound.name(out));
+}
+
+/// So many samples choose the cells, at any effort: cells that are too coarse are no test.
+constexpr int pilots = 6000;
+constexpr size_t cell_count = 96;
+constexpr double rough_albedo = 0.25;  // how far the estimate may be off: it only guides choices
+
+/// What quadrature says of the density and of f cos, and what samples say.
+struct Measured {
+  double density = 0, flux = 0;
+  Drawn drawn;
+};
+
+/// The chi-square test of samples against density, and the integrals for further ones.
+Measured check_density(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which, Transport transport,
+                       const std::string& check) {
+  const Scatter& scatter = *bound.scatter();
+  const SphereCells cells(draw(trial, scatter, out, which, transport, pilots).directions, cell_count);
+  Measured m;
+  m.drawn = draw(trial, scatter, out, which, transport, trial.samples(20000));
+  const int n = m.drawn.count;
+  std::vector<double> expected, counts(cells.size());
+  for (const Vector3& v : m.drawn.directions) ++counts[cells.cell_of(v)];
+  counts.push_back(double(n) - double(m.drawn.directions.size()));  // absorbed or specular
+  double p = 0;
+  // A density with sharp borders may need more points than most do.
+  for (double tolerance = 1e-3; tolerance > 1e-5 && !(p > Trial::significance); tolerance /= 10) {
+    const auto integrals = cells.integrate<2>(
+        [&](const Vector3& local) -> std::array<double, 2> {
+          const Vector3 in = scatter.frame().to_world(local);
+          const ScatterValue v = scatter.value_and_density(out, in, transport, which);
+          return {double(v.density), double(v.value[0])};
+        },
+        tolerance, long(1e3 / tolerance));
+    m.density = m.flux = 0;
+    expected.clear();
+    for (const auto& [density, flux] : integrals) {
+      m.density += density;
+      m.flux += flux;
+      expected.push_back(density * n);
+    }
+    const double absorbed = std::max(0.0, 1 - m.density) * n;  // known as well as the quadrature is exact
+    expected.push_back(std::abs(absorbed - counts.back()) < 2e-3 * n ? counts.back() : absorbed);
+    p = statistics::chi_square(counts, expected, 10, 1e-3 * n);
+  }
+  trial.expect(m.density <= 1.005, "the density integrates to at most 1",
+               [&] { return fmt::format("{}: {:.5f}", where(bound, out, which), m.density); });
+  trial.expect(p > Trial::significance, check, [&] {
+    size_t worst = 0;
+    const auto off = [&](size_t i) { return std::abs(counts[i] - expected[i]) / std::sqrt(std::max(expected[i], 1.0)); };
+    for (size_t i = 1; i < counts.size(); ++i)
+      if (off(i) > off(worst)) worst = i;
+    const std::string place =
+        worst == cells.size() ? "absorbed or specular" : "around " + bound.name(scatter.frame().to_world(cells.middle(worst)));
+    return fmt::format(
+        "{}: p = {:.2g}; the density integrates to {:.4f}, {:.4f} of {} samples are smooth; worst: {} samples {}, "
+        "expected {:.1f}",
+        where(bound, out, which), p, m.density, double(m.drawn.directions.size()) / n, n, counts[worst], place,
+        expected[worst]);
+  });
+  return m;
+}
+
+/// Importance is power. Where normals are turned, of the shader or of a part of it, which then is not reciprocal, that is so
+/// for radiance, by the model's own measure, but for refraction.
+Transport conserved(const Trial& trial, const BoundShader& bound) {
+  return bound.turned() || !trial.part<Shader>().reciprocal() ? Transport::radiance : Transport::importance;
+}
+
+/// All for one direction and set of lobes: samples, density and energy.
+void check_direction(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which) {
+  const Shader& shader = trial.part<Shader>();
+  const Transport transport = conserved(trial, bound);
+  const Measured m = check_density(trial, bound, out, which, transport, "samples follow the density");
+  if (transport == Transport::radiance && (which & transmission_lobes & ~pass_through)) return;
+  const double albedo = m.flux + bound.specular_fraction(out, which);
+  const Mean& mean = m.drawn.all;
+  const double margin = Trial::significant_errors * mean.error() + 10 * mean.largest() / m.drawn.count + 3e-3;
+  trial.expect(std::abs(mean.mean() - albedo) < margin, "samples carry what evaluation says", [&] {
+    return fmt::format("{}: the mean weight is {:.5f} ± {:.5f}, f cos integrates to {:.5f}", where(bound, out, which),
+                       mean.mean(), mean.error(), albedo);
+  });
+  trial.expect(albedo < 1.005, "no more light leaves than arrives",
+               [&] { return fmt::format("{}: {:.5f}", where(bound, out, which), albedo); });
+  if (shader.lossless() && which == bound.scatter()->lobes())
+    trial.expect(albedo > 0.995, "a lossless shader absorbs nothing",
+                 [&] { return fmt::format("{}: {:.5f}", where(bound, out, which), albedo); });
+  const double angle = bound.angle(out), estimate = double(bound.scatter()->albedo(out, which)[0]);
+  if (angle < 85 || angle > 95)
+    trial.expect(std::abs(estimate - albedo) < rough_albedo, "the albedo's estimate is near the albedo", [&] {
+      return fmt::format("{}: estimated {:.4f}, f cos integrates to {:.4f}", where(bound, out, which), estimate, albedo);
+    });
+}
+
+/// Whether a shader rests on another whose values are estimates: then each of its own asks for very many.
+bool rests_on_estimates(const Component& shader) {
+  for (const Member& m : shader.class_info().members) {
+    if (m.kind != Kind::component || m.list) continue;
+    const Value value = get(shader, m.name);
+    const auto* inner = value.as<Ref<Component>>();
+    const auto* base = inner ? dynamic_cast<const Shader*>(inner->get()) : nullptr;
+    if (base && (base->stochastic() || rests_on_estimates(*base))) return true;
+  }
+  return false;
+}
+
+/// Of shaders that are not reciprocal: directions are drawn as for radiance, and weighed with the adjoint.
+void check_adjoint_samples(Trial& trial, const BoundShader& bound, const Vector3& out) {
+  const Lobes which = bound.scatter()->lobes() & smooth_lobes;
+  const Measured m = check_density(trial, bound, out, which, Transport::importance, "samples of importance follow the density");
+  const Mean& mean = m.drawn.all;
+  const double margin = Trial::significant_errors * mean.error() + 10 * mean.largest() / m.drawn.count + 3e-3;
+  trial.expect(std::abs(mean.mean() - m.flux) < margin, "samples of importance carry what evaluation says", [&] {
+    return fmt::format("{}: the mean weight is {:.5f} ± {:.5f}, f cos integrates to {:.5f}", where(bound, out, which),
+                       mean.mean(), mean.error(), m.flux);
+  });
+}
+
+constexpr double angles[] = {0, 25, 50, 75, 86, 89.5, 95, 120, 155};
+
+}  // namespace
+
+void check_shader_sampling(Trial& trial, const BoundShader& plain, const BoundShader& tilted) {
+  const auto azimuth = [&] { return 2 * M_PI * double(trial.uniform()); };
+  for (const Lobes which : subsets_of(plain.scatter()->lobes())) {
+    if (which == plain.scatter()->lobes()) {
+      for (const double angle : angles) check_direction(trial, plain, plain.at_angle(angle, azimuth()), which);
+    } else {
+      const double angle = 85 * double(trial.uniform());
+      const bool behind = trial.uniform() < 0.5f;
+      check_direction(trial, plain, plain.at_angle(behind ? 180 - angle : angle, azimuth()), which);
+      if (trial.effort() != Effort::quick)
+        check_direction(trial, plain, plain.at_angle(behind ? angle : 180 - angle, azimuth()), which);
+    }
+  }
+  if (!trial.part<Shader>().reciprocal() && !plain.turned() && plain.scatter()->has(smooth_lobes))
+    for (const double angle : {20.0, 65.0, 140.0}) check_adjoint_samples(trial, plain, plain.at_angle(angle, azimuth()));
+  // Under a tilted normal light is turned back to its side of the surface: none is lost.
+  for (const double angle : {30.0, 70.0, 88.0, 130.0})
+    check_direction(trial, tilted, tilted.at_angle(angle, azimuth()), tilted.scatter()->lobes());
+}
+
+// The mean of evaluate over directions uniform in a cell, times the cell's solid angle, against the weights of the samples that
+// fall there: both estimate the integral of f cos over the cell.
+void check_shader_estimates(Trial& trial, const BoundShader& bound) {
+  const Scatter& scatter = *bound.scatter();
+  const Transport transport = conserved(trial, bound);
+  const int share = rests_on_estimates(trial.part<Shader>()) ? 16 : 1;
+  for (const double angle : angles) {
+    const Vector3 out = bound.at_angle(angle, 2 * M_PI * double(trial.uniform()));
+    const Lobes which = scatter.lobes();
+    const Drawn pilot = draw(trial, scatter, out, which, transport, pilots);
+    const SphereCells cells(pilot.directions, 24);
+    const Drawn drawn = draw(trial, scatter, out, which, transport, trial.samples(40000 / share));
+    std::vector<Mean> weights(cells.size());
+    for (size_t i = 0; i < drawn.directions.size(); ++i) weights[cells.cell_of(drawn.directions[i])].add(drawn.weights[i]);
+    const int asked = trial.samples(3000 / share);
+    for (size_t cell = 0; cell < cells.size(); ++cell) {
+      Mean values;
+      for (int i = 0; i < asked; ++i) {
+        const Point2 u = trial.pair();
+        const Vector3 in = scatter.frame().to_world(cells.uniform(cell, double(u.x), double(u.y)));
+        values.add(double(scatter.evaluate(out, in, transport, which)[0]) * cells.solid_angle(cell));
+      }
+      Mean& w = weights[cell];
+      w.add_zeros(drawn.count - w.count());
+      const double margin = Trial::significant_errors * std::hypot(values.error(), w.error()) + 0.02 * values.mean() +
+                            10 * (values.largest() / asked + drawn.all.largest() / drawn.count) + 1e-4;
+      trial.expect(std::abs(values.mean() - w.mean()) < margin, "samples carry what evaluation says, on the average", [&] {
+        return fmt::format("{}, around {}: evaluate {:.5f} ± {:.5f}, samples {:.5f} ± {:.5f}", where(bound, out, which),
+                           bound.name(scatter.frame().to_world(cells.middle(cell))), values.mean(), values.error(), w.mean(),
+                           w.error());
+      });
+    }
+    if (transport == Transport::radiance && (which & transmission_lobes & ~pass_through)) continue;
+    const double slack = Trial::significant_errors * drawn.all.error() + 5e-3;
+    trial.expect(drawn.all.mean() < 1 + slack, "no more light leaves than arrives", [&] {
+      return fmt::format("{}: {:.5f} ± {:.5f}", where(bound, out, which), drawn.all.mean(), drawn.all.error());
+    });
+    if (trial.part<Shader>().lossless())
+      trial.expect(drawn.all.mean() > 1 - slack, "a lossless shader absorbs nothing", [&] {
+        return fmt::format("{}: {:.5f} ± {:.5f}", where(bound, out, which), drawn.all.mean(), drawn.all.error());
+      });
+    if (transport == Transport::importance && (angle < 85 || angle > 95))
+      trial.expect(std::abs(double(scatter.albedo(out)[0]) - drawn.all.mean()) < rough_albedo + slack,
+                   "the albedo's estimate is near the albedo", [&] {
+                     return fmt::format("{}: estimated {:.4f}, is {:.4f}", where(bound, out, which), scatter.albedo(out)[0],
+                                        drawn.all.mean());
+                   });
+  }
+}
+
+}  // namespace etendue::conform

@@ -1,0 +1,132 @@
+#include "conformance.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <mutex>
+#include <optional>
+
+#include "describe/guard.h"
+#include "draw.h"
+
+namespace etendue::conform {
+namespace {
+
+/// Which interface is checked how. A class is checked by all rows it is a kind of.
+struct InterfaceCheck {
+  const char* interface;
+  void (*check)(Trial&);
+};
+constexpr InterfaceCheck interface_checks[] = {
+    {"Shader", check_shader},        {"VolumeShader", check_volume},      {"Camera", check_camera},
+    {"Filter", check_filter},        {"Sampler", check_sampler},          {"EmissionShader", check_emission},
+    {"ObjectMap", check_object_map}, {"SceneObject", check_scene_object}, {"LightSampler", check_light_sampler},
+    {"Renderer", check_renderer},    {"ToneMap", check_tone_map},
+};
+
+std::vector<const ClassInfo*> chosen(const std::vector<std::string>& names) {
+  const Registry& registry = Registry::instance();
+  std::vector<const ClassInfo*> classes;
+  std::vector<std::string> known;
+  for (const ClassInfo* info : registry.all()) known.push_back(info->name);
+  for (const std::string& name : names)
+    if (!registry.find(name)) throw Error("there is no class '" + name + "'" + suggestion(name, known));
+  for (const ClassInfo* info : registry.all()) {
+    bool asked = names.empty();
+    for (const std::string& name : names) asked = asked || info->is_a(*registry.find(name));
+    if (asked && !info->abstract()) classes.push_back(info);
+  }
+  return classes;
+}
+
+std::uint64_t seed_of(std::uint64_t seed, const std::string& name, int part) {
+  std::uint64_t h = mix_bits(seed + 0x9e3779b97f4a7c15ull * std::uint64_t(part + 1));
+  for (const char c : name) h = mix_bits(h ^ std::uint64_t(static_cast<unsigned char>(c)));
+  return h;
+}
+
+void run(Trial& trial, void (*check)(Trial&), const std::string& what) {
+  std::optional<std::string> thrown;
+  try {
+    check(trial);
+  } catch (...) {  // a part may throw anything
+    thrown = thrown_text();
+  }
+  trial.expect(!thrown, "nothing is thrown by the checks of a " + what, [&] { return *thrown; });
+}
+
+/// One part of a class: the one with defaults (0) or a drawn one.
+std::vector<Outcome> try_part(const ClassInfo& info, int part, const Options& options, const Fixtures& fixtures) {
+  const std::uint64_t seed = seed_of(options.seed, info.name, part);
+  std::mt19937_64 random(seed);
+  const Drawn drawn = part == 0 ? default_part(info, fixtures, random) : draw_part(info, fixtures, random);
+  if (!drawn.part)
+    return {{info.name, part == 0 ? "with defaults" : "with random members", drawn.text,
+             "no part could be made: " + drawn.refused, Result::not_tried}};
+  Trial trial(*drawn.part, drawn.text, part == 0, fixtures, options.effort, random());
+  run(trial, check_component, "component");
+  for (const InterfaceCheck& row : interface_checks)
+    if (info.is_a(*Registry::instance().find(row.interface))) run(trial, row.check, row.interface);
+  return trial.outcomes();
+}
+
+}  // namespace
+
+Outcome& Trial::outcome(const std::string& check) {
+  const auto [place, added] = places_.try_emplace(check, outcomes_.size());
+  if (added) outcomes_.push_back({class_name_, check, text_, {}, Result::passed});
+  return outcomes_[place->second];
+}
+
+bool Trial::expect(bool holds, const std::string& check, const std::function<std::string()>& detail) {
+  Outcome& o = outcome(check);
+  if (!holds && o.result != Result::failed) {
+    o.result = Result::failed;
+    o.detail = detail ? detail() : "";
+  }
+  return holds;
+}
+
+void Trial::not_tried(const std::string& check, const std::string& why) {
+  Outcome& o = outcome(check);
+  if (o.result == Result::failed) return;
+  o.result = Result::not_tried;
+  o.detail = why;
+}
+
+std::vector<std::string> checked_interfaces() {
+  std::vector<std::string> names;
+  for (const InterfaceCheck& row : interface_checks) names.emplace_back(row.interface);
+  return names;
+}
+
+std::vector<Outcome> conform(const Options& options) {
+  const std::vector<const ClassInfo*> classes = chosen(options.classes);
+  const size_t parts = size_t(options.drawn) + 1;
+  std::vector<std::vector<Outcome>> outcomes(classes.size() * parts);
+  Fixtures fixtures;
+  std::mutex mutex;
+  int done = 0;
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(options.threads));
+  tbb::parallel_for(
+      size_t(0), outcomes.size(),
+      [&](size_t i) {
+        const ClassInfo& info = *classes[i / parts];
+        outcomes[i] = try_part(info, int(i % parts), options, fixtures);
+        const std::lock_guard lock(mutex);
+        ++done;
+        if (options.progress) options.progress(info.name, done, int(outcomes.size()));
+      },
+      tbb::simple_partitioner());
+
+  std::vector<Outcome> all;
+  for (const std::vector<Outcome>& some : outcomes)
+    for (const Outcome& o : some) {
+      if (o.result == Result::failed && o.part.find(fixtures.folder()) != std::string::npos) fixtures.keep();
+      all.push_back(o);
+    }
+  return all;
+}
+
+}  // namespace etendue::conform

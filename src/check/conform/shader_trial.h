@@ -1,0 +1,89 @@
+#pragma once
+// What the checks of shaders share: a shader bound to a point of a sphere, directions, and comparisons that know of rounding.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "conformance.h"
+#include "etendue/core/arena.h"
+#include "etendue/shader.h"
+
+namespace etendue::conform {
+
+/// Wavelengths at equal steps through the visible range, the hero [nm] first.
+Wavelengths spread_wavelengths(float hero);
+/// "diffuse_reflection|glossy_reflection"
+std::string lobe_names(Lobes);
+/// All subsets of some lobes but the empty one, the whole set first.
+std::vector<Lobes> subsets_of(Lobes);
+
+/// A point on a sphere that has the shader, and the scattering there.
+class BoundShader {
+ public:
+  /// `tilt` [rad]: how far the shading normal is turned away from the surface's.
+  BoundShader(const Shader&, const Ref<SceneObject>& carrier, Point2 u, float hero, float tilt, float tilt_azimuth);
+
+  /// Null: nothing is scattered here.
+  const Scatter* scatter() const { return scatter_; }
+  const SurfacePoint& point() const { return point_; }
+  const Wavelengths& wavelengths() const { return wavelengths_; }
+  /// From polar angle [deg] and azimuth [rad] around the shading normal; more than 90 degrees: behind.
+  Vector3 at_angle(double angle, double azimuth) const;
+  /// The angle [deg] of a direction to the shading normal.
+  double angle(const Vector3&) const;
+  std::string name(const Vector3& direction) const;
+  /// The fraction of the hero's power that specular lobes send on from `out`.
+  double specular_fraction(const Vector3& out, Lobes specular) const;
+  /// Whether the shader turns normals itself (by a map): radiance and importance are then reflected unequally, and the power
+  /// that leaves by the surface's normal is not what the model says by its own.
+  bool turned() const { return turned_; }
+
+ private:
+  SurfacePoint point_;
+  Wavelengths wavelengths_;
+  Arena arena_;
+  const Scatter* scatter_;
+  bool turned_ = false;
+};
+
+/// A sphere whose shader is the given one.
+Ref<SceneObject> carrier_of(Shader&);
+
+/// How much a function of a direction changes when the direction is off by rounding.
+template <class F>
+Spectrum rounding_of(F&& f, const Vector3& direction) {
+  const Spectrum middle = f(direction);
+  Spectrum most;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float step : {-2.5e-7f, 2.5e-7f}) {
+      Vector3 v = direction;
+      v[axis] += step;
+      const Spectrum off = f(v) - middle;
+      for (int i = 0; i < spectrum_size; ++i) most.set(i, std::max(most[i], std::abs(off[i])));
+    }
+  return most;
+}
+
+/// Whether two values agree to a relative tolerance, at the hero alone or at all wavelengths; `rounding` is asked for what
+/// rounding explains only if they do not.
+template <class F>
+bool agree(const Spectrum& a, const Spectrum& b, float relative, bool hero_alone, F&& rounding) {
+  const int lanes = hero_alone ? 1 : spectrum_size;
+  bool all = true;
+  for (int i = 0; i < lanes; ++i)
+    all = all && std::abs(a[i] - b[i]) <= relative * std::max(std::abs(a[i]), std::abs(b[i])) + 1e-9f;
+  if (all) return true;
+  const Spectrum r = rounding();
+  for (int i = 0; i < lanes; ++i)
+    if (!(std::abs(a[i] - b[i]) <= relative * std::max(std::abs(a[i]), std::abs(b[i])) + 1e-9f + 4 * r[i])) return false;
+  return true;
+}
+
+void check_shader_values(Trial&, const BoundShader& plain, const BoundShader& tilted);
+void check_shader_reversal(Trial&, const BoundShader& plain, const BoundShader& tilted);
+void check_shader_sampling(Trial&, const BoundShader& plain, const BoundShader& tilted);
+/// Of shaders whose `evaluate` is an estimate.
+void check_shader_estimates(Trial&, const BoundShader& plain);
+
+}  // namespace etendue::conform

@@ -1,0 +1,246 @@
+#include "collect.h"
+
+#include <bit>
+#include <chrono>
+#include <utility>
+
+#include "describe/guard.h"
+#include "etendue/language/language.h"
+
+namespace etendue::verify {
+namespace {
+
+bool written(const Component& component, const std::string& member) {
+  if (!component.origin) return false;
+  const auto& members = component.origin->members;
+  return std::any_of(members.begin(), members.end(), [&](const auto& m) { return m.first == member; });
+}
+
+/// What all algorithms take from the job, so that they compute the same thing with the same kind of numbers.
+void take_over(Renderer& to, const Renderer& from) {
+  for (const char* member : {"sampler", "light_sampler", "max_depth"})
+    if (!written(to, member) && to.class_info().find(member) && from.class_info().find(member))
+      set(to, member, get(from, member));
+}
+
+Ref<Renderer> parse_renderer(const std::string& expression) {
+  const bool bare = expression.find('{') == std::string::npos;
+  Ref<Renderer> renderer = ref_cast<Renderer>(parse_component(bare ? expression + " {}" : expression, "--renderers"));
+  if (!renderer)
+    throw Error("'" + expression + "' is no renderer; see etendue classes Renderer", {intern("--renderers"), 0, 0});
+  return renderer;
+}
+
+std::string trimmed(const std::string& text) {
+  const size_t begin = text.find_first_not_of(" \t\r\n"), end = text.find_last_not_of(" \t\r\n");
+  return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
+}
+
+std::vector<std::string> missed(const Renderer& renderer, const SceneTraits& traits) {
+  std::vector<std::string> lost;
+  for (const Advice& advice : renderer.misses(traits)) lost.push_back(advice.lost);
+  return lost;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
+  return text;
+}
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// The means of one pass, at layout.index.
+std::vector<double> means(const Layout& layout, const Image& picture) {
+  std::vector<size_t> channel;
+  for (const Layer& layer : layout.layers)
+    channel.push_back(layer.length == 0 ? size_t(layer.channel - 'X') : size_t(3 * layer.length + (layer.channel - 'X')));
+  std::vector<double> result(layout.count());
+  const PixelArea all = layout.area(layout.whole());
+  for (size_t tile = 0; tile < layout.tiles.size(); ++tile) {
+    const PixelArea& area = layout.tiles[tile];
+    for (size_t layer = 0; layer < channel.size(); ++layer) {
+      double sum = 0;
+      for (int y = area.y0; y < area.y1; ++y)
+        for (int x = area.x0; x < area.x1; ++x) sum += picture.at(x - all.x0, y - all.y0, channel[layer]);
+      result[layout.index(layer, tile)] = sum / layout.pixels(tile);
+      result[layout.index(layer, layout.whole())] += sum / layout.pixels(layout.whole());
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::string> split_expressions(const std::string& list) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  bool text = false;
+  for (size_t i = 0; i < list.size(); ++i) {
+    const char c = list[i];
+    if (text) {
+      if (c == '"') text = false;
+      if (c == '\\' && i + 1 < list.size()) parts.back() += list[i++];
+    } else if (c == '"') {
+      text = true;
+    } else if (c == '{' || c == '[' || c == '(') {
+      ++depth;
+    } else if (c == '}' || c == ']' || c == ')') {
+      --depth;
+    } else if (c == ',' && depth == 0) {
+      parts.emplace_back();
+      continue;
+    }
+    parts.back() += list[i];
+  }
+  for (std::string& part : parts) part = trimmed(part);
+  return parts;
+}
+
+Choice choose_renderers(const Job& job, const std::string& names, bool force) {
+  const std::string own_class = job.renderer->class_info().name;
+  const bool named = !trimmed(names).empty();
+  std::vector<Candidate> all;
+  if (named) {
+    std::vector<Error> errors;
+    for (const std::string& expression : split_expressions(names)) {
+      try {
+        if (expression.empty()) throw Error("a name is missing in '" + names + "'", {intern("--renderers"), 0, 0});
+        all.push_back({expression, expression == own_class ? job.renderer : parse_renderer(expression), {}});
+      } catch (const Errors& several) {
+        errors.insert(errors.end(), several.errors.begin(), several.errors.end());
+      } catch (const Error& error) {
+        errors.push_back(error);
+      }
+    }
+    if (!errors.empty()) throw Errors(std::move(errors));
+  } else {
+    all.push_back({own_class, job.renderer, {}});
+    const Registry& registry = Registry::instance();
+    const ClassInfo* interface = registry.find("Renderer");
+    for (const ClassInfo* info : registry.subclasses(*interface))
+      if (info != interface && info->name != own_class) all.push_back({info->name, ref_cast<Renderer>(create(*info)), {}});
+  }
+
+  const SceneTraits traits = scene_traits(*job.scene, *job.camera);
+  Choice choice;
+  for (Candidate& candidate : all) {
+    if (candidate.renderer != job.renderer) {
+      try {
+        take_over(*candidate.renderer, *job.renderer);
+      } catch (const Error& error) {  // paths longer than it can keep
+        choice.left_out.push_back(
+            {candidate.name, std::string("cannot take over what the file's renderer has: ") + error.what()});
+        continue;
+      }
+      prepare_tree(*candidate.renderer);
+    }
+    candidate.misses = missed(*candidate.renderer, traits);
+    if (!candidate.misses.empty() && !(force && named))
+      choice.left_out.push_back({candidate.name, "misses " + joined(candidate.misses)});
+    else if (const std::string bias = candidate.renderer->bias(); !bias.empty() && !named)
+      choice.left_out.push_back({candidate.name, "is biased: " + bias + "; --renderers compares it nevertheless"});
+    else
+      choice.candidates.push_back(std::move(candidate));
+  }
+  return choice;
+}
+
+void prepare_picture(Job& job, int lengths) {
+  if (!job.image) return;  // the job itself will say so
+  job.image->filter = ref_cast<Filter>(Registry::instance().create("BoxFilter"));
+  job.image->layers.clear();
+  set(*job.image, "path_lengths", Value(Number{double(lengths)}));
+  job.time_limit = job.error_limit = 0;
+}
+
+int default_tile(const ImageBuffer& image) {
+  const int side = std::min(image.area().width(), image.area().height());
+  return int(std::bit_floor(unsigned(std::clamp(side / 8, 4, 32))));
+}
+
+namespace {
+
+/// Puts back what measuring changes.
+class Restored {
+ public:
+  explicit Restored(Job& job) : job_(job), renderer_(job.renderer), seed_(job.seed) {}
+  ~Restored() {
+    job_.renderer = renderer_;
+    job_.seed = seed_;
+  }
+  Restored(const Restored&) = delete;
+  Restored& operator=(const Restored&) = delete;
+  std::uint64_t seed() const { return seed_; }
+
+ private:
+  Job& job_;
+  const Ref<Renderer> renderer_;
+  const std::uint64_t seed_;
+};
+
+/// One more pass; false when it was interrupted.
+bool add_pass(Job& job, const Layout& layout, double factor, Measured& measured, RendererRun& run) {
+  if (job.render() != Ended::samples) return false;
+  const Image picture = job.image->develop();
+  measured.passes.push_back(means(layout, picture));
+  for (double& value : measured.passes.back()) value *= factor;
+  const size_t channels = picture.channels.size();
+  for (size_t i = 0; i < run.picture.values.size(); ++i)
+    run.picture.values[i] += factor * picture.values[i / 3 * channels + i % 3];
+  run.bad_samples += job.image->bad_samples();
+  run.samples += job.image->samples();
+  return true;
+}
+
+double share_with_length(const Layout& layout, const Measured& measured) {
+  double total = 0, told = 0;
+  for (const auto& pass : measured.passes)
+    for (size_t layer = 0; layer < layout.layers.size(); ++layer) {
+      const double mean = pass[layout.index(layer, layout.whole())];
+      if (layer == 0) total += mean;
+      if (layout.layers[layer].length > 0) told += mean;
+    }
+  return total > 0 ? told / total : 1;
+}
+
+}  // namespace
+
+Collected collect(Job& job, const std::vector<Candidate>& candidates, int tile, const CollectOptions& options) {
+  const Restored before(job);
+  Collected all;
+  all.layout = Layout::of(job.image->area(), tile, job.image->path_lengths);
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    job.renderer = candidates[i].renderer;
+    const int own_samples = std::exchange(job.renderer->samples, options.samples);
+    Measured measured;
+    measured.name = candidates[i].name;
+    RendererRun run;
+    run.picture = Image(job.image->area().width(), job.image->area().height(), {"X", "Y", "Z"});
+    run.picture.metadata["color_space"] = "xyz";
+    const auto enough = [&](size_t passes) {
+      constexpr size_t least = 8;
+      return options.seconds > 0 ? passes >= least && run.seconds >= options.seconds : passes >= size_t(options.passes);
+    };
+    bool going = true;
+    const double begun = now();
+    for (size_t pass = 0; going && !enough(pass); ++pass) {
+      // No two passes share random numbers, of whatever renderers.
+      job.seed = before.seed() + ((std::uint64_t(i) << 32) + pass) * 0x9e3779b97f4a7c15ull;
+      going =
+          (!options.go_on || options.go_on(i, pass)) && add_pass(job, all.layout, i == 0 ? options.inject : 1, measured, run);
+      run.seconds = now() - begun;
+    }
+    job.renderer->samples = own_samples;
+    if (!going) return all;
+    for (double& value : run.picture.values) value /= double(measured.passes.size());
+    run.length_share = share_with_length(all.layout, measured);
+    measured.tells_lengths = run.length_share > 0;
+    all.measured.push_back(std::move(measured));
+    all.runs.push_back(std::move(run));
+  }
+  all.complete = true;
+  return all;
+}
+
+}  // namespace etendue::verify

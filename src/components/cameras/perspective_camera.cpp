@@ -1,0 +1,173 @@
+// PerspectiveCamera: a pinhole, or a thin lens.
+
+#include "etendue/core/warp.h"
+#include "pose.h"
+
+namespace etendue {
+namespace {
+
+// Film points stand for points of a rectangle at distance 1 in front of the lens' centre, of area A. A film point and a
+// lens point give the ray from the lens point to the film point's image, `focus_distance` times farther along the ray
+// through the centre.
+//
+// Densities. Film points uniform over A are, on the plane of focus at distance d, uniform over A d^2. Seen from a lens
+// point, under the angle theta to the axis, that plane's points lie at distance d / cos: the density per solid angle is
+// (d / cos)^2 / (A d^2 cos) = 1 / (A cos^3) for all lens points. Lens points have density 1 / A_lens.
+//
+// Importance (Veach 1997, section 8.2.2; Pharr, Jakob & Humphreys, section 16.1.1): a pixel's value is the mean radiance
+// of its rays, so for the whole film  1 = integral of W_e cos dw dA  with  W_e cos = p_direction p_position:
+// W_e = 1 / (A A_lens cos^4); for a pinhole the same without A_lens.
+
+enum class Axis : std::uint8_t { smaller, larger, width, height };
+
+class PerspectiveCamera final : public Camera {
+ public:
+  static void describe(Description<PerspectiveCamera>& d) {
+    d.summary("A camera with a pinhole or a thin lens. Right in the picture is the viewing direction times up.",
+              "Kolb, Mitchell & Hanrahan 1995, A realistic camera model for computer graphics, section 2 (thin lens)")
+        .member<&PerspectiveCamera::from>("from", "m", "where the camera is")
+        .member<&PerspectiveCamera::to>("to", "m", "a point in the middle of the picture")
+        .member<&PerspectiveCamera::up>("up", "1", "a direction that points upwards in the picture")
+        .member<&PerspectiveCamera::transform>(
+            "transform", "", "moves and turns the camera as from, to and up have placed it; may change with time")
+        .member<&PerspectiveCamera::fov>("fov", "deg", "angle of view", Range{0, 179, true})
+        .member<&PerspectiveCamera::fov_axis>("fov_axis", "", "the side of the picture the angle of view is measured across",
+                                              choices("smaller", "larger", "width", "height"))
+        .member<&PerspectiveCamera::lens_radius>("lens_radius", "m", "radius of the lens; 0: a pinhole, all is sharp",
+                                                 at_least(0))
+        .member<&PerspectiveCamera::focus_distance>(
+            "focus_distance", "m", "distance of the plane of sharp focus, along the axis; 0: at the point `to`", at_least(0));
+  }
+
+  std::optional<DoublePoint3> place() const override { return transform.written(shutter_open)(from); }
+  void prepare() override {
+    check_shutter(*this);
+    placement_.set(*this, from, to, up, transform);
+    focus_ = focus_distance > 0 ? focus_distance : float(length(to - from));
+    update();
+  }
+  void set_film(int width, int height) override {
+    width_ = float(width);
+    height_ = float(height);
+    update();
+  }
+
+  Ray ray(Point2 film, Point2 lens, float time) const override {
+    const Pose pose = placement_.at(time);
+    Vector3 direction{(2 * film.x / width_ - 1) * half_width_, (1 - 2 * film.y / height_) * half_height_, 1};
+    Ray r;
+    r.origin = pose.position;
+    if (lens_radius > 0) {
+      const Point2 l = warp::disc(lens);
+      const Vector3 offset{lens_radius * l.x, lens_radius * l.y, 0};
+      r.origin = r.origin + pose.to_world(offset);
+      direction = direction - offset / focus_;
+    }
+    const float inverse_length = inverse_sqrt(length_squared(direction));
+    r.direction = pose.to_world(inverse_length * direction);
+    r.time = time;
+    r.spread = pixel_ * inverse_length;
+    return r;
+  }
+
+  bool has_lens() const override { return lens_radius > 0; }
+
+  std::optional<Point2> film_point(const Ray& r) const override {
+    const Seen seen = look(r);
+    return seen.on_film ? std::optional(seen.film) : std::nullopt;
+  }
+
+  std::optional<LensSample> sample_lens(const Point3& point, float time, Point2 u) const override {
+    const Pose pose = placement_.at(time);
+    const Point2 l = lens_radius > 0 ? warp::disc(u) : Point2{};
+    const Vector3 offset{lens_radius * l.x, lens_radius * l.y, 0};
+    const Vector3 to_point = pose.to_camera(point - pose.position) - offset;
+    if (!(to_point.z > 0)) return std::nullopt;
+    Seen seen;
+    project(offset, to_point, seen);
+    if (!seen.on_film) return std::nullopt;
+    LensSample s;
+    s.lens = pose.position + pose.to_world(offset);
+    s.distance = length(to_point);
+    s.direction = pose.to_world(-1 / s.distance * to_point);
+    const float cosine = to_point.z / s.distance;
+    s.density = square(s.distance) * lens_density_ / cosine;
+    s.importance = importance_of(cosine);
+    s.film = seen.film;
+    return s;
+  }
+
+  float importance(const Ray& r) const override {
+    const Seen seen = look(r);
+    return seen.on_film ? importance_of(seen.cosine) : 0;
+  }
+  CameraDensity density(const Ray& r) const override {
+    const Seen seen = look(r);
+    if (!seen.on_film) return {};
+    return {lens_density_, 1 / (area_ * seen.cosine * square(seen.cosine))};
+  }
+
+  DoublePoint3 from{0, 0, 0}, to{0, 0, 1};
+  Vector3 up{0, 1, 0};
+  AnimatedTransform transform;
+  float fov = 40;
+  Axis fov_axis = Axis::smaller;
+  float lens_radius = 0, focus_distance = 0;
+
+ private:
+  struct Seen {
+    bool on_film = false;
+    Point2 film;
+    float cosine = 0;
+  };
+
+  void update() {
+    const bool across_width = fov_axis == Axis::width || (fov_axis == Axis::smaller && width_ <= height_) ||
+                              (fov_axis == Axis::larger && width_ >= height_);
+    const float half = std::tan(radians(fov) / 2);
+    half_width_ = across_width ? half : half * width_ / height_;
+    half_height_ = across_width ? half * height_ / width_ : half;
+    area_ = 4 * half_width_ * half_height_;
+    pixel_ = 2 * half_width_ / width_;
+    lens_density_ = lens_radius > 0 ? 1 / (pi * square(lens_radius)) : 1;
+  }
+
+  float importance_of(float cosine) const { return lens_density_ / (area_ * square(square(cosine))); }
+
+  /// The film point of a ray from a point of the lens, in camera coordinates.
+  void project(const Vector3& lens, const Vector3& direction, Seen& seen) const {
+    const float x = direction.x / direction.z + lens.x / focus_, y = direction.y / direction.z + lens.y / focus_;
+    seen.film = {(x / half_width_ + 1) / 2 * width_, (1 - y / half_height_) / 2 * height_};
+    seen.on_film = seen.film.x >= 0 && seen.film.x < width_ && seen.film.y >= 0 && seen.film.y < height_;
+  }
+
+  /// Where a ray that leaves the lens comes from on the film. A ray of a pinhole is taken to pass through it.
+  Seen look(const Ray& r) const {
+    Seen seen;
+    const Pose pose = placement_.at(r.time);
+    const Vector3 direction = pose.to_camera(r.direction);
+    if (!(direction.z > 0)) return seen;
+    Vector3 lens;
+    if (lens_radius > 0) {
+      const Vector3 start = pose.to_camera(r.origin - pose.position);
+      lens = start - (start.z / direction.z) * direction;
+      lens.z = 0;
+      if (length_squared(lens) > square(lens_radius * 1.0001f)) return seen;
+    }
+    project(lens, direction, seen);
+    seen.cosine = direction.z / length(direction);
+    return seen;
+  }
+
+  Placement placement_;
+  float width_ = 1, height_ = 1;            // of the picture, in pixels
+  float half_width_ = 1, half_height_ = 1;  // of the film at distance 1
+  float area_ = 4, pixel_ = 1;              // of the film, and width of a pixel, at distance 1
+  float focus_ = 1;                         // [m]
+  float lens_density_ = 1;                  // [1/m^2]; 1 for a pinhole
+};
+
+const Register<PerspectiveCamera> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,64 @@
+#pragma once
+// AxialEmission: a profile that is round about an axis or about the surface's normal.
+
+#include "shaped_emission.h"
+
+namespace etendue {
+
+// With theta the angle to the axis, a profile is a function of h = 1 - cos(theta), found from the difference d of the two unit
+// vectors as |d|^2 / 2, which stays exact in narrow cones. As dw = 2 pi dh, Omega = 2 pi integral of f dh.
+class AxialEmission : public ShapedEmission {
+ public:
+  Spectrum radiance(const SurfacePoint&, const Vector3& direction, const Wavelengths&) const override;
+
+  // All light of a point at infinity travels the same way: straight away from it, with probability 1. On a surface some of a
+  // profile about an axis may lie on a side that does not emit; what is drawn there has density 0, and the density over the
+  // emitting sides adds up to the share of the profile that lies there.
+  DirectionSample sample(const SurfacePoint&, Point2 u) const override;
+  float density(const SurfacePoint&, const Vector3& direction) const override;
+
+  bool knows_incident() const override { return true; }
+  DirectionSample sample_incident(Point2 u) const override;
+  float incident_density(const Vector3& towards) const override;
+
+  enum class About : std::uint8_t { normal, axis };
+  Vector3 axis{0, 0, 1};
+  About about = About::axis;
+
+ protected:
+  /// To be called when the profile is known.
+  void prepare_axis() {
+    axis_ = checked_direction(axis, "axis");
+    normal_share_ = front(1);
+  }
+
+  // ---- what a profile says of itself --------------------------------------------------------------------------------------
+  /// f at 1 - cos(theta) = h.
+  virtual float fall_off(float h) const = 0;
+  /// The least h beyond which there is nothing (or too little to count), and one before it where f is not smooth (0: none).
+  virtual double outer() const = 0;
+  virtual double inner() const { return 0; }
+  /// Draws h, and its density [1/sr]; `surface`: about the normal of a surface, whose cosine goes with it.
+  virtual float draw(float u, bool surface) const = 0;
+  virtual float drawn(float h, bool surface) const = 0;
+
+  float profile(const SurfacePoint&, const Vector3& direction) const override;
+  double surface_share(const SurfacePoint&) const override;
+  bool same_on_surfaces() const override { return about == About::normal; }
+  Vector3 own_axis(const SurfacePoint& p) const override { return about_normal(p) ? Vector3{} : axis_at(p); }
+
+ private:
+  /// A point has no normal, and at infinity all light travels along it.
+  bool about_normal(const SurfacePoint& p) const {
+    return about == About::normal && !(p.normal == Normal3{}) && !(p.object && p.object->infinite());
+  }
+  Vector3 axis_at(const SurfacePoint& p) const { return turned(p, axis_); }
+  float height(const SurfacePoint&, const Vector3& direction) const;
+  Vector3 local(float h, float turn) const;
+  double front(double c) const;
+
+  Vector3 axis_{0, 0, 1};    // unit
+  double normal_share_ = 0;  // K of one side, about the normal [sr]
+};
+
+}  // namespace etendue

@@ -1,0 +1,303 @@
+// EnvironmentEmission: light from all around, from an image or of a map.
+
+#include "etendue/core/warp.h"
+#include "etendue/describe/color.h"
+#include "etendue/emission_shader.h"
+#include "etendue/object_map.h"
+#include "etendue/scene_object.h"
+#include "images/linear_image.h"
+#include "quantity.h"
+
+namespace etendue {
+namespace {
+
+// Directions are in the coordinates of the object that carries this emission; y is up. Longitude and latitude:
+// u = atan2(x, -z) / (2 pi), wrapped to [0, 1), and v = acos(y) / pi from the top; texels are squares of that plane, row 0 at
+// the top, and the radiance is bilinear between their centres (beyond the first and last row it is that row).
+//
+// Importance sampling: a density that is constant over each texel's solid angle
+//   Omega_row = (2 pi / width) (cos(theta_top) - cos(theta_bottom)),
+// in proportion to the mean of the bilinear radiance's importance over the texel. The mean of a hat function over its own
+// texel is 3/4, over each neighbour 1/8, in both directions, so the mean is a 3 x 3 filter, and it is positive wherever the
+// radiance is. A texel is chosen with probability importance * Omega / sum, a point in it uniformly in longitude and in
+// cos(theta), hence density = importance / sum [1/sr].
+class EnvironmentEmission final : public EmissionShader {
+ public:
+  static void describe(Description<EnvironmentEmission>& d) {
+    d.summary("Light that arrives from infinitely far away, from an image in longitude and latitude or of a map.")
+        .member<&EnvironmentEmission::file>("file", "",
+                                            "the image, in longitude and latitude: its middle is seen along +z of the object, "
+                                            "its top along +y, its left and right "
+                                            "edges along -z, the middle of its left half along +x; none: `radiance` is used")
+        .member<&EnvironmentEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
+                                           "radiance when there is no image; maps see (u, v) of the direction, v upwards")
+        .member<&EnvironmentEmission::scale>("scale", "1", "multiplies the radiance", at_least(0))
+        .member<&EnvironmentEmission::lux>(
+            "illuminance", "lx", "on a plane that faces +y of the object, instead of what the scale gives; 0: not asked for",
+            at_least(0))
+        .member<&EnvironmentEmission::color_space>("color_space", "", "primaries and white of the image's RGB")
+        .member<&EnvironmentEmission::transfer>("transfer", "",
+                                                "how its numbers are encoded; auto: srgb for integers, linear for floats");
+  }
+
+  void prepare() override {
+    image_ = {};
+    importance_.clear();
+    total_ = 0;
+    if (!map) fail("radiance", "a map or a colour is needed");
+    constant_map_ = bool(map->constant());
+    factor_ = scale;
+    try {
+      space_ = &rgb_space(color_space);
+    } catch (const Error& e) {
+      fail("color_space", e.what());
+    }
+    try {
+      check_transfer(transfer);
+    } catch (const Error& e) {
+      fail("transfer", e.what());
+    }
+    if (file.empty()) {
+      if (lux > 0) ask_for(map_illuminance());
+      return;
+    }
+    try {
+      image_ = read_linear_image(file.resolved(), transfer);
+    } catch (const Error& e) {
+      fail("file", e.what());
+    }
+    check_pixels();
+    build();
+    if (lux > 0) ask_for(image_illuminance());
+  }
+
+  Spectrum radiance(const SurfacePoint& p, const Vector3&, const Wavelengths& w) const override {
+    const Vector3 towards = p.object_position - Point3{};
+    if (!image_.rgb.empty()) {
+      const std::array<float, 3> rgb = look_up(place(towards));
+      return rgb_spectrum(*space_, factor_ * rgb[0], factor_ * rgb[1], factor_ * rgb[2], ColorUse::radiance, w);
+    }
+    if (constant_map_) return map->color(p, w, ColorUse::radiance) * factor_;
+    return map_radiance(p, towards, w);
+  }
+
+  // All light of a point at infinity travels the same way: straight away from it, with probability 1.
+  DirectionSample sample(const SurfacePoint& p, Point2) const override {
+    Vector3 away = Point3{} - p.object_position;
+    if (p.object) away = normalize(p.object->transform.at(p.time)(away));
+    return {away, 1};
+  }
+  float density(const SurfacePoint&, const Vector3&) const override { return 1; }
+
+  /// Of all the light that enters through the object's area [W/nm]: pi * area * mean radiance. For an image, of its mean
+  /// colour.
+  Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
+    const float sphere_times_disc = pi * object.area();
+    if (!image_.rgb.empty())
+      return rgb_spectrum(*space_, factor_ * mean_[0], factor_ * mean_[1], factor_ * mean_[2], ColorUse::radiance, w) *
+             sphere_times_disc;
+    if (constant_map_) return map->color({}, w, ColorUse::radiance) * (factor_ * sphere_times_disc);
+    constexpr int side = 32;
+    Spectrum sum;
+    for (int i = 0; i < side; ++i)
+      for (int k = 0; k < side; ++k) {
+        // With all that maps may ask for: normals and positions in the scene as well.
+        const Point2 u{(float(i) + 0.5f) / side, (float(k) + 0.5f) / side};
+        const SurfacePoint p = object.infinite() ? object.sample_visible({}, u, 0).point : facing(warp::sphere(u));
+        sum += map_radiance(p, p.object_position - Point3{}, w);
+      }
+    return sum * (sphere_times_disc / (side * side));
+  }
+
+  bool only_at_infinity() const override { return true; }
+  bool knows_incident() const override { return total_ > 0; }
+
+  DirectionSample sample_incident(Point2 u) const override {
+    if (!(total_ > 0)) return {};
+    const size_t width = size_t(image_.width), height = size_t(image_.height);
+    const size_t y = choose(rows_.data(), height, u.y), x = choose(columns_.data() + y * width, width, u.x);
+    const float phi = 2 * pi * (float(x) + u.x) / float(width);
+    const float cosine = float(lerp(double(u.y), row_cosines_[y], row_cosines_[y + 1]));
+    const float sine = safe_sqrt((1 - cosine) * (1 + cosine));
+    const Vector3 d{sine * std::sin(phi), cosine, -sine * std::cos(phi)};
+    return {d, incident_density(d)};
+  }
+  float incident_density(const Vector3& towards) const override {
+    if (!(total_ > 0)) return 0;
+    const Point2 p = place(towards);
+    const int x = std::min(int(p.x * float(image_.width)), image_.width - 1);
+    const int y = std::min(int(p.y * float(image_.height)), image_.height - 1);
+    return float(double(importance_[size_t(y) * size_t(image_.width) + size_t(x)]) / total_);
+  }
+
+  FilePath file;
+  Ref<ObjectMap> map = constant(1.0f);
+  float scale = 1;
+  double lux = 0;
+  std::string color_space = "srgb", transfer = automatic_transfer;
+
+ private:
+  static double lerp(double t, double a, double b) { return (1 - t) * a + t * b; }
+
+  /// (u, v) of a direction, v from the top.
+  static Point2 place(const Vector3& d) {
+    float u = std::atan2(d.x, -d.z) / (2 * pi);
+    if (u < 0) u += 1;
+    return {std::min(u, one_minus_epsilon), safe_acos(d.y) / pi};
+  }
+
+  /// The point in a direction, for an object that is not moved.
+  static SurfacePoint facing(const Vector3& towards) {
+    SurfacePoint p;
+    p.position = p.object_position = Point3{} + towards;
+    p.normal = p.shading_normal = p.object_normal = Normal3(-towards);
+    return p;
+  }
+
+  Spectrum map_radiance(SurfacePoint p, const Vector3& towards, const Wavelengths& w) const {
+    const Point2 at = place(towards);
+    p.uv = {at.x, 1 - at.y};
+    p.footprint = 0;
+    p.object_normal = Normal3(-towards);
+    return map->color(p, w, ColorUse::radiance) * factor_;
+  }
+
+  std::array<float, 3> look_up(Point2 at) const {
+    const float x = at.x * float(image_.width) - 0.5f,
+                y = clamp(at.y * float(image_.height) - 0.5f, 0, float(image_.height - 1));
+    const float left = std::floor(x);
+    const int x0 = left < 0 ? image_.width - 1 : int(left), x1 = x0 + 1 == image_.width ? 0 : x0 + 1;
+    const int y0 = int(y), y1 = std::min(y0 + 1, image_.height - 1);
+    const float fx = x - left, fy = y - float(y0);
+    const float *a = texel(x0, y0), *b = texel(x1, y0), *c = texel(x0, y1), *d = texel(x1, y1);
+    std::array<float, 3> rgb;
+    for (size_t i = 0; i < 3; ++i) rgb[i] = etendue::lerp(fy, etendue::lerp(fx, a[i], b[i]), etendue::lerp(fx, c[i], d[i]));
+    return rgb;
+  }
+  const float* texel(int x, int y) const { return image_.rgb.data() + (size_t(y) * size_t(image_.width) + size_t(x)) * 3; }
+
+  /// Given what a factor of 1 gives [lx].
+  void ask_for(double given) {
+    if (!(given > 0)) fail("illuminance", "nothing that the eye sees shines from above");
+    factor_ = float(lux / given);
+  }
+  /// E = 683.002 integral of V L cos dw over the upper half; of an image, luminances are Y times 106.857 nm.
+  double image_illuminance() const {
+    const size_t width = size_t(image_.width);
+    double sum = 0;
+    for (size_t y = 0; y + 1 < row_cosines_.size(); ++y) {
+      const double top = std::max(row_cosines_[y], 0.0), bottom = std::max(row_cosines_[y + 1], 0.0);
+      const double projected = 3.14159265358979323846 / double(width) * (top * top - bottom * bottom);  // integral of cos dw
+      for (size_t x = 0; x < width && projected > 0; ++x) {
+        const float* rgb = &image_.rgb[(y * width + x) * 3];
+        for (size_t c = 0; c < 3; ++c) sum += projected * space_->to_xyz[3 + c] * double(rgb[c]);
+      }
+    }
+    return luminous_efficacy * observer_y_integral() * sum;
+  }
+  double map_illuminance() {
+    factor_ = 1;
+    return integrate_wavelengths(Quantity::illuminance, [&](const Wavelengths& w) {
+      if (constant_map_) return map->color({}, w, ColorUse::radiance) * pi;
+      constexpr int side = 32;
+      Spectrum sum;
+      for (int i = 0; i < side * side; ++i) {
+        const Vector3 local = warp::cosine_hemisphere({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side});
+        const Vector3 d{local.y, local.z, local.x};
+        sum += map_radiance(facing(d), d, w);
+      }
+      return sum * (pi / (side * side));
+    });
+  }
+
+  void check_pixels() {
+    size_t bad = 0, negative = 0;
+    for (float& value : image_.rgb) {
+      if (!std::isfinite(value)) ++bad;
+      if (value < 0) {
+        value = 0;
+        ++negative;
+      }
+    }
+    if (bad)
+      fail("file", "'" + file.resolved() + "' holds " + std::to_string(bad) + " values that are infinite or not a number");
+    if (negative)
+      warn("'" + file.resolved() + "' holds " + std::to_string(negative) + " negative values, which are taken as 0",
+           location_of("file"));
+  }
+
+  /// Of one texel: its luminance. No less than a small part of the channels' sum, as wide primaries may have a colour of
+  /// no luminance that emits all the same.
+  float texel_importance(const float* rgb) const {
+    const auto& m = space_->to_xyz;
+    const double y = m[3] * double(rgb[0]) + m[4] * double(rgb[1]) + m[5] * double(rgb[2]);
+    return std::max(float(y), 0.02f * (rgb[0] + rgb[1] + rgb[2]));
+  }
+
+  void build() {
+    const int width = image_.width, height = image_.height;
+    const size_t w = size_t(width), h = size_t(height);
+    std::vector<float> raw(w * h);
+    for (size_t i = 0; i < raw.size(); ++i) raw[i] = texel_importance(image_.rgb.data() + 3 * i);
+
+    importance_.resize(w * h);
+    for (int y = 0; y < height; ++y) {
+      const size_t above = size_t(std::max(y - 1, 0)), below = size_t(std::min(y + 1, height - 1));
+      const auto column = [&](size_t x) {
+        return 0.75f * raw[size_t(y) * w + x] + 0.125f * (raw[above * w + x] + raw[below * w + x]);
+      };
+      for (size_t x = 0; x < w; ++x)
+        importance_[size_t(y) * w + x] =
+            0.75f * column(x) + 0.125f * (column(x == 0 ? w - 1 : x - 1) + column(x + 1 == w ? 0 : x + 1));
+    }
+
+    row_cosines_.resize(h + 1);
+    for (size_t y = 0; y <= h; ++y) row_cosines_[y] = std::cos(3.14159265358979323846 * double(y) / double(h));
+    std::vector<double> row_sums(h);
+    columns_.resize(w * h);
+    std::array<double, 3> sums{};
+    for (size_t y = 0; y < h; ++y) {
+      const double solid_angle = 2 * 3.14159265358979323846 / double(w) * (row_cosines_[y] - row_cosines_[y + 1]);
+      double row = 0;
+      for (size_t x = 0; x < w; ++x) row += double(importance_[y * w + x]);
+      double sum = 0;
+      for (size_t x = 0; x < w; ++x) {
+        sum += double(importance_[y * w + x]);
+        columns_[y * w + x] = row > 0 ? float(sum / row) : float(x + 1) / float(w);
+        for (size_t c = 0; c < 3; ++c) sums[c] += double(image_.rgb[(y * w + x) * 3 + c]) * solid_angle;
+      }
+      row_sums[y] = row * solid_angle;
+      total_ += row_sums[y];
+    }
+    rows_.resize(h);
+    double sum = 0;
+    for (size_t y = 0; y < h; ++y) {
+      sum += row_sums[y];
+      rows_[y] = total_ > 0 ? float(sum / total_) : float(y + 1) / float(h);
+    }
+    for (size_t c = 0; c < 3; ++c) mean_[c] = float(sums[c] / (4 * 3.14159265358979323846));
+  }
+
+  /// An interval of a cumulative distribution; u becomes the uniform place in it.
+  static size_t choose(const float* cumulative, size_t count, float& u) {
+    const size_t i = std::min(size_t(std::upper_bound(cumulative, cumulative + count, u) - cumulative), count - 1);
+    const float low = i == 0 ? 0 : cumulative[i - 1], high = cumulative[i];
+    u = high > low ? clamp((u - low) / (high - low), 0, one_minus_epsilon) : 0.5f;
+    return i;
+  }
+
+  const RgbSpace* space_ = nullptr;
+  bool constant_map_ = true;
+  float factor_ = 1;  // multiplies all radiance
+  LinearImage image_;
+  std::array<float, 3> mean_{};        // RGB over the sphere
+  std::vector<float> importance_;      // per texel
+  double total_ = 0;                   // of importance times solid angle
+  std::vector<float> rows_, columns_;  // cumulative probabilities: of rows, and in each row of its texels
+  std::vector<double> row_cosines_;    // cos(theta) at the rows' borders
+};
+
+const Register<EnvironmentEmission> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,166 @@
+// IesEmission: the measured light of a lamp.
+
+#include "direction_table.h"
+#include "ies_file.h"
+#include "shaped_emission.h"
+
+namespace etendue {
+namespace {
+
+constexpr double pi_exactly = 3.14159265358979323846, degree = pi_exactly / 180;
+
+// The file gives I(w) [cd]. With the colour M of luminance per sr l = 683.002 integral of M V dlambda, the profile
+// (ShapedEmission) of a point is f = I / l [1], as its intensity is M f * 1 m^2, with Omega = flux / l.
+//
+// A surface of area A about whose normal the lamp's axis lies sends the same out when each part of it does so:
+//     L = I / (A |n . w|),   f = I / (l A |n . w|),   K = (flux to the sides that emit) / (l A);
+// the whole object then has the intensities of the file if it is flat, and its flux if it is not. A cosine below 1e-3 (the last
+// 0.06 degrees) counts as that, so that the radiance stays finite.
+//
+// Directions are drawn from a table over the file's own grid, finely divided (2 degrees of the polar angle, 5 around it). In a
+// cell the intensity is bilinear in the angles; its mean over four points at the corners, which is positive if any of it is, is
+// the cell's importance.
+class IesEmission final : public ShapedEmission {
+ public:
+  static void describe(Description<IesEmission>& d) {
+    d.summary(
+         "The light of a lamp as measured, from an IES photometric file (LM-63-1986 to -2019; types A, B and C; TILT=NONE or "
+         "INCLUDE). On a Point a lamp that hangs there; on a surface a luminous area that sends it out about its normal. As "
+         "strong as the file says, multiplied by `multiplier`, unless an amount is given. What lies behind a surface that "
+         "emits "
+         "to the front only is left out.",
+         "ANSI/IESNA LM-63-02, Standard file format for the electronic transfer of photometric data")
+        .member<&IesEmission::file>("file", "", "the .ies file", required)
+        .member<&IesEmission::map>("color", "1", "the spectrum's shape; the same everywhere");
+    describe_amounts(d);
+    d.member<&IesEmission::multiplier>("multiplier", "1", "multiplies the file's candelas", at_least(0))
+        .member<&IesEmission::axis>("axis", "1",
+                                    "of a Point: where vertical angle 0 of type C points, or the beam of types A and B, in the "
+                                    "object's own coordinates; of any length. On a surface the normal takes its place")
+        .member<&IesEmission::across>("across", "1",
+                                      "a direction across the axis: where horizontal angle 0 of type C lies, or vertical angle "
+                                      "90 of types A and B; only what is perpendicular to the axis counts")
+        .member<&IesEmission::tilt>("tilt", "deg",
+                                    "by how much the lamp is tilted, for files with TILT=INCLUDE, which say how that changes "
+                                    "its light; the axis is turned separately",
+                                    range(0, 180));
+  }
+
+  void prepare() override {
+    try {
+      ies_ = read_ies_file(file.resolved());
+    } catch (const Error& e) {
+      fail("file", e.what());
+    }
+    axis_ = checked_direction(axis, "axis");
+    across_ = checked_direction(across, "across");
+    if (!(length(cross(axis_, across_)) > 1e-3f)) fail("across", "must not be along the axis");
+    prepare_amounts("color");
+    const Color colour = map->constant();
+    if (!colour) fail("color", "must be the same everywhere");
+    const double luminance =
+        integrate_spectrum(Quantity::flux, [&](float lambda) { return colour->at(lambda, ColorUse::radiance); });
+    if (!(luminance > 0)) fail("color", "is black to the eye, so it cannot have the shape of a lamp's spectrum");
+    const double factor = ies_.tilt_factor(double(tilt)) * double(multiplier);
+    per_candela_ = float(factor / luminance);
+    flux_ = ies_.lumens() * factor / luminance;
+    front_ = front_lumens() * factor / luminance;
+
+    const std::vector<double> polar = subdivide(ies_.polar, 2), azimuth = subdivide(ies_.azimuth, 5);
+    table_.build(polar, azimuth, [&](size_t row, size_t column) {
+      double sum = 0;
+      for (const double s : {0.001, 0.999})
+        for (const double t : {0.001, 0.999})
+          sum += double(ies_.at(std::lerp(polar[row], polar[row + 1], s), std::lerp(azimuth[column], azimuth[column + 1], t)));
+      return sum;
+    });
+  }
+
+  Spectrum radiance(const SurfacePoint& p, const Vector3& direction, const Wavelengths& w) const override {
+    if (!emits(p, direction)) return {};
+    const float f = profile(p, direction);
+    return f > 0 ? scaled(p, w, f) : Spectrum();
+  }
+
+  // Some of the light may lie on a side that does not emit; what is drawn there has density 0.
+  DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
+    const DirectionSample s = table_.sample(u);
+    const Vector3 direction = frame(p).to_world(s.direction);
+    return {direction, emits(p, direction) ? s.density : 0};
+  }
+  float density(const SurfacePoint& p, const Vector3& direction) const override {
+    return emits(p, direction) ? table_.density(frame(p).to_local(direction)) : 0;
+  }
+
+  Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
+    if (object.infinite()) fail("file", "a lamp belongs on a Point or on a surface, not at infinity");
+    return ShapedEmission::power(object, w);
+  }
+
+  FilePath file;
+  float multiplier = 1, tilt = 0;
+  Vector3 axis{0, -1, 0}, across{1, 0, 0};
+
+ protected:
+  float profile(const SurfacePoint& p, const Vector3& direction) const override {
+    const Vector3 local = frame(p).to_local(direction);
+    const double r = std::sqrt(double(local.x) * double(local.x) + double(local.y) * double(local.y));
+    const float f =
+        per_candela_ * ies_.at(std::atan2(r, double(local.z)) / degree, std::atan2(double(local.y), double(local.x)) / degree);
+    if (!on_surface(p)) return f;
+    const float area = p.object ? p.object->area(p.time) : 1;
+    return f / (area * std::max(std::abs(dot(p.normal, direction)), 1e-3f));
+  }
+  double solid_angle() const override { return flux_; }
+  double surface_share(const SurfacePoint& p) const override {
+    const double area = p.object ? double(p.object->area(p.time)) : 1;
+    return ((sides != Sides::back ? front_ : 0) + (sides != Sides::front ? flux_ - front_ : 0)) / area;
+  }
+  bool same_on_surfaces() const override { return true; }
+  Vector3 own_axis(const SurfacePoint& p) const override { return on_surface(p) ? Vector3{} : turned(p, axis_); }
+
+ private:
+  static bool on_surface(const SurfacePoint& p) { return !(p.normal == Normal3{}); }
+
+  /// x, y, z of the file's grid, z being its pole.
+  Frame frame(const SurfacePoint& p) const {
+    const Vector3 a = on_surface(p) ? Vector3(p.normal) : turned(p, axis_);
+    Vector3 s = turned(p, across_);
+    s = s - dot(s, a) * a;
+    // A normal may happen to lie along it: then any direction will do.
+    const float l = length(s);
+    s = l > 1e-4f ? s / l : Frame(Normal3(a)).s;
+    Frame f;
+    switch (ies_.type) {
+      case Photometry::c: f.s = s, f.t = cross(s, a), f.n = Normal3(a); break;  // counter-clockwise from above
+      case Photometry::a: f.s = a, f.t = cross(a, s), f.n = Normal3(s); break;  // pole up
+      case Photometry::b: f.s = a, f.t = s, f.n = Normal3(cross(a, s)); break;  // pole to the right
+    }
+    // Of a mirrored object all is mirrored: what was found by a cross product points the other way.
+    if (dot(turned(p, cross(axis, across)), cross(a, s)) < 0) {
+      if (ies_.type == Photometry::b)
+        f.n = -f.n;
+      else
+        f.t = -f.t;
+    }
+    return f;
+  }
+
+  /// The flux within 90 degrees of the axis [lm].
+  double front_lumens() const {
+    if (ies_.type == Photometry::c) return ies_.lumens(0, 90);
+    // Azimuths of types A and B are within 90 degrees of the axis, so all of it lies before it.
+    return ies_.lumens();
+  }
+
+  IesDistribution ies_;
+  DirectionTable table_;
+  Vector3 axis_{0, -1, 0}, across_{1, 0, 0};
+  float per_candela_ = 0;        // M f per candela
+  double flux_ = 0, front_ = 0;  // over the colour's luminance: Omega, and what lies before the axis [sr]
+};
+
+const Register<IesEmission> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,233 @@
+// ProjectorEmission: an image, projected.
+
+#include "direction_table.h"
+#include "etendue/describe/color.h"
+#include "etendue/describe/registry.h"
+#include "images/linear_image.h"
+#include "shaped_emission.h"
+
+namespace etendue {
+namespace {
+
+// The image lies on a plane across the axis at distance 1, w wide and h high. A direction under the angle theta to the axis
+// meets it at (x, y), and plane areas and solid angles go as dA = dw / cos^3(theta). A screen across the axis at distance d
+// gets the irradiance I cos^3(theta) / d^2, so a projector that shows a white image evenly white sends out
+//     I(x, y) = scale rgb(x, y) / cos^3(theta)                                 [W sr^-1 nm^-1]
+// as good projectors do. With profile f = 1 / cos^3 within the image (ShapedEmission; M is the colour space's white) it is, for
+// a point, Omega = integral of f dw = w h, the image's area.
+//
+// Importance sampling: a density that is constant over each pixel, in proportion to the mean over the pixel of the importance
+// (luminance) of the bilinear image. The mean of a hat function over its own pixel is 3/4, over each neighbour 1/8, in both
+// directions, so the mean is a 3 x 3 filter, positive wherever the image is. With p(x, y) per plane area the density is
+// p / cos^3 [1/sr], and I over it is nearly constant.
+class ProjectorEmission final : public ShapedEmission {
+ public:
+  static void describe(Description<ProjectorEmission>& d) {
+    d.summary(
+         "An image, projected through a pinhole: for a Point, whose transform turns it. In the object's own coordinates light "
+         "leaves along +z, with the image's top towards +y and its right towards -x, as seen from behind; look_at() points it. "
+         "On a screen across its axis a white image is evenly white. Outside of the image is no light.")
+        .member<&ProjectorEmission::file>("file", "", "the image", required)
+        .member<&ProjectorEmission::fov>("fov", "deg", "angle across the image", Range{0, 170, true})
+        .member<&ProjectorEmission::fov_axis>("fov_axis", "", "the side of the image the angle is measured across",
+                                              choices("smaller", "larger", "width", "height"))
+        .member<&ProjectorEmission::image_scale>("scale", "1",
+                                                 "multiplies the image; 1: white is an intensity of 1 in the axis", at_least(0))
+        .member<&ProjectorEmission::color_space>("color_space", "", "primaries and white of the image's RGB")
+        .member<&ProjectorEmission::transfer>("transfer", "",
+                                              "how its numbers are encoded; auto: srgb for integers, linear for floats");
+    describe_amounts(d);
+  }
+
+  void prepare() override {
+    try {
+      space_ = &rgb_space(color_space);
+    } catch (const Error& e) {
+      fail("color_space", e.what());
+    }
+    try {
+      check_transfer(transfer);
+    } catch (const Error& e) {
+      fail("transfer", e.what());
+    }
+    try {
+      image_ = read_linear_image(file.resolved(), transfer);
+    } catch (const Error& e) {
+      fail("file", e.what());
+    }
+    for (float& value : image_.rgb) {
+      if (!std::isfinite(value)) fail("file", "'" + file.resolved() + "' holds values that are infinite or not a number");
+      value = std::max(value, 0.0f);
+    }
+    const float aspect = float(image_.width) / float(image_.height), half = std::tan(radians(fov) / 2);
+    const bool across_width =
+        fov_axis == Axis::width || (fov_axis == Axis::smaller && aspect <= 1) || (fov_axis == Axis::larger && aspect > 1);
+    half_width_ = across_width ? half : half * aspect;
+    half_height_ = across_width ? half / aspect : half;
+    if (!(half_width_ > 0 && half_height_ > 0 && std::isfinite(half_width_) && std::isfinite(half_height_)))
+      fail("fov", "is too small or too large to count with");
+    build();
+    // Amounts are those of a white image, as projectors are sold: the base class sees the colour space's white.
+    map = ref_cast<ObjectMap>(Registry::instance().create("ConstantMap"));
+    set(*map, "value", Value(space_->illuminant));
+    map->prepare();
+    prepare_amounts("scale");
+  }
+
+  Spectrum radiance(const SurfacePoint& p, const Vector3& direction, const Wavelengths& w) const override {
+    Point2 at;
+    float cosine = 0;
+    if (!find(p, direction, at, cosine) || !emits(p, direction)) return {};
+    const std::array<float, 3> rgb = look_up(at);
+    return colour(rgb, w) * (factor(p.object, p.time) / (cosine * square(cosine)));
+  }
+
+  DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
+    if (empty_) return {};
+    const size_t width = size_t(image_.width), height = size_t(image_.height);
+    const size_t y = choose_interval(rows_.data(), height, u.y), x = choose_interval(columns_.data() + y * width, width, u.x);
+    const Point2 at{(float(x) + u.x) / float(width), (float(y) + u.y) / float(height)};
+    const Vector3 local = normalize(Vector3{(2 * at.x - 1) * half_width_, (1 - 2 * at.y) * half_height_, 1});
+    const Vector3 direction = frame(p).to_world(local);
+    return {direction, density(p, direction)};
+  }
+  float density(const SurfacePoint& p, const Vector3& direction) const override {
+    Point2 at;
+    float cosine = 0;
+    if (empty_ || !find(p, direction, at, cosine) || !emits(p, direction)) return 0;
+    const size_t x = size_t(std::min(int(at.x * float(image_.width)), image_.width - 1));
+    const size_t y = size_t(std::min(int(at.y * float(image_.height)), image_.height - 1));
+    return densities_[y * size_t(image_.width) + x] / (cosine * square(cosine));
+  }
+
+  /// Of the image's mean colour: on a Point exactly its mean, on others as if it were the same all over the image [W/nm].
+  Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
+    if (object.infinite()) fail("file", "a projector belongs on a Point or on a surface, not at infinity");
+    SurfacePoint p;
+    const Spectrum white = map->color(p, w, ColorUse::radiance);
+    const Spectrum of_white = ShapedEmission::power(object, w);
+    Spectrum result = colour(mean_, w) * (amount_asked() ? 1 : image_scale);
+    for (int i = 0; i < spectrum_size; ++i) result.set(i, white[i] > 0 ? result[i] * of_white[i] / white[i] : 0);
+    return result;
+  }
+
+  enum class Axis : std::uint8_t { smaller, larger, width, height };
+  FilePath file;
+  float fov = 40, image_scale = 1;
+  Axis fov_axis = Axis::width;
+  std::string color_space = "srgb", transfer = automatic_transfer;
+
+ protected:
+  // Of a white image.
+  float profile(const SurfacePoint& p, const Vector3& direction) const override {
+    Point2 at;
+    float cosine = 0;
+    return find(p, direction, at, cosine) ? 1 / (cosine * square(cosine)) : 0;
+  }
+  double solid_angle() const override { return 4 * double(half_width_) * double(half_height_); }
+  /// integral of |n . w| dA over the part of the image towards the sides that emit: 64 x 64 midpoints.
+  double surface_share(const SurfacePoint& p) const override {
+    constexpr int steps = 64;
+    const Frame f = frame(p);
+    double sum = 0;
+    for (int i = 0; i < steps * steps; ++i) {
+      const float x = 2 * (float(i % steps) + 0.5f) / steps - 1, y = 2 * (float(i / steps) + 0.5f) / steps - 1;
+      const Vector3 direction = f.to_world(normalize(Vector3{x * half_width_, y * half_height_, 1}));
+      if (emits(p, direction)) sum += std::abs(double(dot(p.normal, direction)));
+    }
+    return sum * solid_angle() / (steps * steps);
+  }
+  Vector3 own_axis(const SurfacePoint& p) const override { return turned(p, {0, 0, 1}); }
+
+ private:
+  /// Right and up in the image as seen from behind, and the axis, in the scene.
+  static Frame frame(const SurfacePoint& p) {
+    const Vector3 a = turned(p, {0, 0, 1});
+    Vector3 r = normalize(cross(a, turned(p, {0, 1, 0})));
+    const Vector3 up = cross(r, a);
+    if (dot(r, turned(p, {-1, 0, 0})) < 0) r = -r;  // a mirrored object's image is mirrored
+    return {r, up, Normal3(a)};
+  }
+
+  /// Where in the image, from its upper left corner, a direction goes; false: beside it.
+  bool find(const SurfacePoint& p, const Vector3& direction, Point2& at, float& cosine) const {
+    const Vector3 local = frame(p).to_local(direction);
+    cosine = local.z;
+    if (!(cosine > 0)) return false;
+    at = {(local.x / (cosine * half_width_) + 1) / 2, (1 - local.y / (cosine * half_height_)) / 2};
+    return at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1;
+  }
+
+  std::array<float, 3> look_up(Point2 at) const {
+    const float x = clamp(at.x * float(image_.width) - 0.5f, 0, float(image_.width - 1)),
+                y = clamp(at.y * float(image_.height) - 0.5f, 0, float(image_.height - 1));
+    const int x0 = int(x), x1 = std::min(x0 + 1, image_.width - 1), y0 = int(y), y1 = std::min(y0 + 1, image_.height - 1);
+    const float fx = x - float(x0), fy = y - float(y0);
+    const auto texel = [&](int i, int k) { return &image_.rgb[(size_t(k) * size_t(image_.width) + size_t(i)) * 3]; };
+    const float *a = texel(x0, y0), *b = texel(x1, y0), *c = texel(x0, y1), *d = texel(x1, y1);
+    std::array<float, 3> rgb;
+    for (size_t i = 0; i < 3; ++i) rgb[i] = lerp(fy, lerp(fx, a[i], b[i]), lerp(fx, c[i], d[i]));
+    return rgb;
+  }
+
+  Spectrum colour(const std::array<float, 3>& rgb, const Wavelengths& w) const {
+    return rgb_spectrum(*space_, rgb[0], rgb[1], rgb[2], ColorUse::radiance, w);
+  }
+  /// What multiplies the image: its scale, or what the amount asks for.
+  float factor(const SceneObject* object, float time) const {
+    return amount_asked() && object ? scale(*object, time) : image_scale;
+  }
+
+  void build() {
+    const size_t width = size_t(image_.width), height = size_t(image_.height);
+    std::vector<float> raw(width * height);
+    std::array<double, 3> sums{};
+    for (size_t i = 0; i < raw.size(); ++i) {
+      const float* rgb = &image_.rgb[3 * i];
+      const auto& m = space_->to_xyz;
+      const double luminance = m[3] * double(rgb[0]) + m[4] * double(rgb[1]) + m[5] * double(rgb[2]);
+      raw[i] = std::max(float(luminance), 0.02f * (rgb[0] + rgb[1] + rgb[2]));
+      for (size_t c = 0; c < 3; ++c) sums[c] += double(rgb[c]);
+    }
+    for (size_t c = 0; c < 3; ++c) mean_[c] = float(sums[c] / double(raw.size()));
+
+    densities_.resize(raw.size());
+    columns_.resize(raw.size());
+    rows_.resize(height);
+    double total = 0;
+    std::vector<double> row_sums(height);
+    for (size_t y = 0; y < height; ++y) {
+      const size_t above = y > 0 ? y - 1 : 0, below = std::min(y + 1, height - 1);
+      const auto column = [&](size_t x) {
+        return 0.75f * raw[y * width + x] + 0.125f * (raw[above * width + x] + raw[below * width + x]);
+      };
+      std::vector<double> running(width);
+      double row = 0;
+      for (size_t x = 0; x < width; ++x) {
+        const float value = 0.75f * column(x) + 0.125f * (column(x > 0 ? x - 1 : 0) + column(std::min(x + 1, width - 1)));
+        densities_[y * width + x] = value;
+        running[x] = row += double(value);
+      }
+      for (size_t x = 0; x < width; ++x) columns_[y * width + x] = row > 0 ? float(running[x] / row) : 1;
+      row_sums[y] = total += row;
+    }
+    empty_ = !(total > 0);
+    if (empty_) return;
+    for (size_t y = 0; y < height; ++y) rows_[y] = float(row_sums[y] / total);
+    const double pixel_area = solid_angle() / double(raw.size());
+    for (float& d : densities_) d = float(double(d) / (total * pixel_area));
+  }
+
+  const RgbSpace* space_ = nullptr;
+  LinearImage image_;
+  float half_width_ = 1, half_height_ = 1;  // of the image at distance 1
+  std::array<float, 3> mean_{};
+  bool empty_ = true;
+  std::vector<float> densities_;       // of each pixel, per area at distance 1
+  std::vector<float> rows_, columns_;  // cumulative probabilities: of rows, and in each row of its pixels
+};
+
+const Register<ProjectorEmission> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,116 @@
+#pragma once
+// ShapedEmission: what emissions share whose radiance is a colour times a profile of directions; it can be asked for in watts,
+// lumens, candelas or lux.
+
+#include <optional>
+
+#include "etendue/emission_shader.h"
+#include "etendue/object_map.h"
+#include "etendue/scene_object.h"
+#include "per_object.h"
+#include "quantity.h"
+
+namespace etendue {
+
+// The radiance at a point p in direction w is  L = k M(p) f(p, w),  M what the map says [W m^-2 sr^-1 nm^-1], f the profile
+// [1]. Per area of a surface with normal n, and per M, leaves
+//     K(p) = integral over the sides that emit of f |n . w| dw   [sr],
+// so an object of area A sends out Phi = k A mean(M K) [W/nm]. A sphere of area A has A/4 as its cross section from everywhere,
+// hence mean(K) = Omega / 4 with Omega = integral of f dw; that holds for what a point stands for as well (SceneObject::delta).
+// An environment of area A = 4 pi R^2 sends into the scene's disc pi R^2 integral of L dw = A Omega / 4 mean(M). A single
+// distant direction gives pi R^2 L = A pi f M.
+//
+// k is 1 unless an amount is asked for; then it is that amount over what k = 1 gives, each object its own, weighted over
+// wavelengths by 1 (power) or by 683.002 V (the others):
+//   power, flux   A mean(M K).
+//   intensity     in the direction a of the object's axis: A mean(M f(a) |n . a|) over the points that emit towards a; of a
+//                 point M f(a) * 1 m^2. The axis is the profile's own, else the object's mean normal. A closed object has
+//                 none: there it is the mean over all directions, A mean(M K) / (4 pi).
+//   illuminance   of a surface across the axis at a distance from the middle of the object, without what may lie between:
+//                 A mean(M f(w) |n . w| (a . w) / r^2), w and r from each point; hence intensity / distance^2 of a point and,
+//                 very nearly, from far away. From infinity, of a plane that faces the axis' light: L * 1 sr of a single
+//                 direction, integral of L cos dw of an environment, whose axis, if the profile has none, is its y axis,
+//                 downwards.
+// Where mean(K) is not known at once, it is found when an object is first met, from 1024 points; an object that moves keeps the
+// amount per area it has at time 0.
+class ShapedEmission : public EmissionShader {
+ public:
+  Spectrum power(const SceneObject&, const Wavelengths&) const override;
+
+  Ref<ObjectMap> map = constant(1.0f);
+  double watts = 0, lumens = 0, candelas = 0, lux = 0;
+  float distance = 1;  // of the illuminance [m]
+
+ protected:
+  /// The members for amounts.
+  template <class T>
+  static void describe_amounts(Description<T>& d) {
+    d.template member<&T::watts>("power", "W",
+                                 "power of each object that has this emission, from its whole area, between 360 and 830 nm; 0: "
+                                 "as the radiance says",
+                                 at_least(0))
+        .template member<&T::lumens>("luminous_flux", "lm", "the same in lumens; 0: not asked for", at_least(0))
+        .template member<&T::candelas>("luminous_intensity", "cd",
+                                       "of each object along its axis (its mean normal where the emission has none; of a "
+                                       "closed object the mean over all directions); 0: not asked for",
+                                       at_least(0))
+        .template member<&T::lux>("illuminance", "lx",
+                                  "on a surface across that axis at `distance`, if nothing is between; from infinity, on a "
+                                  "plane that faces the light, or upwards; 0: not asked for",
+                                  at_least(0))
+        .template member<&T::distance>("distance", "m", "from the middle of the object, for `illuminance`", more_than(0));
+  }
+
+  /// Checks the amounts and the map, called `name` in files. Derived classes call it last.
+  void prepare_amounts(std::string_view name);
+
+  // ---- what a profile says of itself ------------------------------------------------------------------------------------
+  /// f, which need not be zero on sides that do not emit.
+  virtual float profile(const SurfacePoint&, const Vector3& direction) const = 0;
+  virtual double solid_angle() const = 0;                       ///< Omega [sr]
+  virtual double surface_share(const SurfacePoint&) const = 0;  ///< K at a point with a normal [sr]
+  /// Whether K is the same at all points of any surface.
+  virtual bool same_on_surfaces() const { return false; }
+  /// The way its light travels; zero when it has no direction but the normal.
+  virtual Vector3 own_axis(const SurfacePoint&) const { return {}; }
+
+  /// k M f.
+  Spectrum scaled(const SurfacePoint& p, const Wavelengths& w, float f) const {
+    const Spectrum value = map->color(p, w, ColorUse::radiance) * f;
+    return amount_ > 0 && p.object ? value * scale(*p.object, p.time) : value;
+  }
+  /// k [1].
+  float scale(const SceneObject&, float time) const;
+  /// A member's directions in the scene: they go with the object as directions do, and angles are measured in the scene.
+  static Vector3 turned(const SurfacePoint& p, const Vector3& v) {
+    if (!p.object) return v;
+    const AnimatedTransform& t = p.object->transform;
+    if (t.animated()) [[unlikely]]
+      return normalize(t.at(p.time)(v));
+    return t.still().identity() ? v : normalize(t.still()(v));
+  }
+  bool amount_asked() const { return amount_ > 0; }
+  /// The member that gives the amount.
+  std::string_view amount_name() const;
+  /// A member's direction as a unit vector; fails on what is none.
+  Vector3 checked_direction(const Vector3&, std::string_view name) const;
+
+ private:
+  template <class F>
+  void for_points(const SceneObject&, Quantity, const F& add) const;
+  template <class F>
+  void for_infinity(const SceneObject&, Quantity, const F& add) const;
+  template <class F>
+  void for_surface(const SceneObject&, Quantity, const F& add) const;
+  std::optional<double> mean_share(const SceneObject&) const;
+  Spectrum mean(const SceneObject&, Quantity, const Wavelengths&) const;
+  double measured(const SceneObject&) const;
+
+  Quantity quantity_ = Quantity::power;
+  double amount_ = 0;    // of the quantity; 0: k = 1
+  Color constant_;       // when the map has one colour
+  double integral_ = 0;  // of that colour over wavelengths, weighted for the quantity
+  PerObject measured_;   // what k = 1 gives, per area
+};
+
+}  // namespace etendue

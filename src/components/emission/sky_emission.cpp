@@ -1,0 +1,232 @@
+// SkyEmission: a clear sky with its sun.
+
+#include "direction_table.h"
+#include "etendue/emission_shader.h"
+#include "etendue/scene_object.h"
+#include "quantity.h"
+#include "sky_model.h"
+#include "sun_position.h"
+
+namespace etendue {
+namespace {
+
+// Directions are in the coordinates of the object that carries this emission: x east, y up, z south. What lies below the
+// horizon is black: the ground is a scene's own.
+//
+// Importance sampling mixes two densities over directions,
+//     p = P_sun [within the disc] / Omega_sun + (1 - P_sun) p_sky   [1/sr],
+// uniform over the sun's disc, and for the sky a table that is finer around the sun and near the horizon. P_sun is the sun's
+// part of all light, but neither is starved. All light is weighted here by xbar + ybar + zbar.
+class SkyEmission final : public EmissionShader {
+ public:
+  static void describe(Description<SkyEmission>& d) {
+    d.summary(
+         "A clear sky and the sun, for an Environment: measured atmospheres' spectral radiance, from 360 to 720 nm (beyond, as "
+         "a "
+         "black body's falls). Up is +y, north -z, east +x. Below the horizon it is black, and there is no night.",
+         "Hosek & Wilkie 2012, An analytic model for full spectral sky-dome radiance; 2013, Adding a solar-radiance function "
+         "to "
+         "the Hosek-Wilkie skylight model; the sun's place: Astronomical Almanac")
+        .member<&SkyEmission::to_sun>("sun_direction", "1",
+                                      "from the ground towards the sun, of any length; used without a time")
+        .member<&SkyEmission::time>(
+            "time", "", "universal time, \"2024-06-21T12:00:00Z\": the sun stands where it does then, seen from the place")
+        .member<&SkyEmission::latitude>("latitude", "deg", "of the place, north of the equator", range(-90, 90))
+        .member<&SkyEmission::longitude>("longitude", "deg", "of the place, east of Greenwich", range(-180, 180))
+        .member<&SkyEmission::turbidity>("turbidity", "1",
+                                         "how hazy the air is: 2 very clear, 3 clear, 6 warm and moist, 10 hazy", range(1, 10))
+        .member<&SkyEmission::ground_albedo>("ground_albedo", "1",
+                                             "reflectance of the ground all around, which brightens the sky")
+        .member<&SkyEmission::sun>("sun", "", "whether the sun's disc is there")
+        .member<&SkyEmission::sun_diameter>("sun_diameter", "deg",
+                                            "angle across the sun's disc; a larger one is as much darker as it is larger",
+                                            Range{0, 20, true})
+        .member<&SkyEmission::scale>("scale", "1", "multiplies the radiance", at_least(0))
+        .member<&SkyEmission::lux>("illuminance", "lx", "on level ground, sun and sky together; 0: as the model says",
+                                   at_least(0));
+  }
+
+  void prepare() override {
+    place_sun();
+    if (!ground_albedo) fail("ground_albedo", "a colour is needed");
+    std::array<float, SkyModel::channels> albedo;
+    for (int c = 0; c < SkyModel::channels; ++c) {
+      const float value = ground_albedo->at(SkyModel::wavelength(c), ColorUse::reflectance);
+      if (!(value >= 0 && value <= 1)) fail("ground_albedo", "must lie within 0 and 1, and is " + std::to_string(value));
+      albedo[size_t(c)] = value;
+    }
+    if (!(turbidity >= 1 && turbidity <= 10)) fail("turbidity", "must lie within 1 and 10");
+    elevation_ = safe_asin(sun_.y);
+    model_ = SkyModel(turbidity, albedo, elevation_);
+    const auto height = [](double degrees) { return 2 * std::pow(std::sin(degrees * (3.14159265358979323846 / 360)), 2); };
+    height_ = float(height(double(sun_diameter) / 2));
+    if (!(height_ > 0)) fail("sun_diameter", "is too small to count with");
+    sun_angle_ = 2 * pi * height_;
+    disc_ = float(height(true_diameter / 2) / double(height_));
+    factor_ = scale;
+    integrate();
+    build();
+  }
+
+  Spectrum radiance(const SurfacePoint& p, const Vector3&, const Wavelengths& w) const override {
+    return seen(p.object_position - Point3{}, w);
+  }
+
+  // All light of a point at infinity travels the same way: straight away from it, with probability 1.
+  DirectionSample sample(const SurfacePoint& p, Point2) const override {
+    Vector3 away = Point3{} - p.object_position;
+    if (p.object) away = normalize(p.object->transform.at(p.time)(away));
+    return {away, 1};
+  }
+  float density(const SurfacePoint&, const Vector3&) const override { return 1; }
+
+  /// Of all the light that enters through the object's area [W/nm]: pi * area * mean radiance.
+  Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
+    return SkyModel::between_channels(w, [&](int c) { return all_[size_t(c)]; }) * (factor_ * object.area() / 4);
+  }
+
+  bool only_at_infinity() const override { return true; }
+  bool knows_incident() const override { return true; }
+  DirectionSample sample_incident(Point2 u) const override {
+    Vector3 d;
+    if (u.x < sun_share_) {
+      const float h = height_ * std::min(u.x / sun_share_, one_minus_epsilon), r = safe_sqrt(h * (2 - h));
+      float sine = 0, cosine = 0;
+      sin_cos_turn(u.y, sine, cosine);
+      d = Frame(Normal3(sun_)).to_world({r * cosine, r * sine, 1 - h});
+    } else {
+      u.x = std::min((u.x - sun_share_) / (1 - sun_share_), one_minus_epsilon);
+      const Vector3 local = table_.sample(u).direction;
+      d = {local.y, local.z, local.x};
+    }
+    return {d, incident_density(d)};
+  }
+  float incident_density(const Vector3& towards) const override {
+    const float disc = in_disc(towards) ? sun_share_ / sun_angle_ : 0;
+    return disc + (1 - sun_share_) * table_.density({towards.z, towards.x, towards.y});
+  }
+
+  static constexpr double true_diameter = 0.53313;  // [deg]: 959.63 arc seconds of radius, at the mean distance
+  Vector3 to_sun{1, 1, 1};
+  std::string time;
+  float latitude = 0, longitude = 0, turbidity = 3;
+  Color ground_albedo = flat_spectrum(0.3f);
+  bool sun = true;
+  float sun_diameter = float(true_diameter), scale = 1;
+  double lux = 0;
+
+ private:
+  void place_sun() {
+    const char* member = time.empty() ? "sun_direction" : "time";
+    if (time.empty()) {
+      const double x = double(to_sun.x), y = double(to_sun.y), z = double(to_sun.z), l = std::sqrt(x * x + y * y + z * z);
+      if (!(l > 0 && std::isfinite(l))) fail(member, "must be finite and not zero");
+      sun_ = normalize(Vector3{float(x / l), float(y / l), float(z / l)});
+    } else {
+      try {
+        sun_ = sun_direction(parse_time(time), double(latitude), double(longitude));
+      } catch (const Error& e) {
+        fail(member, e.what());
+      }
+    }
+    if (sun_.y < 0)
+      fail(member, fmt::format("the sun is {:.1f} degrees below the horizon, and the model is one of the day",
+                               degrees(safe_asin(-sun_.y))));
+  }
+
+  bool in_disc(const Vector3& towards) const { return sun && length_squared(towards - sun_) / 2 <= height_; }
+
+  Spectrum seen(const Vector3& towards, const Wavelengths& w) const {
+    if (towards.y < 0) return {};
+    const float chord = length(towards - sun_), h = square(chord) / 2;
+    Spectrum value = model_.sky(towards.y, 2 * safe_asin(chord / 2), w);
+    if (sun && h <= height_) {
+      // The sine of the angle from the sun's middle over that of its radius is the sine seen from the sun's centre.
+      const float sines = h * (2 - h) / (height_ * (2 - height_));
+      value += model_.sun(safe_asin(towards.y), safe_sqrt(1 - sines), w) * disc_;
+    }
+    return value * factor_;
+  }
+
+  /// Integrals over directions at each channel, by steps of 1 degree from the zenith and 2 around it; the sky is the same to
+  /// both sides of the sun.
+  void integrate() {
+    constexpr int rows = 90, columns = 90;
+    const double step = 3.14159265358979323846 / 180;
+    std::array<double, SkyModel::channels> level{};
+    all_ = {};
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column) {
+        const double theta = (row + 0.5) * step, phi = (column + 0.5) * 2 * step,
+                     solid_angle = 4 * std::sin(theta) * step * step;
+        const float cosine = float(std::cos(theta));
+        const float gamma = safe_acos(sun_.y * cosine + safe_sqrt(1 - square(sun_.y)) * float(std::sin(theta) * std::cos(phi)));
+        for (int c = 0; c < SkyModel::channels; ++c) {
+          const double value = double(model_.sky(c, cosine, gamma)) * solid_angle;
+          all_[size_t(c)] += float(value);
+          level[size_t(c)] += value * double(cosine);
+        }
+      }
+    double sky_light = 0, sun_light = 0;
+    for (int c = 0; c < SkyModel::channels; ++c) {
+      const float from_sun = sun ? model_.sun(c, elevation_) * disc_ * sun_angle_ : 0;
+      sky_light += tristimulus(c) * double(all_[size_t(c)]);
+      sun_light += tristimulus(c) * double(from_sun);
+      all_[size_t(c)] += from_sun;
+      level[size_t(c)] += double(from_sun * sun_.y);
+    }
+    sun_share_ = sun ? float(std::clamp(sun_light / (sun_light + sky_light), 0.1, 0.9)) : 0;
+    if (!(lux > 0)) return;
+    const double given = integrate_wavelengths(Quantity::illuminance, [&](const Wavelengths& w) {
+      return SkyModel::between_channels(w, [&](int c) { return float(level[size_t(c)]); });
+    });
+    factor_ *= float(lux / given);
+  }
+  static double tristimulus(int channel) {
+    const Xyz o = observer(SkyModel::wavelength(channel));
+    return o.x + o.y + o.z;
+  }
+
+  /// The table's z is up, its longitude from south by east.
+  void build() {
+    const double zenith = degrees(safe_acos(sun_.y)), towards = degrees(std::atan2(sun_.x, sun_.z));
+    std::vector<double> polar, azimuth;
+    for (double a = 0; a < 90;) {
+      polar.push_back(a);
+      a += a >= 80 || std::abs(a + 0.5 - zenith) < 7 ? 1 : 2;
+    }
+    polar.push_back(90);
+    for (double a = -180; a < 180; a += std::abs(a + 0.5) < 12 ? 1 : 4) azimuth.push_back(towards + a);
+    azimuth.push_back(towards + 180);
+    table_.build(polar, azimuth, [&](size_t row, size_t column) {
+      double sum = 0;
+      for (const double s : {0.2, 0.8})
+        for (const double t : {0.2, 0.8}) {
+          const double theta = std::lerp(polar[row], polar[row + 1], s),
+                       phi = std::lerp(azimuth[column], azimuth[column + 1], t);
+          const float sine = std::sin(radians(float(theta))), cosine = std::cos(radians(float(theta)));
+          const Vector3 d{sine * std::sin(radians(float(phi))), cosine, sine * std::cos(radians(float(phi)))};
+          const float gamma = 2 * safe_asin(length(d - sun_) / 2);
+          for (const int c : {2, 5, 7})  // 440, 560 and 640 nm stand for all
+            sum += tristimulus(c) * double(model_.sky(c, std::max(cosine, 0.0f), gamma));
+        }
+      return sum + 1e-6;  // where the fit gives nothing at some channels, others may shine
+    });
+  }
+
+  SkyModel model_;
+  DirectionTable table_;
+  Vector3 sun_{0, 1, 0};                         // unit
+  float elevation_ = 0;                          // [rad]
+  float height_ = 0;                             // 1 - cos of the disc's radius
+  float sun_angle_ = 0;                          // its solid angle [sr]
+  float disc_ = 1;                               // what its size makes of its radiance
+  float sun_share_ = 0;                          // P_sun
+  float factor_ = 1;                             // multiplies all radiance
+  std::array<float, SkyModel::channels> all_{};  // integral of radiance over directions [W m^-2 nm^-1]
+};
+
+const Register<SkyEmission> registered;
+
+}  // namespace
+}  // namespace etendue

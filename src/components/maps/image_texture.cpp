@@ -1,0 +1,14 @@
+#include "image_texture.h"
+
+#include "images/linear_image.h"
+
+namespace etendue {
+
+ImageTexture::~ImageTexture() = default;
+
+std::shared_ptr<const ImageTexture> ImageTexture::open(const std::string& path, const std::string& transfer,
+                                                       const std::string& channel) {
+  return read_texture(path, transfer, channel);
+}
+
+}  // namespace etendue

@@ -1,0 +1,70 @@
+// Numbers that belong to an object's surface, such as the colours of a mesh's vertices.
+
+#include "etendue/describe/color.h"
+#include "etendue/object_map.h"
+#include "etendue/scene_object.h"
+#include "etendue/shader.h"  // objects own shaders
+
+namespace etendue {
+namespace {
+
+class AttributeMap final : public ObjectMap {
+ public:
+  static void describe(Description<AttributeMap>& d) {
+    d.summary("What an object's surface itself tells, such as the colours of a mesh's vertices.")
+        .member<&AttributeMap::name>("name", "",
+                                     "of the attribute: \"color\" (red, green and blue of a PLY file's vertices, or the colors "
+                                     "of a TriangleMesh), or any "
+                                     "other number of a PLY file's vertices by its name there")
+        .member<&AttributeMap::color_space>("color_space", "", "primaries and white of an attribute of three numbers")
+        .member<&AttributeMap::otherwise>("otherwise", "1", "the map where the object has no such attribute");
+  }
+
+  void prepare() override {
+    if (name.empty()) fail("name", "the name of an attribute is needed");
+    if (!otherwise) fail("otherwise", "a map is needed");
+    try {
+      space_ = &rgb_space(color_space);
+    } catch (const Error& e) {
+      fail("color_space", e.what());
+    }
+    number_ = attribute_number(name);
+  }
+
+  Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse use) const override {
+    float values[4];
+    const int count = look_up(p, values);
+    if (count == 0) return otherwise->color(p, w, use);
+    if (count == 1) values[1] = values[2] = values[0];
+    if (count == 2) values[2] = 0;
+    return rgb_spectrum(*space_, values[0], values[1], values[2], use, w);
+  }
+  float scalar(const SurfacePoint& p) const override {
+    float values[4];
+    const int count = look_up(p, values);
+    if (count == 0) return otherwise->scalar(p);
+    const int channels = std::min(count, 3);  // the fourth is no colour
+    float sum = 0;
+    for (int i = 0; i < channels; ++i) sum += values[i];
+    return sum / float(channels);
+  }
+
+  std::string name = "color", color_space = "srgb";
+  Ref<ObjectMap> otherwise = etendue::constant(0);
+
+ private:
+  int look_up(const SurfacePoint& p, float values[4]) const {
+    const int count = p.object ? p.object->attribute(number_, p, values) : 0;
+    for (int i = 0; i < count; ++i)
+      if (!std::isfinite(values[i])) values[i] = 0;
+    return count;
+  }
+
+  const RgbSpace* space_ = nullptr;
+  int number_ = -1;
+};
+
+const Register<AttributeMap> registered;
+
+}  // namespace
+}  // namespace etendue

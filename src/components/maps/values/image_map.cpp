@@ -1,0 +1,157 @@
+// ImageMap: an image file on a surface.
+
+#include "components/maps/footprint.h"
+#include "components/maps/image_texture.h"
+#include "etendue/describe/color.h"
+#include "etendue/object_map.h"
+#include "images/linear_image.h"
+#include "images/udim_files.h"
+
+namespace etendue {
+namespace {
+
+enum class Interpolation : std::uint8_t { nearest, bilinear };
+
+// The image's numbers are decoded to linear ones before they are interpolated or averaged. A footprint asks for a mean over it:
+// that over the ellipse in which a pixel sees the surface. Squares that are wider than the ellipse is long are given as they
+// are.
+//
+// An RGB value becomes a spectrum at each lookup. That is not the spectrum between those of the texels, as the fit
+// is not linear, but it has the colour between theirs, which is what an image says.
+class ImageMap final : public ObjectMap {
+ public:
+  static void describe(Description<ImageMap>& d) {
+    d.summary("An image file over the surface coordinates: its lower left corner is at (0, 0), its upper right one at (1, 1).")
+        .member<&ImageMap::file>("file", "",
+                                 "the image; any format OpenImageIO reads. With <UDIM> in its name: one image for each unit "
+                                 "square of u and v, from files with 1001 + u + 10 v in that place; black where there is none",
+                                 required)
+        .member<&ImageMap::interpolation>(
+            "interpolation", "",
+            "what is between the middles of texels: nearest: texels as squares; bilinear: mixtures of four",
+            choices("nearest", "bilinear"))
+        .member<&ImageMap::wrap>("wrap", "", "what lies outside the unit square", choices("repeat", "mirror", "clamp", "black"))
+        .member<&ImageMap::color_space>("color_space", "", "primaries and white of the image's RGB")
+        .member<&ImageMap::transfer>("transfer", "", "how its numbers are encoded; auto: srgb for integers, linear for floats")
+        .member<&ImageMap::channel>("channel", "",
+                                    "which channels of the file: \"\" the first three or its only one, else the name of one "
+                                    "(\"A\", \"depth.Z\") or of a layer (\"diffuse\" for diffuse.R, diffuse.G, diffuse.B)")
+        .member<&ImageMap::repeat>("repeat", "1", "how many times the image is laid along u and along v");
+  }
+
+  void prepare() override {
+    try {
+      space_ = &rgb_space(color_space);
+    } catch (const Error& e) {
+      fail("color_space", e.what());
+    }
+    try {
+      check_transfer(transfer);
+    } catch (const Error& e) {
+      fail("transfer", e.what());
+    }
+    if (!(std::isfinite(repeat.x) && std::isfinite(repeat.y))) fail("repeat", "must be finite numbers");
+    if (file.empty()) fail("file", "an image file is needed");
+    load(file.resolved());
+  }
+
+  Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse use) const override {
+    float rgb[3];
+    look_up(p, rgb);
+    return rgb_spectrum(*space_, rgb[0], rgb[1], rgb[2], use, w);
+  }
+  float scalar(const SurfacePoint& p) const override {
+    float rgb[3];
+    const int channels = look_up(p, rgb);
+    return channels == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
+  }
+
+  float largest() const override {
+    float most = 0;
+    for (const auto& tile : tiles_)
+      if (tile) most = std::max(most, tile->largest());
+    return most;
+  }
+
+  FilePath file;
+  Interpolation interpolation = Interpolation::bilinear;
+  Wrap wrap = Wrap::repeat;
+  std::string color_space = "srgb", transfer = automatic_transfer, channel;
+  Vector2 repeat{1, 1};
+
+ private:
+  void load(const std::string& path) {
+    tiles_.clear();
+    tiled_ = path.find(udim_mark) != std::string::npos;
+    const std::vector<UdimFile> files = tiled_ ? udim_files(path) : std::vector<UdimFile>{{0, 0, path}};
+    if (files.empty()) fail("file", "there is no file '" + path + "' with a number from 1001 to 9999 for " + udim_mark);
+    for (const UdimFile& f : files) {
+      try {
+        check_channel(f.path, channel);
+      } catch (const Error& e) {
+        fail("channel", e.what());
+      }
+      try {
+        const size_t place = size_t(f.v * 10 + f.u);
+        if (place >= tiles_.size()) tiles_.resize(place + 1);
+        tiles_[place] = ImageTexture::open(f.path, transfer, channel);
+      } catch (const Error& e) {
+        fail("file", e.what());
+      }
+    }
+  }
+
+  /// Returns how many channels the image has.
+  int look_up(const SurfacePoint& p, float rgb[3]) const {
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    float u = p.uv.x * repeat.x, v = p.uv.y * repeat.y;
+    const ImageTexture* texture = tiles_.front().get();
+    Wrap outside = wrap;
+    if (tiled_) {
+      float column = std::floor(u), row = std::floor(v);
+      // The far border of a square belongs to it where no other begins.
+      if (!tile(column, row)) {
+        const bool left = u == column, low = v == row;
+        if (left && tile(column - 1, row))
+          --column;
+        else if (low && tile(column, row - 1))
+          --row;
+        else if (left && low && tile(column - 1, row - 1))
+          --column, --row;
+      }
+      texture = tile(column, row);
+      if (!texture) return 1;
+      u -= column;
+      v -= row;
+      outside = Wrap::clamp;
+    }
+    UvFootprint f;
+    if (p.footprint > 0) {
+      f = uv_footprint(p);
+      for (Vector2* axis : {&f.longer, &f.shorter}) *axis = {axis->x * repeat.x, axis->y * repeat.y};
+    }
+    if (p.footprint > 0 && (interpolation == Interpolation::bilinear || texture->texels_along(f) > 1))
+      texture->mean({u, v}, f, outside, rgb);
+    else if (interpolation == Interpolation::nearest)
+      texture->nearest({u, v}, outside, rgb);
+    else
+      texture->bilinear({u, v}, outside, rgb);
+    if (texture->channels() == 1) rgb[1] = rgb[2] = rgb[0];
+    return texture->channels();
+  }
+
+  /// The image of a unit square; null: there is none.
+  const ImageTexture* tile(float u, float v) const {
+    if (!(u >= 0 && u < 10 && v >= 0 && v * 10 + u < float(tiles_.size()))) return nullptr;
+    return tiles_[size_t(v) * 10 + size_t(u)].get();
+  }
+
+  const RgbSpace* space_ = nullptr;
+  bool tiled_ = false;
+  std::vector<std::shared_ptr<const ImageTexture>> tiles_;  // the only one, or that of square (u, v) at 10 v + u
+};
+
+const Register<ImageMap> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,31 @@
+#pragma once
+// Many small pieces of one object, searched by a hierarchy of their own.
+
+#include "geometry/embree_device.h"
+#include "geometry/placed_object.h"
+
+namespace etendue {
+
+/// What a hierarchy asks of the pieces it is over.
+class Pieces {
+ public:
+  virtual ~Pieces() = default;
+  virtual Bounds3 piece_bounds(std::uint32_t piece) const = 0;
+  /// The nearest intersection with t in (0, maximum), t a float: fills distance, primitive, u and v.
+  virtual bool intersect_piece(std::uint32_t piece, const DoubleRay&, float maximum, Hit&) const = 0;
+};
+
+/// A bounding volume hierarchy over pieces, by Embree; refers to them and to itself by address, so it stays where it is.
+class PieceHierarchy {
+ public:
+  PieceHierarchy(const Pieces&, std::uint32_t count);
+  PieceHierarchy(const PieceHierarchy&) = delete;
+  PieceHierarchy& operator=(const PieceHierarchy&) = delete;
+  bool nearest(const Ray&, Hit&) const;
+  bool any(const Ray&) const;
+
+ private:
+  EmbreeSceneHandle scene_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,109 @@
+// Environment: a luminaire at infinity, all around.
+
+#include "etendue/core/warp.h"
+#include "geometry/geometry.h"
+
+namespace etendue {
+
+class Environment final : public SceneObject {
+ public:
+  static void describe(Description<Environment>& d) {
+    d.summary(
+        "A sphere at infinity around the scene, which carries an emission shader; its transform turns it. Its +y axis is up; "
+        "u runs from -z by +x, +z and -x around it, to the right as seen from inside, v from the pole at -y to that at +y.");
+  }
+
+  void prepare() override {
+    for (const AnimatedTransform::Key& key : transform.keys())
+      if (key.transform.valid() && similarity_scale(key.transform) == 0)
+        fail("transform", "an environment can only be turned, not stretched");
+  }
+
+  bool infinite() const override { return true; }
+  bool closed() const override { return false; }
+  void enclose(const Point3& centre, float radius) override {
+    centre_ = centre;
+    radius_ = radius;
+  }
+
+  Bounds3 bounds() const override { return {}; }
+  bool intersect(const Ray&, Hit&) const override { return false; }
+  bool occludes(const Ray&) const override { return false; }
+
+  /// Where a ray that left the scene meets it: far outside the scene, facing the ray.
+  void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override {
+    fill(ray.origin, normalize(ray.direction), ray.time, p);
+  }
+
+  void tangents(SurfacePoint& p) const override {
+    if (p.dpdu != Vector3{}) return;
+    const Frame frame(p.normal);
+    p.dpdu = frame.s;
+    p.dpdv = frame.t;
+  }
+
+  /// Of the sphere around the scene, through which its light enters [m^2]: the power of the light that does is
+  /// pi * area * radiance, as of any diffuse luminaire.
+  float area(float) const override { return 4 * pi * radius_ * radius_; }
+  /// There are no points with an area at infinity.
+  SurfaceSample sample_area(Point2, float) const override { return {}; }
+  float area_density(const SurfacePoint&) const override { return 0; }
+
+  SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
+    SurfaceSample s;
+    if (emission && emission->knows_incident()) {
+      const DirectionSample d = emission->sample_incident(u);
+      if (!(d.density > 0)) return s;
+      Transform scratch;
+      const Transform& t = placed(transform, time, scratch);
+      s.direction = t.identity() ? d.direction : normalize(t(d.direction));
+      s.density = d.density;
+    } else {
+      s.direction = warp::sphere(u);
+      s.density = warp::sphere_density;
+    }
+    s.infinite = true;
+    s.distance = infinity;
+    fill(from, s.direction, time, s.point);
+    return s;
+  }
+
+  float visible_density(const Point3&, const Vector3& direction, const SurfacePoint& p) const override {
+    if (!emission || !emission->knows_incident()) return warp::sphere_density;
+    return emission->incident_density(inside(direction, p.time));
+  }
+
+ private:
+  Vector3 inside(const Vector3& direction, float time) const {
+    Transform scratch;
+    const Transform& t = placed(transform, time, scratch);
+    return t.identity() ? direction : normalize(t.back(direction));
+  }
+
+  void fill(const Point3& from, const Vector3& direction, float time, SurfacePoint& p) const {
+    const Vector3 local = inside(direction, time);
+    const float away = 2 * radius_ + distance(from, centre_);
+    p.position = from + away * direction;
+    p.error = 0;
+    p.normal = Normal3(-direction);
+    p.shading_normal = p.normal;
+    p.uv = {positive_atan2(local.x, -local.z) * (1 / (2 * pi)),
+            positive_atan2(std::sqrt(local.x * local.x + local.z * local.z), -local.y) * inverse_pi};
+    p.dpdu = {};
+    p.dpdv = {};
+    p.object_position = Point3{local.x, local.y, local.z};
+    p.object_normal = Normal3(-local);
+    p.time = time;
+    p.object = this;
+    p.primitive = 0;
+    p.u = 0;
+    p.v = 0;
+  }
+
+  Point3 centre_{0, 0, 0};
+  float radius_ = 1;
+};
+
+static const Register<Environment> registered;
+
+}  // namespace etendue

@@ -1,0 +1,80 @@
+// InfinitePlane: a floor without end.
+
+#include "geometry/placed_object.h"
+
+namespace etendue {
+namespace {
+
+class InfinitePlane final : public PlacedObject {
+ public:
+  static void describe(Description<InfinitePlane>& d) {
+    d.summary(
+        "The plane z = 0, facing +z; its surface coordinates are x and y in metres. It cannot emit: it would give off endless "
+        "power.");
+  }
+
+  void prepare() override {
+    // How far its own coordinates may go for points to stay within endless_box(), whatever the transform enlarges.
+    double reach = 1, shift = 0;
+    // It counts from beside where the scene does, so that the ground is as fine there as anywhere.
+    count_with_scene(transform);
+    transform.count_from(transform.outer(), {transform.inner().x, transform.inner().y, 0});
+    for (const AnimatedTransform::Key& key : transform.keys()) {
+      const Transform t = transform.at(key.time);
+      const Transform::Matrix& m = t.matrix();
+      for (size_t row = 0; row < 12; row += 4) {
+        reach = std::max(reach, double(std::abs(m[row])) + double(std::abs(m[row + 1])));
+        shift = std::max(shift, double(std::abs(m[row + 3])));
+      }
+    }
+    limit_ = (double(endless) - shift) / (transform.animated() ? 2 * reach : reach);
+    if (!(limit_ > 0)) fail("transform", "moves the plane out of all bounds");
+    place();
+  }
+
+  bool unbounded() const override { return true; }
+
+  NormalCone normals() const override {
+    if (transform.animated()) return {};
+    return {Vector3(normalize(transform.still()(Normal3(0, 0, 1)))), 1};
+  }
+
+ protected:
+  Bounds3 own_bounds() const override { return {}; }  // not asked for: there are none
+
+  bool own_intersect(const Ray& ray, Hit& hit) const override {
+    const DoubleRay r(ray);
+    const double t = -r.origin[2] / r.direction[2];
+    const float distance = float(t);
+    if (!(distance > 0 && distance < ray.maximum)) return false;
+    const double x = r.at(t, 0), y = r.at(t, 1);
+    if (!(std::abs(x) < limit_ && std::abs(y) < limit_)) return false;
+    hit.distance = distance;
+    hit.primitive = 0;
+    hit.u = float(x);
+    hit.v = float(y);
+    return true;
+  }
+
+  void own_point(const Ray&, const Hit& hit, OwnPoint& p) const override {
+    p.position = {hit.u, hit.v, 0};
+    p.normal = {0, 0, 1};
+    p.uv = {float(double(hit.u) + transform.inner().x), float(double(hit.v) + transform.inner().y)};
+    p.dpdu = {1, 0, 0};
+    p.dpdv = {0, 1, 0};
+    // z = 0 is exact; but a ray that starts there must not find it again by the rounding of its own coordinates.
+    p.error = 1e-12f;
+  }
+
+  double own_area() const override { return double(infinity); }
+  float own_sample(Point2, OwnPoint&) const override { return 0; }
+  float own_density(const SurfacePoint&) const override { return 0; }
+
+ private:
+  double limit_ = 0;  // [m]
+};
+
+const Register<InfinitePlane> registered;
+
+}  // namespace
+}  // namespace etendue

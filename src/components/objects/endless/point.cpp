@@ -1,0 +1,91 @@
+// Point: a luminaire without extent.
+
+#include "geometry/geometry.h"
+#include "geometry/without_extent.h"
+
+namespace etendue {
+namespace {
+
+// A point stands for a sphere with a cross section of 1 m^2, shrunk while its power is kept (SceneObject::delta):
+// its area is that of the sphere, 4 m^2, as a sphere of cross section pi r^2 has 4 pi r^2, and what its emission calls
+// radiance L [W m^-2 sr^-1 nm^-1] is, times 1 m^2, its intensity I [W sr^-1 nm^-1]. A DiffuseEmission of power
+// P = pi * area * L then has I = P / (4 pi).
+//
+// Seen from distance r, 1 m^2 of cross section fills the solid angle 1 / r^2, so one point per m^2 is r^2 points per sr:
+// the estimate L / r^2 of the irradiance across the light is I / r^2, as it must be.
+class Point final : public SceneObject {
+ public:
+  static void describe(Description<Point>& d) {
+    d.summary(
+         "A luminaire without extent, which rays never meet. Its emission's radiance, times 1 m^2, is its intensity "
+         "[W/sr per nm]: a DiffuseEmission sends the same into all directions, a SpotEmission into a cone. Its transform moves "
+         "and turns it; a stretch changes only where it is, not how strong it is.")
+        .member<&Point::position>("position", "m", "where it is", Effect::rebuild);
+  }
+
+  void prepare() override {
+    if (!is_finite(position)) fail("position", "a point lies at a finite place");
+    transform.count_from(transform.outer(), position);
+    refuse_surface(*this, "a point");
+  }
+
+  bool delta() const override { return true; }
+
+  Bounds3 bounds() const override { return {}; }
+  Bounds3 luminaire_bounds() const override {
+    Bounds3 b;
+    b.add(Point3{});
+    return swept(transform, b);
+  }
+  bool intersect(const Ray&, Hit&) const override { return false; }
+  bool occludes(const Ray&) const override { return false; }
+  void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override { fill(ray.time, p); }
+  void tangents(SurfacePoint&) const override {}  // no surface: they stay zero
+
+  /// Of the sphere it stands for [m^2].
+  float area(float) const override { return 4; }
+  SurfaceSample sample_area(Point2, float time) const override {
+    SurfaceSample s;
+    fill(time, s.point);
+    s.density = 1;
+    s.delta = true;
+    return s;
+  }
+  float area_density(const SurfacePoint&) const override { return 1; }
+
+  SurfaceSample sample_visible(const Point3& from, Point2, float time) const override {
+    SurfaceSample s;
+    fill(time, s.point);
+    s.delta = true;
+    const Vector3 to = s.point.position - from;
+    s.density = length_squared(to);  // 0 at the point itself: from there it has no direction
+    s.distance = std::sqrt(s.density);
+    s.direction = s.distance > 0 ? to / s.distance : Vector3{0, 0, 1};
+    return s;
+  }
+  /// No direction is the point's but by intention.
+  float visible_density(const Point3&, const Vector3&, const SurfacePoint&) const override { return 0; }
+
+  DoublePoint3 position{0, 0, 0};
+
+ private:
+  void fill(float time, SurfacePoint& p) const {
+    Transform scratch;
+    const Transform& t = placed(transform, time, scratch);
+    p.position = t(Point3{});
+    p.error = 0;  // the point is where it was found to be: there is no surface it could be off
+    p.normal = p.shading_normal = p.object_normal = Normal3{};
+    p.uv = {};
+    p.dpdu = p.dpdv = {};
+    p.object_position = Point3(position);
+    p.time = time;
+    p.object = this;
+    p.primitive = 0;
+    p.u = p.v = 0;
+  }
+};
+
+const Register<Point> registered;
+
+}  // namespace
+}  // namespace etendue

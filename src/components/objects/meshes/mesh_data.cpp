@@ -1,0 +1,127 @@
+// What all mesh formats share.
+
+#include "mesh_data.h"
+
+#include "etendue/describe/component.h"
+#include "files/regular_file.h"
+#include "polygon_triangulation.h"
+
+namespace etendue {
+
+MeshData read_mesh(const std::string& path) {
+  try {
+    const FileContents file(path);
+    const std::string_view text = file.text();
+    if (text.empty()) throw Error("the file is empty");
+    if (text.starts_with("ply\n") || text.starts_with("ply\r")) return read_ply(text);
+    std::string ending = path.substr(std::min(path.size(), path.find_last_of('.') + 1));
+    for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+    if (ending == "ply") return read_ply(text);
+    if (ending == "obj") return read_obj(text);
+    throw Error("this is no mesh format that is known here (PLY and OBJ are; others come in through an importer)");
+  } catch (const Error& error) {
+    throw Error("'" + path + "': " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw Error("'" + path + "': " + no_memory_to_read);
+  }
+}
+
+namespace {
+
+bool countable(const Point3& p) {
+  constexpr float largest = 1e18f;  // squares of coordinates must stay finite, and so does Embree require
+  return std::abs(p.x) < largest && std::abs(p.y) < largest && std::abs(p.z) < largest;  // false for NaN
+}
+
+/// Whether twice the area is below 1e-7 of the longest side's square: the height is lost in the rounding of the corners.
+bool without_height(const Point3& a, const Point3& b, const Point3& c) {
+  double e1[3], e2[3], longest = 0;
+  for (int k = 0; k < 3; ++k) {
+    e1[k] = double(b[k]) - double(a[k]);
+    e2[k] = double(c[k]) - double(a[k]);
+    longest = std::max({longest, std::abs(e1[k]), std::abs(e2[k])});
+  }
+  const double x = e1[1] * e2[2] - e1[2] * e2[1], y = e1[2] * e2[0] - e1[0] * e2[2], z = e1[0] * e2[1] - e1[1] * e2[0];
+  const double least = 1e-7 * longest * longest;
+  return !(x * x + y * y + z * z > least * least) || longest < 1e-18;
+}
+
+}  // namespace
+
+void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Point3> later) {
+  size_t kept = 0, not_finite = 0, without_area = 0;
+  const size_t vertices = mesh.positions.size();
+  for (const auto& t : mesh.triangles) {
+    const Point3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    if (!countable(a) || !countable(b) || !countable(c)) {
+      ++not_finite;
+      continue;
+    }
+    bool flat = without_height(a, b, c);
+    for (size_t k = 0; flat && k < later.size(); k += vertices)
+      flat = without_height(later[k + t[0]], later[k + t[1]], later[k + t[2]]);
+    if (flat) {
+      ++without_area;
+      continue;
+    }
+    mesh.triangles[kept++] = t;
+  }
+  if (kept == 0 && !mesh.triangles.empty())
+    throw Error(whose + ": none of its " + std::to_string(mesh.triangles.size()) + " triangles can be used (" +
+                std::to_string(not_finite) + " with coordinates that are not finite, " + std::to_string(without_area) +
+                " without area)");
+  mesh.triangles.resize(kept);
+  if (not_finite > 0)
+    warn(whose + ": left out " + std::to_string(not_finite) + " triangles with coordinates that are not finite");
+  if (without_area > 0) warn(whose + ": left out " + std::to_string(without_area) + " triangles without area");
+}
+
+namespace {
+
+/// The corner of a convex polygon from which a fan has no triangle without area, if there is one. Beside corners that others
+/// have on an edge in line there may be some, and without its triangle such a corner would be a gap in a closed surface.
+size_t fan_apex(const std::vector<Point3>& points, const Vector3& normal) {
+  const size_t count = points.size();
+  const float least = 1e-6f * dot(normal, normal);
+  for (size_t a = 0; a < count; ++a) {
+    bool all = true;
+    for (size_t i = 2; i < count && all; ++i)
+      all = dot(cross(points[(a + i - 1) % count] - points[a], points[(a + i) % count] - points[a]), normal) > least;
+    if (all) return a;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void append_polygon(MeshData& mesh, const std::uint32_t* corners, size_t count) {
+  if (count < 3) return;
+  if (count == 3) {
+    mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+    return;
+  }
+  thread_local std::vector<Point3> points;
+  thread_local std::vector<std::array<std::uint32_t, 3>> cut;
+  points.clear();
+  for (size_t i = 0; i < count; ++i) points.push_back(mesh.positions[corners[i]]);
+  const Vector3 normal = newell_normal(points);
+  bool convex = true;
+  for (size_t i = 2; i < count && convex; ++i)
+    convex = dot(cross(points[i - 1] - points[0], points[i] - points[0]), normal) >= 0;
+  for (size_t i = 0; i < count && convex; ++i) {
+    const Point3 &a = points[i], &b = points[(i + 1) % count], &c = points[(i + 2) % count];
+    convex = dot(cross(b - a, c - b), normal) >= 0;
+  }
+  bool sound = is_finite(normal);
+  if (convex || !sound || count > 4096) {  // cutting ears takes quadratic time: a hostile count must not stop the program
+    const size_t a = convex && count <= 64 ? fan_apex(points, normal) : 0;
+    for (size_t i = 2; i < count; ++i)
+      mesh.triangles.push_back({corners[a], corners[(a + i - 1) % count], corners[(a + i) % count]});
+    return;
+  }
+  cut.clear();
+  triangulate(points, cut);
+  for (const auto& t : cut) mesh.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
+}
+
+}  // namespace etendue

@@ -1,0 +1,48 @@
+#pragma once
+// Triangles as they come from a file or a list, and how they are read.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "etendue/core/vector.h"
+
+namespace etendue {
+
+/// Numbers by vertex, `width` for each.
+struct VertexAttribute {
+  std::string name;
+  int width = 1;
+  std::vector<float> values;
+};
+
+/// Triangles with shared vertices. Normals and uvs are by vertex, or absent.
+struct MeshData {
+  std::vector<Point3> positions;
+  DoublePoint3 centre;  ///< what they are counted from, in the object's coordinates
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Normal3> normals;  ///< a zero normal: the vertex has none
+  std::vector<Point2> uvs;
+  std::vector<VertexAttribute> attributes;  ///< "color" (linear sRGB) and whatever else a file tells of its vertices
+  std::vector<std::string> materials;       ///< names of those that the file uses, each once; nothing more is read of them
+};
+
+// The readers take the file's contents. They throw Error("what is wrong"), with the line for text, without the file's name.
+// Indices are checked, positions are not: that is for drop_unusable.
+MeshData read_ply(std::string_view file);
+MeshData read_obj(std::string_view file);
+/// By the file's contents (PLY) or the ending of its name. Throws Error("'name': what is wrong").
+MeshData read_mesh(const std::string& path);
+
+/// Removes triangles with a corner that is not finite and triangles without area, with one warning for each kind that
+/// names `whose`. Throws Error when nothing is left. Of a mesh that changes its shape, `later` holds all positions at the
+/// second key, then those at the third, and so on: triangles go only when they have no area at any key.
+void drop_unusable(MeshData&, const std::string& whose, std::span<const Point3> later = {});
+
+/// Appends the triangles of a polygon given by its corners' indices: a fan when it is convex, else by cutting ears.
+void append_polygon(MeshData&, const std::uint32_t* corners, size_t count);
+
+}  // namespace etendue

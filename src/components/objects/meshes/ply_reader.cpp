@@ -1,0 +1,283 @@
+// PLY files: text and binary of both byte orders (Turk 1994, "The PLY polygon file format").
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstring>
+
+#include "etendue/core/error.h"
+#include "geometry/own_centre.h"
+#include "mesh_data.h"
+#include "ply_attributes.h"
+#include "polygon_mesh.h"
+
+namespace etendue {
+namespace {
+
+using namespace ply;
+
+template <class T>
+T load(const char* at, bool swap) {
+  T value;
+  if (swap) {
+    char bytes[sizeof(T)];
+    for (size_t i = 0; i < sizeof(T); ++i) bytes[i] = at[sizeof(T) - 1 - i];
+    std::memcpy(&value, bytes, sizeof(T));
+  } else {
+    std::memcpy(&value, at, sizeof(T));
+  }
+  return value;
+}
+
+double load_number(const char* at, Type type, bool swap) {
+  switch (type) {
+    case Type::int8: return load<std::int8_t>(at, swap);
+    case Type::uint8: return load<std::uint8_t>(at, swap);
+    case Type::int16: return load<std::int16_t>(at, swap);
+    case Type::uint16: return load<std::uint16_t>(at, swap);
+    case Type::int32: return load<std::int32_t>(at, swap);
+    case Type::uint32: return load<std::uint32_t>(at, swap);
+    case Type::float32: return double(load<float>(at, swap));
+    case Type::float64: return load<double>(at, swap);
+  }
+  return 0;
+}
+
+/// Numbers of a PLY body, one after another.
+class Body {
+ public:
+  Body(std::string_view file, size_t start, bool text, bool swap)
+      : begin_(file.data()), at_(file.data() + start), end_(file.data() + file.size()), text_(text), swap_(swap) {}
+
+  size_t left() const { return size_t(end_ - at_); }
+  const char* at() const { return at_; }
+  void advance(size_t bytes) { at_ += bytes; }
+  bool text() const { return text_; }
+  bool swap() const { return swap_; }
+
+  double number(Type type) {
+    if (text_) return text_number();
+    const size_t size = size_of(type);
+    if (left() < size) truncated();
+    const double value = load_number(at_, type, swap_);
+    at_ += size;
+    return value;
+  }
+
+  std::uint64_t count(const Property& p) {
+    const double n = number(p.count_type);
+    if (!(n >= 0 && n <= 4294967295.0) || n != std::floor(n)) error("a list of " + p.name + " has no valid length");
+    const std::uint64_t needed = std::uint64_t(n) * (text_ ? 1 : size_of(p.type));
+    if (needed > left())
+      error("a list of " + p.name + " claims " + std::to_string(std::uint64_t(n)) + " entries, more than the file holds");
+    return std::uint64_t(n);
+  }
+
+  void skip(const Property& p) {
+    const std::uint64_t n = p.list ? count(p) : 1;
+    if (text_) {
+      for (std::uint64_t i = 0; i < n; ++i) text_number();
+    } else {
+      if (n * size_of(p.type) > left()) truncated();
+      at_ += n * size_of(p.type);
+    }
+  }
+
+  [[noreturn]] void truncated() const { error("the file ends too early"); }
+  [[noreturn]] void error(const std::string& message) const {
+    if (!text_) throw Error(message);
+    throw Error("line " + std::to_string(1 + std::count(begin_, std::min(at_, end_), '\n')) + ": " + message);
+  }
+
+ private:
+  double text_number() {
+    while (at_ < end_ && (*at_ == ' ' || *at_ == '\n' || *at_ == '\r' || *at_ == '\t')) ++at_;
+    if (at_ == end_) truncated();
+    if (*at_ == '+') ++at_;
+    double value = 0;
+    const auto [stop, code] = std::from_chars(at_, end_, value);
+    if (code == std::errc::invalid_argument) error("a number is expected");
+    if (code == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();  // its triangles are dropped
+    at_ = stop;
+    if (at_ < end_ && static_cast<unsigned char>(*at_) > ' ') error("a number is expected");
+    return value;
+  }
+
+  const char *begin_, *at_, *end_;
+  bool text_, swap_;
+};
+
+void read_vertices(const Element& e, Body& body, MeshData& mesh) {
+  const int x = e.find({"x"}), y = e.find({"y"}), z = e.find({"z"});
+  if (x < 0 || y < 0 || z < 0) throw Error("the vertices have no x, y and z");
+  const int nx = e.find({"nx"}), ny = e.find({"ny"}), nz = e.find({"nz"});
+  const int u = e.find({"u", "s", "texture_u", "texture_s"}), v = e.find({"v", "t", "texture_v", "texture_t"});
+  const bool normals = nx >= 0 && ny >= 0 && nz >= 0, uvs = u >= 0 && v >= 0;
+  const size_t count = size_t(e.count);
+  mesh.positions.reserve(count + 1);  // one more, for the padding the object adds
+  mesh.positions.resize(count);
+  // Places in double are counted from their middle, where that is far from the origin.
+  const int axes[3] = {x, y, z};
+  const bool in_double = std::ranges::all_of(axes, [&](int i) { return e.properties[size_t(i)].type == Type::float64; });
+  std::vector<DoublePoint3> exact(in_double ? count : 0);
+  if (normals) mesh.normals.resize(count);
+  if (uvs) mesh.uvs.resize(count);
+  const auto at = [](void* array, size_t component) { return static_cast<char*>(array) + 4 * component; };
+  void *const p = mesh.positions.data(), *const n = mesh.normals.data(), *const uv = mesh.uvs.data();
+  std::vector<Column> columns{{x, at(p, 0), 12}, {y, at(p, 1), 12}, {z, at(p, 2), 12}};
+  if (normals) columns.insert(columns.end(), {{nx, at(n, 0), 12}, {ny, at(n, 1), 12}, {nz, at(n, 2), 12}});
+  if (uvs) columns.insert(columns.end(), {{u, at(uv, 0), 8}, {v, at(uv, 1), 8}});
+  add_attributes(e, columns, mesh);
+
+  if (!body.text() && e.fixed_size()) {
+    std::vector<size_t> offsets;
+    size_t stride = 0;
+    for (const Property& property : e.properties) {
+      offsets.push_back(stride);
+      stride += size_of(property.type);
+    }
+    if (stride == 0 || body.left() / stride < count) body.truncated();
+    const auto plain = [&](int i) { return !body.swap() && e.properties[size_t(i)].type == Type::float32; };
+    if (y == x + 1 && z == x + 2 && stride == 12 && plain(x) && plain(y) && plain(z)) {
+      std::memcpy(p, body.at(), 12 * count);
+      columns.clear();
+    }
+    // One column after another, its type found once.
+    for (const Column& c : columns) {
+      const char* from = body.at() + offsets[size_t(c.property)];
+      const Type type = e.properties[size_t(c.property)].type;
+      char* to = c.to;
+      if (plain(c.property)) {
+        for (size_t i = 0; i < count; ++i, from += stride, to += c.step) std::memcpy(to, from, 4);
+      } else {
+        for (size_t i = 0; i < count; ++i, from += stride, to += c.step) {
+          const float value = float(load_number(from, type, body.swap()));
+          std::memcpy(to, &value, 4);
+        }
+      }
+    }
+    for (size_t i = 0; i < exact.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        exact[i][k] = load_number(body.at() + i * stride + offsets[size_t(axes[k])], Type::float64, body.swap());
+    body.advance(stride * count);
+  } else {
+    std::vector<float> row(e.properties.size());
+    for (size_t i = 0; i < count; ++i) {
+      for (size_t k = 0; k < row.size(); ++k) {
+        if (e.properties[k].list) {
+          body.skip(e.properties[k]);
+          continue;
+        }
+        const double value = body.number(e.properties[k].type);
+        row[k] = float(value);
+        for (int axis = 0; in_double && axis < 3; ++axis)
+          if (size_t(axes[axis]) == k) exact[i][axis] = value;
+      }
+      for (const Column& c : columns) std::memcpy(c.to + i * c.step, &row[size_t(c.property)], 4);
+    }
+  }
+  mesh.centre = own_centre(exact);
+  if (mesh.centre != DoublePoint3{}) mesh.positions = counted_from(mesh.centre, exact);
+  decode_fractions(e, columns);
+}
+
+/// With `polygons` given, faces go there as they are, and no triangles are made.
+void read_faces(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polygons) {
+  const int indices = e.find({"vertex_indices", "vertex_index"});
+  if (indices < 0 || !e.properties[size_t(indices)].list) throw Error("the faces have no list 'vertex_indices'");
+  const std::uint64_t vertices = mesh.positions.size();
+  if (polygons)
+    polygons->face_sizes.reserve(size_t(e.count));
+  else
+    mesh.triangles.reserve(size_t(e.count));
+  const auto out_of_range = [&](std::uint64_t face, double index) {
+    body.error(fmt::format("face {} refers to vertex {:.12g} of {} (counting from 0)", face, index, vertices));
+  };
+  const Property& list = e.properties[size_t(indices)];
+  std::uint64_t face = 0;
+  if (!polygons && !body.text() && e.properties.size() == 1 && size_of(list.count_type) == 1 && size_of(list.type) == 4 &&
+      list.type != Type::float32) {
+    // The common layout: a byte and that many 32-bit indices. Triangles are taken here, anything else below.
+    const char* at = body.at();
+    const char* const end = at + body.left();
+    const bool swap = body.swap();
+    for (; face < e.count && end - at >= 13 && *at == 3; ++face, at += 13) {
+      std::array<std::uint32_t, 3> t;
+      std::memcpy(t.data(), at + 1, 12);
+      if (swap)
+        for (std::uint32_t& i : t) i = __builtin_bswap32(i);
+      if (t[0] >= vertices || t[1] >= vertices || t[2] >= vertices) break;  // reported below
+      mesh.triangles.push_back(t);
+    }
+    body.advance(size_t(at - body.at()));
+  }
+  std::vector<std::uint32_t> corners;
+  for (; face < e.count; ++face)
+    for (const Property& p : e.properties) {
+      if (&p != &list) {
+        body.skip(p);
+        continue;
+      }
+      const std::uint64_t n = body.count(p);
+      corners.clear();
+      for (std::uint64_t i = 0; i < n; ++i) {
+        const double index = body.number(p.type);
+        if (!(index >= 0 && index < double(vertices))) out_of_range(face, index);
+        corners.push_back(std::uint32_t(index));
+      }
+      if (!polygons) {
+        append_polygon(mesh, corners.data(), corners.size());
+      } else {
+        polygons->face_sizes.push_back(std::uint32_t(corners.size()));
+        polygons->corners.insert(polygons->corners.end(), corners.begin(), corners.end());
+      }
+    }
+}
+
+MeshData parse(std::string_view file, PolygonMesh* polygons) {
+  const Header header = read_header(file);
+  Body body(file, header.size, header.text, header.swap);
+  MeshData mesh;
+  bool vertices = false, faces = false;
+  for (const Element& e : header.elements) {
+    if (e.properties.empty() || e.count == 0) continue;
+    // Nothing is reserved for a count that the rest of the file cannot hold (the last number of a text needs no space).
+    const size_t least = e.least_size(header.text);
+    if (least == 0 || e.count > (body.left() + 1) / least)
+      throw Error("the header claims " + std::to_string(e.count) + " of element " + shown(e.name) +
+                  ", more than the file holds");
+    if (e.name == "vertex") {
+      if (e.count > 0xffffffffu) throw Error("more than 2^32 vertices");
+      read_vertices(e, body, mesh);
+      vertices = true;
+    } else if (e.name == "face") {
+      if (!vertices) throw Error("faces come before the vertices they refer to");
+      read_faces(e, body, mesh, polygons);
+      faces = true;
+    } else {
+      for (std::uint64_t i = 0; i < e.count; ++i)
+        for (const Property& p : e.properties) body.skip(p);
+    }
+    if (vertices && faces) break;
+  }
+  if (!vertices) throw Error("it has no vertices");
+  if (polygons ? polygons->face_sizes.empty() : mesh.triangles.empty()) throw Error("it has no faces");
+  return mesh;
+}
+
+}  // namespace
+
+MeshData read_ply(std::string_view file) { return parse(file, nullptr); }
+
+PolygonMesh read_ply_polygons(std::string_view file) {
+  PolygonMesh polygons;
+  MeshData mesh = parse(file, &polygons);
+  polygons.positions = std::move(mesh.positions);
+  polygons.centre = mesh.centre;
+  polygons.uvs = std::move(mesh.uvs);
+  if (!polygons.uvs.empty()) polygons.uv_corners = polygons.corners;
+  polygons.attributes = std::move(mesh.attributes);
+  return polygons;
+}
+
+}  // namespace etendue

@@ -1,0 +1,164 @@
+// What objects made of triangles keep of those they are given, and what they find out about them.
+
+#include <algorithm>
+
+#include "geometry/embree_device.h"
+#include "geometry/geometry.h"
+#include "triangle_object.h"
+
+namespace etendue {
+namespace {
+
+Normal3 unit_or_zero(const Normal3& n) {
+  const float l = length(Vector3(n));
+  return l > 0 && l < infinity ? Normal3(Vector3(n) / l) : Normal3{};
+}
+
+/// Up to this many triangles have their planes remembered: 1 MB, and a tenth of a path's time.
+constexpr size_t remembered_planes = 1 << 16;
+
+}  // namespace
+
+void TriangleObject::make_shareable(MeshData& mesh) {
+  for (Normal3& n : mesh.normals) n = unit_or_zero(n);
+  mesh.positions.push_back({});
+}
+
+void TriangleObject::adopt(MeshData mesh) {
+  make_shareable(mesh);
+  adopt(std::make_shared<const MeshData>(std::move(mesh)));
+}
+
+void TriangleObject::adopt(std::shared_ptr<const MeshData> mesh, MeshMotion motion) {
+  data_ = std::move(mesh);
+  motion_ = std::move(motion);
+  changed_ = {};
+  lazy_ = std::make_unique<Lazy>();
+  vertices_ = data_->positions.size() - 1;
+  mesh_ = {data_->positions, data_->triangles, data_->normals, data_->uvs};
+  if (motion_.moves()) {
+    mesh_.positions = motion_.positions;
+    mesh_.normals = motion_.normals;
+  }
+  transform.count_from(transform.outer(), data_->centre);
+  if (!transform.animated() && !transform.still().identity()) bake(transform.still());
+  static constexpr Point2 plain_uvs[3] = {{0, 0}, {1, 0}, {0, 1}};
+  static constexpr std::array<std::uint32_t, 3> plain_corners = {0, 1, 2};
+  const bool mapped = !mesh_.uvs.empty();
+  uvs_ = mapped ? mesh_.uvs.data() : plain_uvs;
+  uv_corners_ = mapped ? mesh_.triangles.data() : &plain_corners;
+  uv_mask_ = mapped ? ~0u : 0;
+  area_ = 0;
+  stored_bounds_ = {};
+  for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+    area_ += double(stored_area(std::uint32_t(i)));
+    for (size_t key = 0; key < std::max<size_t>(motion_.times.size(), 1); ++key)
+      for (const std::uint32_t c : mesh_.triangles[i]) stored_bounds_.add(mesh_.positions[key * vertices_ + c]);
+  }
+  planes_.clear();
+  if (!motion_.moves() && !mesh_.triangles.empty() && mesh_.triangles.size() <= remembered_planes) {
+    for (const auto& t : mesh_.triangles) {
+      const Point3& p = mesh_.positions[t[0]];
+      planes_.push_back(plane_of(p, mesh_.positions[t[1]] - p, mesh_.positions[t[2]] - p));
+    }
+  }
+  bounds_ = transform.animated() ? swept(transform, stored_bounds_) : stored_bounds_;
+  // What will surely be asked for is made now, the rest when it is.
+  light_tree_ = {};
+  if (emission) {
+    cumulative_areas();
+    if (!moves() && mesh_.triangles.size() > few) build_light_tree();
+  }
+  if (transform.animated() && mesh_.triangles.size() > few) accelerator();
+}
+
+void TriangleObject::bake(const Transform& t) {
+  // What is shared stays as it is; of a motion this is the only user.
+  std::vector<Point3>& positions = motion_.moves() ? motion_.positions : changed_.positions;
+  std::vector<Normal3>& normals = motion_.moves() ? motion_.normals : changed_.normals;
+  if (!motion_.moves()) {
+    positions.assign(mesh_.positions.begin(), mesh_.positions.end());
+    if (!t.shifts_only()) normals.assign(mesh_.normals.begin(), mesh_.normals.end());
+  }
+  for (Point3& p : positions) p = Point3(t(DoublePoint3(p)));
+  mesh_.positions = positions;
+  if (!t.shifts_only()) {
+    for (Normal3& n : normals) n = unit_or_zero(t(n));
+    mesh_.normals = normals;
+  }
+  if (!t.flips()) return;
+  // So that edges still turn around the front.
+  changed_.triangles.assign(mesh_.triangles.begin(), mesh_.triangles.end());
+  for (auto& corner : changed_.triangles) std::swap(corner[1], corner[2]);
+  mesh_.triangles = changed_.triangles;
+}
+
+bool TriangleObject::closed() const {
+  // In a closed and consistently oriented surface every directed edge meets its opposite, so this sum, to which an edge
+  // and its opposite contribute inverse terms, is zero; of an open surface it is so with probability 2^-64. Corners are
+  // told by position, not index: seams of texture coordinates are no holes.
+  std::call_once(lazy_->closed_known, [this] {
+    const auto corner = [this](std::uint32_t i) {
+      std::uint64_t h = 0;
+      for (size_t k = i; k + 1 < mesh_.positions.size(); k += vertices_) {  // at all keys
+        const Point3& p = mesh_.positions[k];
+        h = mix_bits(h ^ std::bit_cast<std::uint32_t>(p.x + 0.0f));
+        h = mix_bits((h << 32 | std::bit_cast<std::uint32_t>(p.y + 0.0f)) + 0x9e3779b97f4a7c15ull);
+        h = mix_bits(h ^ std::bit_cast<std::uint32_t>(p.z + 0.0f));
+      }
+      return h;
+    };
+    std::uint64_t sum = 0;
+    for (const auto& t : mesh_.triangles) {
+      const std::uint64_t h[3] = {corner(t[0]), corner(t[1]), corner(t[2])};
+      for (int i = 0; i < 3; ++i) {
+        const std::uint64_t a = h[i], b = h[(i + 1) % 3];
+        sum += mix_bits(3 * a + b) - mix_bits(3 * b + a);
+      }
+    }
+    lazy_->closed = sum == 0 && !mesh_.triangles.empty();
+  });
+  return lazy_->closed;
+}
+
+ObjectNotes TriangleObject::notes() const {
+  ObjectNotes notes;
+  notes.without_uv = mesh_.uvs.empty();
+  if (data_) {
+    for (const VertexAttribute& a : data_->attributes) notes.attributes.push_back(a.name);
+    notes.materials = data_->materials;
+  }
+  return notes;
+}
+
+// Edges by the places of their ends, as above. One that is met once ends the surface; of the others nothing is said, as a mesh
+// whose triangles do not all turn the same way around the front, which is not closed either, has two of each.
+std::uint64_t TriangleObject::open_edges() const {
+  if (closed()) return 0;
+  std::uint64_t open = 0;
+  const auto key = [this](std::uint32_t i) {
+    const Point3& p = mesh_.positions[i];
+    std::uint64_t h = mix_bits(std::bit_cast<std::uint32_t>(p.x + 0.0f));
+    h = mix_bits((h << 32 | std::bit_cast<std::uint32_t>(p.y + 0.0f)) + 0x9e3779b97f4a7c15ull);
+    return mix_bits(h ^ std::bit_cast<std::uint32_t>(p.z + 0.0f));
+  };
+  std::vector<std::uint64_t> edges;
+  edges.reserve(3 * mesh_.triangles.size());
+  for (const auto& t : mesh_.triangles) {
+    const std::uint64_t h[3] = {key(t[0]), key(t[1]), key(t[2])};
+    for (int i = 0; i < 3; ++i) {
+      const std::uint64_t a = h[i], b = h[(i + 1) % 3];
+      edges.push_back(mix_bits(3 * std::min(a, b) + std::max(a, b)));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (size_t i = 0; i < edges.size();) {
+    size_t end = i + 1;
+    while (end < edges.size() && edges[end] == edges[i]) ++end;
+    open += end - i == 1;
+    i = end;
+  }
+  return open;
+}
+
+}  // namespace etendue

@@ -1,0 +1,52 @@
+#pragma once
+// What objects made of Bézier patches share. Rays meet the patches themselves, not triangles near them.
+
+#include <memory>
+
+#include "bezier_cells.h"
+#include "bezier_region.h"
+#include "bezier_table.h"
+#include "geometry/numbered_parts.h"
+#include "geometry/placed_object.h"
+
+namespace etendue {
+
+/// A hit's primitive is the number of a patch, its u and v are s and t on it.
+class BezierObject : public PlacedObject, public NumberedParts {
+ public:
+  BezierObject();
+  ~BezierObject() override;
+  bool closed() const override { return closed_; }
+  std::uint64_t part_count() const override { return patches_.size(); }
+
+ protected:
+  /// How fine the grid of a number of patches is.
+  static int grid_for(std::size_t patches);
+  /// Takes patches and what is there of them, and places the object; to be called at the end of prepare. Returns false when
+  /// they have no area.
+  bool adopt(std::vector<bezier::Patch>, bezier::Region);
+
+  Bounds3 own_bounds() const override { return own_bounds_; }
+  bool own_intersect(const Ray&, Hit&) const override;
+  bool own_occludes(const Ray&) const override;
+  void own_point(const Ray&, const Hit&, OwnPoint&) const override;
+  double own_area() const override { return table_.area(); }
+  float own_area_error() const override { return float(table_.area_error()); }
+  float own_sample(Point2 u, OwnPoint&) const override;
+  float own_density(const SurfacePoint&) const override;
+
+ private:
+  struct Accelerator;
+  /// Fills a point; returns the area per unit of s and t there.
+  double point_at(std::uint32_t patch, float s, float t, OwnPoint&) const;
+
+  std::vector<bezier::Patch> patches_;
+  std::vector<bezier::Cell> cells_;
+  bezier::Region region_{0, 1};
+  bezier::AreaTable table_;
+  std::unique_ptr<Accelerator> accelerator_;
+  Bounds3 own_bounds_;
+  bool closed_ = false;
+};
+
+}  // namespace etendue

@@ -1,0 +1,73 @@
+// Annulus: a flat ring.
+
+#include "geometry/quadric_roots.h"
+
+namespace etendue {
+namespace {
+
+class Annulus final : public PlacedObject {
+ public:
+  static void describe(Description<Annulus>& d) {
+    d.summary(
+         "A flat ring about the origin in the xy plane, facing +z; surface coordinates are as on a Disc of its outer radius.")
+        .member<&Annulus::inner_radius>("inner_radius", "m", "of its hole; 0: none", at_least(0), Effect::rebuild)
+        .member<&Annulus::radius>("radius", "m", "its outer radius", more_than(0), Effect::rebuild)
+        .member<&Annulus::sweep>("sweep", "deg", "how much of a turn there is, from x towards y", Range{0, 360, true},
+                                 Effect::rebuild);
+  }
+
+  void prepare() override {
+    if (!(radius > 0 && radius < infinity)) fail("radius", "must be positive and finite");
+    if (!(inner_radius >= 0 && inner_radius < radius)) fail("inner_radius", "must be smaller than radius, and not negative");
+    if (!(sweep > 0 && sweep <= 360)) fail("sweep", "must be above 0 and at most 360 deg");
+    sector_ = Sector(double(sweep) * (M_PI / 180));
+    low_ = double(inner_radius) * double(inner_radius);
+    high_ = double(radius) * double(radius);
+    if (!(float(own_area()) > 0 && float(own_area()) < infinity)) fail("radius", "the ring's area is no float");
+    place();
+  }
+
+  NormalCone normals() const override {
+    if (transform.animated()) return {};
+    return {Vector3(normalize(transform.still()(Normal3(0, 0, 1)))), 1};
+  }
+
+  float inner_radius = 0.5f, radius = 1, sweep = 360;
+
+ protected:
+  Bounds3 own_bounds() const override {
+    Bounds3 box;
+    box.add(Point3{-radius, -radius, 0});
+    box.add(Point3{radius, radius, 0});
+    return box;
+  }
+
+  bool own_intersect(const Ray& ray, Hit& hit) const override {
+    const DoubleRay r(ray);
+    const double t = -r.origin[2] / r.direction[2], x = r.at(t, 0), y = r.at(t, 1), d2 = x * x + y * y;
+    return d2 >= low_ && d2 <= high_ && sector_.holds(x, y) && take_hit(ray, t, 0, hit);
+  }
+
+  void own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const override {
+    const DoubleRay r(ray);
+    const double t = exact_distance(hit);
+    flat_point(r.at(t, 0), r.at(t, 1), 0, double(radius), true, double(radius), p);
+  }
+
+  double own_area() const override { return sector_.share() * M_PI * (high_ - low_); }
+
+  float own_sample(Point2 u, OwnPoint& p) const override {
+    const double r = std::sqrt(low_ + double(u.y) * (high_ - low_)), phi = sector_.angle() * double(u.x);
+    flat_point(r * std::cos(phi), r * std::sin(phi), 0, double(radius), true, double(radius), p);
+    return float(1 / own_area());
+  }
+
+ private:
+  Sector sector_;
+  double low_ = 0, high_ = 1;  // squares of the radii [m^2]
+};
+
+const Register<Annulus> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,70 @@
+#pragma once
+// What cylinders, cones, paraboloids and hyperboloids share.
+
+#include "geometry/quadric_roots.h"
+#include "geometry/visible_directions.h"
+
+namespace etendue {
+
+/// The side x^2 + y^2 = f(z), f of at most second degree, between two heights, with discs as caps or without. A solid is the
+/// part of a slab that lies inside the quadric: a ray crosses it where an interval in both begins and ends, always in pairs.
+class RevolvedQuadric : public PlacedObject {
+ public:
+  bool closed() const override {
+    return sector_.full() && (profile_.low_cap || profile_.low_radius == 0) && (profile_.high_cap || profile_.high_radius == 0);
+  }
+  SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
+  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
+
+  float sweep = 360;  ///< how much of a turn there is [deg]
+
+ protected:
+  struct Profile {
+    double square = 0, linear = 0, constant = 1;  ///< of f(z)
+    double low = 0, high = 1;                     ///< heights [m]
+    double low_radius = 1, high_radius = 1;       ///< [m]
+    bool low_cap = false, high_cap = false;
+    double side_area = 1;  ///< of a whole turn [m^2]
+    bool tube = false;     ///< a cylinder: all rings are alike
+    bool convex = true;
+
+    double squared_radius(double z) const { return std::max(0.0, (square * z + linear) * z + constant); }
+    double half_slope(double z) const { return square * z + 0.5 * linear; }  ///< f'(z) / 2 = r r'
+  };
+  /// To be called at the end of prepare.
+  void revolve(const Profile&);
+  const Profile& profile() const { return profile_; }
+
+  /// The height below which a share of the side's area lies.
+  virtual double height_at(double share) const = 0;
+
+  /// The coordinate v along the profile, from 0 to 1, and the changes of height and radius with it.
+  struct Along {
+    double v, height_rate, radius_rate;
+  };
+  /// By default v goes with the height.
+  virtual Along along_profile(double z, double r) const;
+
+  Bounds3 own_bounds() const override;
+  bool own_intersect(const Ray&, Hit&) const override;
+  void own_point(const Ray&, const Hit&, OwnPoint&) const override;
+  double own_area() const override { return low_area_ + side_area_ + high_area_; }
+  float own_sample(Point2 u, OwnPoint&) const override;
+
+ private:
+  enum Part : std::uint32_t { side, low_cap, high_cap };
+
+  struct Seen;
+  /// Of what is not seen by AxialDirections: from inside all by direction, from close by half of the time.
+  DirectionShare direction_share(const Point3& own) const;
+
+  void side_point(double x, double y, double z, OwnPoint&) const;
+  void cap_point(Part, double x, double y, OwnPoint&) const;
+
+  Profile profile_;
+  Sector sector_;
+  double low_area_ = 0, side_area_ = 0, high_area_ = 0;
+  double extent_ = 1;  // the smaller of width and height: the size of errors in double, in floats
+};
+
+}  // namespace etendue

@@ -1,0 +1,272 @@
+// Sphere: also an ellipsoid, when its transform stretches.
+
+#include "etendue/core/warp.h"
+#include "geometry/geometry.h"
+
+namespace etendue {
+
+class Sphere final : public SceneObject {
+  DoublePoint3 center{0, 0, 0};
+  float radius = 1;
+
+ public:
+  static void describe(Description<Sphere>& d) {
+    d.summary(
+         "A sphere; an ellipsoid when its transform stretches. u goes around the z axis from +x towards +y, v from the pole at "
+         "-z "
+         "to that at +z.",
+         "cone sampling: Shirley, Wang & Zimmerman 1996, \"Monte Carlo techniques for direct lighting calculations\"")
+        .member<&Sphere::center>("center", "m", "its centre", Effect::rebuild)
+        .member<&Sphere::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild);
+  }
+
+  void prepare() override {
+    if (!is_finite(center) || !(radius > 0 && radius < infinity))
+      fail("radius", "centre and radius must be finite, the radius positive");
+    transform.count_from(transform.outer(), center);
+    const float scale = transform.animated() ? 0 : similarity_scale(transform.still());
+    round_ = scale > 0;
+    ball_ = round_ ? Ball{transform.still()(Point3{}), scale * radius} : Ball{{}, radius};
+    const Vector3 r{ball_.radius, ball_.radius, ball_.radius};
+    Bounds3 box;
+    box.add(ball_.center - r);
+    box.add(ball_.center + r);
+    if (round_) {
+      bounds_ = box;
+    } else if (transform.animated()) {
+      bounds_ = swept(transform, box);
+    } else {  // an ellipsoid M x + c with |x| <= r reaches r |row k of M| along axis k
+      const auto& m = transform.still().matrix();
+      const auto reach = [&](size_t k) { return radius * length(Vector3{m[4 * k], m[4 * k + 1], m[4 * k + 2]}); };
+      const Point3 c = transform.still()(Point3{});
+      bounds_ = {};
+      bounds_.add(c - Vector3{reach(0), reach(1), reach(2)});
+      bounds_.add(c + Vector3{reach(0), reach(1), reach(2)});
+    }
+    // What rounding may put outside.
+    const Vector3 margin = rounding_bound(8) * (bounds_.diagonal() + abs(bounds_.centre() - Point3{}));
+    bounds_.low = bounds_.low - margin;
+    bounds_.high = bounds_.high + margin;
+    still_area_ = area_of(transform.still());
+  }
+
+  Bounds3 bounds() const override { return bounds_; }
+
+  bool intersect(const Ray& ray, Hit& hit) const override {
+    const float t = round_ ? ball_.nearest(ray) : distance_inside(ray);
+    if (!(t < ray.maximum)) return false;
+    hit.distance = t;
+    hit.object = this;
+    hit.primitive = 0;
+    hit.u = 0;
+    hit.v = 0;
+    hit.depth = 0;
+    return true;
+  }
+  bool occludes(const Ray& ray) const override { return (round_ ? ball_.nearest(ray) : distance_inside(ray)) < ray.maximum; }
+
+  void surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const override {
+    if (round_) {
+      // Towards the hit from the centre, in double: the hit's own rounding would spoil the normal of a far sphere.
+      fill(unit_from_centre(ball_, ray, hit.distance), ray.time, p);
+    } else {
+      Transform scratch;
+      fill(unit_from_centre(ball_, ray_into(placed(transform, ray.time, scratch), ray), hit.distance), ray.time, p);
+    }
+  }
+
+  void tangents(SurfacePoint& p) const override {
+    if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
+    const Vector3 d = radius * Vector3(p.object_normal);
+    const float around = std::sqrt(d.x * d.x + d.y * d.y);
+    if (around > 1e-6f * radius) {
+      p.dpdu = 2 * pi * Vector3{-d.y, d.x, 0};
+      p.dpdv = pi * Vector3{-d.z * d.x / around, -d.z * d.y / around, around};
+    } else {  // at a pole u has no direction: any will do
+      p.dpdu = {2 * pi * radius, 0, 0};
+      p.dpdv = {0, d.z > 0 ? pi * radius : -pi * radius, 0};
+    }
+    Transform scratch;
+    const Transform& t = placed(transform, p.time, scratch);
+    p.dpdu = t(p.dpdu);
+    p.dpdv = t(p.dpdv);
+  }
+
+  bool closed() const override { return true; }
+
+  float area(float time) const override { return transform.animated() ? area_of(transform.at(time)) : still_area_; }
+
+  SurfaceSample sample_area(Point2 u, float time) const override {
+    SurfaceSample s;
+    fill(warp::sphere(u), time, s.point);
+    s.density = area_density(s.point);
+    return s;
+  }
+
+  float area_density(const SurfacePoint& p) const override {
+    if (round_) return 1 / still_area_;
+    Transform scratch;
+    const Transform& t = placed(transform, p.time, scratch);
+    return 1 / (4 * pi * radius * radius * area_stretch(t, p.object_normal));
+  }
+
+  SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
+    Ball ball;
+    float one_minus_cosine = 0;
+    if (!as_ball(time, ball) || !ball.cone(from, one_minus_cosine)) return by_area(from, u, time);
+    // A direction in the cone at angle theta to its axis meets the sphere first at a point that is seen from the centre
+    // at angle alpha to the axis back to `from`. With sin(max) = r/d the sine theorem gives the angle at the point, and
+    //   cos(alpha) = sin(theta)^2 / sin(max) + cos(theta) sqrt(1 - sin(theta)^2 / sin(max)^2),
+    // in which nothing cancels however far the sphere is.
+    const Vector3 to = ball.center - from;
+    const float d = length(to), sin_max = ball.radius / d;
+    const float h = u.x * one_minus_cosine, sin2 = h * (2 - h), cos_theta = 1 - h;
+    const float cos_alpha = std::min(1.0f, sin2 / sin_max + cos_theta * safe_sqrt(1 - sin2 / (sin_max * sin_max)));
+    const float sin_alpha = safe_sqrt(1 - cos_alpha * cos_alpha);
+    float sine = 0, cosine = 0;
+    sin_cos_turn(u.y, sine, cosine);
+    const Frame axis(Normal3(to / d));
+    const Vector3 out = sin_alpha * (cosine * axis.s + sine * axis.t) - cos_alpha * Vector3(axis.n);
+    SurfaceSample s;
+    if (round_)
+      fill(out, time, s.point);
+    else
+      fill(normalize(transform.at(time).back(out)), time, s.point);
+    complete_by_angle(s, from, warp::cone_density(one_minus_cosine));
+    return s;
+  }
+
+  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+    Ball ball;
+    float one_minus_cosine = 0;
+    if (!as_ball(p.time, ball) || !ball.cone(from, one_minus_cosine)) {
+      const float cosine = std::abs(dot(p.normal, direction));
+      return cosine > 0 ? area_density(p) * distance_squared(p.position, from) / cosine : 0;
+    }
+    return dot(p.normal, direction) < 0 ? warp::cone_density(one_minus_cosine) : 0;  // never its far side
+  }
+
+ private:
+  struct Ball {
+    Point3 center;
+    float radius = 1;
+
+    /// The smallest t > 0, or infinity. In double: the discriminant of a small or far sphere is a difference of large
+    /// numbers. q is the half of the root that does not cancel, c / q the other (Hearn & Baker 2004).
+    float nearest(const Ray& ray) const {
+      const double ox = double(ray.origin.x) - center.x, oy = double(ray.origin.y) - center.y,
+                   oz = double(ray.origin.z) - center.z;
+      const double dx = ray.direction.x, dy = ray.direction.y, dz = ray.direction.z;
+      const double a = dx * dx + dy * dy + dz * dz, b = ox * dx + oy * dy + oz * dz;
+      const double c = ox * ox + oy * oy + oz * oz - double(radius) * radius;
+      if (c > 0 && b >= 0) return infinity;  // outside and going away
+      const double discriminant = b * b - a * c;
+      if (!(discriminant >= 0)) return infinity;
+      const double q = b > 0 ? -b - std::sqrt(discriminant) : -b + std::sqrt(discriminant);
+      const double t0 = b > 0 ? q / a : c / q, t1 = b > 0 ? c / q : q / a;  // t0 <= t1
+      const float near = float(t0), far = float(t1);
+      return near > 0 ? near : (far > 0 ? far : infinity);
+    }
+
+    /// The cone in which the sphere is seen; false from inside or too close to tell.
+    bool cone(const Point3& from, float& one_minus_cosine) const {
+      const float d2 = distance_squared(from, center), sin2 = radius * radius / d2;
+      if (!(sin2 < 0.9999f)) return false;
+      one_minus_cosine = sin2 / (1 + std::sqrt(1 - sin2));
+      return true;
+    }
+  };
+
+  static Vector3 unit_from_centre(const Ball& ball, const Ray& ray, float t) {
+    const double x = double(ray.origin.x) + double(t) * ray.direction.x - ball.center.x;
+    const double y = double(ray.origin.y) + double(t) * ray.direction.y - ball.center.y;
+    const double z = double(ray.origin.z) + double(t) * ray.direction.z - ball.center.z;
+    const double s = 1 / std::sqrt(x * x + y * y + z * z);
+    return {float(x * s), float(y * s), float(z * s)};
+  }
+
+  float distance_inside(const Ray& ray) const {
+    Transform scratch;
+    return ball_.nearest(ray_into(placed(transform, ray.time, scratch), ray));
+  }
+
+  /// Fills a point by its direction from the centre: outside for a round still sphere, else in the object's coordinates.
+  void fill(const Vector3& from_centre, float time, SurfacePoint& p) const {
+    p.position = ball_.center + ball_.radius * from_centre;
+    p.normal = Normal3(from_centre);
+    p.shading_normal = p.normal;
+    p.dpdu = {};
+    p.dpdv = {};
+    p.time = time;
+    p.object = this;
+    p.primitive = 0;
+    p.u = 0;
+    p.v = 0;
+    // Rounding of the position, of the normal's length and of the offset; intersection itself is in double.
+    const Vector3 here{std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)};
+    p.error = rounding_bound(3) * (along(p.normal, here) + ball_.radius);
+    if (round_) {
+      const Transform& t = transform.still();
+      fill_object_coordinates(transform, t, p);
+    } else {
+      Transform scratch;
+      p.object_position = own_place(transform, p.position);
+      p.object_normal = p.normal;
+      carry_out(placed(transform, time, scratch), p);
+    }
+    // u around the z axis from x, v from the pole at -z to that at +z.
+    const Normal3& n = p.object_normal;
+    p.uv.x = positive_atan2(n.y, n.x) * (1 / (2 * pi));
+    p.uv.y = positive_atan2(std::sqrt(n.x * n.x + n.y * n.y), -n.z) * inverse_pi;
+  }
+
+  /// The sphere outside at a time; false when it is an ellipsoid then.
+  bool as_ball(float time, Ball& ball) const {
+    if (round_) {
+      ball = ball_;
+      return true;
+    }
+    if (!transform.animated()) return false;
+    const Transform t = transform.at(time);
+    const float scale = similarity_scale(t);
+    ball = {t(Point3{}), scale * radius};
+    return scale > 0;
+  }
+
+  SurfaceSample by_area(const Point3& from, Point2 u, float time) const {
+    SurfaceSample s = sample_area(u, time);
+    complete_by_area(s, from, s.density);
+    return s;
+  }
+
+  /// By how much the transform enlarges area at a unit normal inside: |det M| |M^-T n|.
+  static float area_stretch(const Transform& t, const Normal3& n) {
+    return std::abs(linear_determinant(t)) * length(Vector3(t(n)));
+  }
+
+  float area_of(const Transform& t) const {
+    const float s = similarity_scale(t);
+    if (s > 0) return 4 * pi * square(s * radius);
+    // An ellipsoid: the stretch averaged over the sphere; the midpoint rule converges fast on a smooth closed surface.
+    constexpr int rings = 96, sectors = 96;
+    double sum = 0, weight = 0;
+    for (int i = 0; i < rings; ++i) {
+      const float theta = pi * (float(i) + 0.5f) / rings, sine = std::sin(theta);
+      for (int k = 0; k < sectors; ++k) {
+        const float phi = 2 * pi * (float(k) + 0.5f) / sectors;
+        sum += double(sine * area_stretch(t, Normal3(sine * std::cos(phi), sine * std::sin(phi), std::cos(theta))));
+        weight += double(sine);
+      }
+    }
+    return 4 * pi * radius * radius * float(sum / weight);
+  }
+
+  Ball ball_;          // outside for a round still sphere, else in the object's coordinates
+  bool round_ = true;  // still, and round outside as well
+  float still_area_ = 4 * pi;
+  Bounds3 bounds_;
+};
+
+static const Register<Sphere> registered;
+
+}  // namespace etendue

@@ -1,0 +1,93 @@
+#include <cmath>
+
+#include "encoded_image.h"
+#include "etendue/describe/color.h"
+#include "etendue/film/image_tools.h"
+#include "etendue/output.h"
+
+namespace etendue {
+namespace {
+
+class ExrOutput final : public Output {
+  enum class Precision : std::uint8_t { half, single };
+  Precision precision = Precision::single;
+  std::string color_space = "srgb";
+  bool layers = true;
+
+ public:
+  static void describe(Description<ExrOutput>& d) {
+    d.summary(
+         "OpenEXR: linear values without bounds, the film's layers, and what is known of the picture as attributes. The "
+         "encoding of a tone map is undone, as the format holds linear values by definition.",
+         "Kainz, Bogart & Hess 2004, The OpenEXR image file format")
+        .member<&ExrOutput::precision>("precision", "", "of the colours: 16 or 32 bits", choices("half", "float"),
+                                       Effect::retone)
+        .member<&ExrOutput::color_space>("color_space", "", "the RGB space the colours are written in, or xyz", Effect::retone)
+        .member<&ExrOutput::layers>("layers", "", "whether the film's layers are written as well", Effect::retone);
+  }
+  void prepare() override {
+    try {
+      rgb_space(color_space);
+    } catch (const Error& e) {
+      fail("color_space", e.what());
+    }
+    require_image_library();
+  }
+  std::string extension() const override { return ".exr"; }
+  bool for_display() const override { return false; }
+
+  void write_image(const Image& given, const std::string& path) const override {
+    const Image image = convert_color_space(given, color_space);
+    std::vector<size_t> kept;
+    for (size_t c = 0; c < image.channels.size(); ++c)
+      if (layers || image.channels[c].find('.') == std::string::npos) kept.push_back(c);
+
+    std::vector<ImageHeader::Channel> channels;
+    for (const size_t c : kept) {
+      // Halves hold whole numbers up to 2048 and lengths to three digits: layers keep their precision.
+      const bool color = image.channels[c].find('.') == std::string::npos;
+      channels.push_back({image.channels[c], precision == Precision::half && color ? NumberType::half : NumberType::single});
+    }
+    ImageHeader header(image.width, image.height, std::move(channels));
+    const RgbSpace& space = rgb_space(color_space);
+    header.chromaticities.emplace();
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < 2; ++j) (*header.chromaticities)[2 * i + j] = float(space.primaries[i][j]);
+    for (size_t j = 0; j < 2; ++j) (*header.chromaticities)[6 + j] = float(space.white[j]);
+    header.texts = image.metadata;
+    place(header, image);
+
+    std::vector<float> values(size_t(image.width) * size_t(image.height) * kept.size());
+    size_t over = 0, at = 0;
+    for (size_t i = 0; i < image.values.size(); i += image.channels.size())
+      for (size_t k = 0; k < kept.size(); ++k) {
+        const double v = image.values[i + kept[k]];
+        const double limit = header.channels[k].type == NumberType::half ? 65504 : double(std::numeric_limits<float>::max());
+        // Infinite values, such as an unknown variance, are meant.
+        const bool exceeds = std::isfinite(v) && std::abs(v) > limit;
+        over += exceeds;
+        values[at++] = float(exceeds ? std::copysign(limit, v) : v);
+      }
+    if (over > 0)
+      warn("'" + path + "': " + std::to_string(over) + " values exceed what the chosen precision can hold and were limited");
+    write_encoded(path, extension(), header, values);
+  }
+
+ private:
+  /// Where a cropped picture lies within the whole.
+  static void place(ImageHeader& header, const Image& image) {
+    const auto number = [&](const char* key, int otherwise) {
+      const auto found = image.metadata.find(key);
+      return found == image.metadata.end() ? otherwise : std::atoi(found->second.c_str());
+    };
+    header.x = number("crop_x", 0);
+    header.y = number("crop_y", 0);
+    header.whole = {0, 0, number("full_width", image.width), number("full_height", image.height)};
+    for (const char* key : {"crop_x", "crop_y", "full_width", "full_height"}) header.texts.erase(key);
+  }
+};
+
+static const Register<ExrOutput> registered;
+
+}  // namespace
+}  // namespace etendue

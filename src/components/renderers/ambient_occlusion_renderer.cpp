@@ -1,0 +1,84 @@
+// How open surfaces lie to their surroundings.
+//
+//     A(x) = 1/pi * integral over the hemisphere of V(x, w) cos(w) dw
+// (Zhukov, Iones & Kronin 1998, "An ambient light illumination model", eq. 4; Landis 2002), V being 1 where a ray of the
+// given length meets nothing. Directions are drawn with density cos / pi, so A is the mean of V. With unlimited rays
+// the picture's Y is that of white matt surfaces under a sky of radiance 1, one reflection deep.
+
+#include "display_colors.h"
+#include "etendue/core/warp.h"
+#include "etendue/render/renderer.h"
+#include "transport/ray_steps.h"
+#include "transport/record.h"
+#include "transport/visibility.h"
+
+namespace etendue {
+namespace {
+
+class AmbientOcclusionRenderer final : public Renderer {
+  float distance = 0;
+  int rays = 4;
+
+ public:
+  static void describe(Description<AmbientOcclusionRenderer>& d) {
+    d.summary(
+         "The fraction of the hemisphere over each surface, weighted by the cosine, from which nothing blocks light: "
+         "a grey from 0 (enclosed) to 1 (open). Where the camera sees nothing it is 1. Surfaces are seen from both sides.",
+         "Zhukov, Iones & Kronin 1998, An ambient light illumination model; Landis 2002, Production-ready global "
+         "illumination")
+        .member<&AmbientOcclusionRenderer::distance>("distance", "m", "what is farther away blocks nothing; 0: all does",
+                                                     at_least(0))
+        .member<&AmbientOcclusionRenderer::rays>("rays", "1", "rays for each sample of a pixel", range(1, 65536));
+  }
+
+  std::string limits() const override { return "all light: it shows how open surfaces are"; }
+  std::vector<Advice> misses(const SceneTraits&) const override {
+    return {{"any light, as it shows how open surfaces are", "PathTracer, BidirectionalPathTracer"}};
+  }
+
+  Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
+    const Scene& scene = context.scene;
+    MediumStack media;
+    Ray ray = camera_ray;
+    Hit hit;
+    SurfacePoint point;
+    if (!meet_surface(scene, ray, media_around(scene, ray, media), hit, point)) {
+      return grey(1, 1, sample);
+    }
+    const Vector3 out = -ray.direction;
+    record_surface(sample.record, point, Spectrum(1.0f));
+    if (sample.features) {
+      const Scatter* scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
+      note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths);
+    }
+
+    // The side that is seen; directions under the true surface, which shading normals may lead to, are blocked.
+    const float side = dot(point.normal, out) < 0 ? -1.0f : 1.0f;
+    const Frame frame(dot(point.shading_normal, point.normal) * side < 0 ? -point.shading_normal : point.shading_normal);
+    float open = 0;
+    Ray shadow;
+    for (int i = 0; i < rays && !sample.aborted(); ++i) {
+      const Vector3 direction = frame.to_world(warp::cosine_hemisphere(sample.random.next_pair()));
+      if (!(dot(point.normal, direction) * side > 0)) continue;
+      point.leave(direction, shadow);
+      if (distance > 0) shadow.maximum = distance;
+      open += visible_fraction(scene, shadow, nullptr, sample.wavelengths, sample.arena).average();
+    }
+    const Spectrum value = grey(open / float(rays), 2, sample);
+    record_direct(sample.record, value, 2, 1);
+    return value;
+  }
+
+ private:
+  static Spectrum grey(float value, int length, SampleContext& sample) {
+    const Spectrum spectrum = display_colors()({value, value, value});
+    sample.wavelengths = display_colors().wavelengths;
+    sample.note_length(length, spectrum);
+    return spectrum;
+  }
+};
+
+const Register<AmbientOcclusionRenderer> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,286 @@
+// Distribution ray tracing: rays spread over luminaires, lobes, the lens and time.
+//
+// Cook, Porter & Carpenter 1984, "Distributed ray tracing", spread one tree of rays over all that is to be blurred. Lens,
+// time and wavelengths come with the camera ray. At a surface the tree splits: n_l rays go to points on luminaires, n_d and n_g
+// along directions of the diffuse and the glossy lobes, n_s along each perfect mirror or refraction, so that each kind of
+// blur gets the rays it needs.
+//
+// With p_d, p_g the solid-angle densities with which the two kinds of lobes, each asked alone, give w, the n_d + n_g lobe
+// rays together are one stratified sample of the density
+//     N(w) = n_d p_d(w) + n_g p_g(w),
+// so that what arrives along each of them counts f |cos| / N, f being that of both kinds: the balance heuristic between
+// the lobes (Veach 1997, section 9.2.2). Light straight from luminaires is found by the luminaire rays as well, with
+// n_l p_l(w). The two are combined by the power heuristic (ibid., section 9.2.3),
+//     w_lobes = N^2 / (N^2 + (n_l p_l)^2),    w_luminaires = 1 - w_lobes,
+// so emission that a lobe ray meets counts w_lobes f |cos| L_e / N, and a luminaire ray w_luminaires f |cos| L_e / (n_l p_l).
+// Rays from the camera and from specular lobes take the emission they meet in full. A kind of lobe that gets no rays leaves N,
+// and its direct light comes from luminaire rays alone; only then is anything left out.
+//
+// Beyond `split_depth` segments one ray goes on, along any lobe, and one to a luminaire: the tree's branches end as the paths
+// of a path tracer, cut by Russian roulette, and with all kinds of lobes followed the expectation is the path tracer's.
+
+#include "etendue/render/renderer.h"
+#include "transport/direct_light.h"
+#include "transport/ray_steps.h"
+#include "transport/record.h"
+#include "transport/visibility.h"
+
+namespace etendue {
+namespace {
+
+class DistributionRenderer final : public Renderer {
+  int light_samples = 4, diffuse_samples = 4, glossy_samples = 4, specular_samples = 1;
+  int split_depth = 1, max_depth = 16, roulette_depth = 5;
+
+ public:
+  static void describe(Description<DistributionRenderer>& d) {
+    d.summary(
+         "Distribution ray tracing: soft shadows, gloss, depth of field and motion by rays that split at the first surfaces. "
+         "Diffuse, glossy and specular lobes get their own rays; nothing is counted twice.",
+         "Cook, Porter & Carpenter 1984, Distributed ray tracing; weights: Veach 1997, section 9.2")
+        .member<&DistributionRenderer::light_samples>("light_samples", "1", "rays to luminaires where the tree splits",
+                                                      range(1, 65536))
+        .member<&DistributionRenderer::diffuse_samples>(
+            "diffuse_samples", "1",
+            "rays along diffuse lobes where the tree splits; 0: light between matt surfaces is left out", range(0, 65536))
+        .member<&DistributionRenderer::glossy_samples>(
+            "glossy_samples", "1", "rays along glossy lobes where the tree splits; 0: their reflections are left out",
+            range(0, 65536))
+        .member<&DistributionRenderer::specular_samples>(
+            "specular_samples", "1",
+            "rays along each perfect mirror and refraction where the tree splits; with 1 both are followed", range(1, 65536))
+        .member<&DistributionRenderer::split_depth>(
+            "split_depth", "1", "segments up to which the tree splits, at each surface; beyond, one ray goes on", range(0, 16))
+        .member<&DistributionRenderer::max_depth>(
+            "max_depth", "1", "longest path, in segments: 1 shows luminaires only, 2 adds direct light", at_least(1))
+        .member<&DistributionRenderer::roulette_depth>(
+            "roulette_depth", "1", "segments before Russian roulette may end a branch that no longer splits", at_least(1));
+  }
+
+  std::string limits() const override {
+    std::string text = "light that reaches a point only through specular surfaces from luminaires that rays cannot meet";
+    if (diffuse_samples == 0) text += ", light that diffuse surfaces send to others";
+    if (glossy_samples == 0) text += ", light that glossy surfaces send to others";
+    return text;
+  }
+
+  std::vector<Advice> misses(const SceneTraits& traits) const override {
+    std::vector<Advice> list;
+    if (diffuse_samples == 0 && !traits.smooth.empty())
+      list.push_back({"light that matt surfaces among " + some_of(traits.smooth) + " send on to others",
+                      "diffuse_samples: 1 or more finds it"});
+    if (glossy_samples == 0 && !traits.glossy.empty())
+      list.push_back({"light that " + some_of(traits.glossy) + " reflect", "glossy_samples: 1 or more finds it"});
+    miss_caustics(traits, list);
+    miss_media(traits, list);
+    miss_subsurface(traits, list);
+    return list;
+  }
+
+  Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
+    RayTree tree{context.scene, sample};
+    Branch camera(context.scene, ray, sample.wavelengths);
+    follow(tree, camera);
+    return tree.radiance;
+  }
+
+ private:
+  struct Branch : RayBranch {
+    using RayBranch::RayBranch;
+    float share = 1;        ///< of the tree: what splitting made the throughput smaller by
+    float eta_squared = 1;  ///< what refraction made it larger by
+    // How the ray's direction was found: where, with which density N [1/sr] (0: not by a smooth lobe), beside how many
+    // luminaire rays.
+    Point3 from = {};
+    Normal3 from_normal = {};
+    float density = 0, luminaire_rays = 0;
+  };
+
+  /// What is known of a surface at which branches go on.
+  struct Place {
+    const SurfacePoint& point;
+    const Scatter& scatter;
+    Vector3 out;
+    bool splits;
+  };
+
+  Lobes followed() const {
+    return all_lobes & ~(diffuse_samples > 0 ? 0 : diffuse_lobes) & ~(glossy_samples > 0 ? 0 : glossy_lobes);
+  }
+
+  /// Light of a luminaire that a branch meets.
+  void add_emission(RayTree& tree, const Branch& branch, const SurfacePoint& point) const {
+    const Vector3& direction = branch.ray.direction;
+    Spectrum light = branch.throughput * point.object->emission->radiance(point, -direction, branch.wavelengths);
+    if (light.black()) return;
+    float weight = 1;
+    if (branch.density > 0) {
+      const float density = direct_light_density(*light_sampler, branch.from, branch.from_normal, direction, point);
+      weight = heuristic_weight(Heuristic::power, branch.density, branch.luminaire_rays * density);
+    }
+    light *= weight;
+    tree.add(branch.depth, light);
+    record_emission(tree.sample.record, light, branch.depth, weight);
+  }
+
+  void follow(RayTree& tree, Branch& branch) const {
+    const Scene& scene = tree.scene;
+    SampleContext& sample = tree.sample;
+    Hit hit;
+    SurfacePoint point;
+    for (;;) {
+      const ArenaScope memory(sample.arena);
+      if (sample.aborted()) return;
+      if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
+        for (const SceneObject* far : scene.infinite_luminaires()) {
+          far->surface_point(branch.ray, hit, point);
+          record_escape(sample.record, *far, branch.ray, branch.throughput);
+          add_emission(tree, branch, point);
+        }
+        return;
+      }
+      const Vector3 out = -branch.ray.direction;
+      record_surface(sample.record, point, branch.throughput);
+      if (point.object->luminaire()) add_emission(tree, branch, point);
+      const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
+      if (sample.features) {
+        note_features(*sample.features, scene, point, hit, scatter, out, branch.wavelengths);
+        sample.features = nullptr;  // of the first surface only
+      }
+      if (!scatter) return;
+
+      const Place place{point, *scatter, out, branch.depth <= split_depth};
+      const bool last = branch.depth >= max_depth;
+      if (!last && scatter->has(smooth_lobes)) {
+        const Spectrum direct = branch.throughput * direct_light(tree, branch, place);
+        tree.add(branch.depth + 1, direct);
+        record_direct(sample.record, direct, branch.depth + 1, 1);
+      }
+      // What goes straight on is no longer for it, so the last segment may do that.
+      const Lobes lobes = last ? Lobes(pass_through) : followed();
+      if (place.splits) {
+        if (!split(tree, branch, place, lobes)) return;
+        continue;
+      }
+      const float choice = sample.random.next();
+      const auto next = scatter->sample(out, choice, sample.random.next_pair(), Transport::radiance, lobes);
+      if (!next || enters_body(place.point, *next)) return;
+      branch.throughput *= next->weight;
+      step(sample, branch, place, *next, next->density, 1);
+      // Radiance that refraction changed comes back when the path leaves the medium: that decides as little as splitting.
+      if (branch.depth > roulette_depth) {
+        const float survival = std::min(0.95f, branch.throughput.maximum() * branch.eta_squared / branch.share);
+        if (sample.random.next() >= survival) return;
+        branch.throughput /= survival;
+      }
+      if (branch.throughput.black() || !branch.may_go_on(next->lobe)) return;
+    }
+  }
+
+  /// Follows each kind of lobe with as many branches as it gets. What passes straight on goes on as the branch itself, since
+  /// that may happen a thousand times one after the other; returns whether anything does.
+  bool split(RayTree& tree, Branch& branch, const Place& place, Lobes lobes) const {
+    struct Kind {
+      Lobes lobes, rivals;
+      int count, rival_count;
+    };
+    const Kind kinds[] = {{diffuse_lobes, glossy_lobes, diffuse_samples, glossy_samples},
+                          {glossy_lobes, diffuse_lobes, glossy_samples, diffuse_samples},
+                          {specular_reflection, no_lobes, specular_samples, 0},
+                          {specular_transmission, no_lobes, specular_samples, 0},
+                          {pass_through, no_lobes, 1, 0}};
+    SampleContext& sample = tree.sample;
+    bool first = true, goes_on = false;
+    for (const Kind& kind : kinds) {
+      if (!place.scatter.has(kind.lobes & lobes)) continue;
+      const int rivals = place.scatter.has(kind.rivals) ? kind.rival_count : 0;
+      for (int i = 0; i < kind.count && !sample.aborted(); ++i) {
+        const float choice = (float(i) + sample.random.next()) / float(kind.count);
+        const auto next = place.scatter.sample(place.out, std::min(choice, one_minus_epsilon), sample.random.next_pair(),
+                                               Transport::radiance, kind.lobes);
+        if (!next || enters_body(place.point, *next)) continue;
+        Branch child = branch;
+        float density = float(kind.count) * next->density;  // N of a smooth lobe
+        if (rivals == 0) {
+          child.throughput *= next->weight / float(kind.count);
+        } else {
+          const ScatterValue other =
+              place.scatter.value_and_density(place.out, next->direction, Transport::radiance, kind.rivals);
+          const Spectrum value = next->weight * next->density + other.value;
+          density += float(rivals) * other.density;
+          child.throughput *= value / density;
+        }
+        step(sample, child, place, *next, density, kind.count + rivals);
+        if (child.throughput.black() || !child.may_go_on(next->lobe)) continue;
+        if (!first) record_surface(sample.record, place.point, branch.throughput);  // each branch from its surface on
+        first = false;
+        record_scatter(sample.record, *next);
+        if (kind.lobes == pass_through) {
+          branch = child;
+          goes_on = true;
+        } else {
+          follow(tree, child);
+        }
+      }
+    }
+    return goes_on;
+  }
+
+  /// Sends a branch on in a sampled direction; its throughput holds the sample's weight already.
+  void step(SampleContext& sample, Branch& branch, const Place& place, const ScatterSample& next, float density,
+            int rays) const {
+    if (next.dispersive) branch.throughput *= branch.wavelengths.drop_secondary();
+    branch.eta_squared *= next.eta * next.eta;
+    go_on(place.point, next, branch.ray, branch.around());
+    if (!place.splits) record_scatter(sample.record, next);
+    if (next.lobe == pass_through) return;  // as if nothing had been there
+    ++branch.depth;
+    branch.share /= float(rays);
+    branch.density = next.specular() ? 0 : density;
+    branch.luminaire_rays = place.splits ? float(light_samples) : 1;
+    branch.from = place.point.position;
+    branch.from_normal = place.point.normal;
+  }
+
+  /// f of the lobes that are followed, and N.
+  ScatterValue lobe_rays(const Place& place, const Vector3& in) const {
+    if (!place.splits) return place.scatter.value_and_density(place.out, in, Transport::radiance, followed());
+    ScatterValue sum;
+    for (const auto& [lobes, count] : {std::pair(diffuse_lobes, diffuse_samples), std::pair(glossy_lobes, glossy_samples)}) {
+      if (count == 0 || !place.scatter.has(lobes)) continue;
+      const ScatterValue kind = place.scatter.value_and_density(place.out, in, Transport::radiance, lobes);
+      sum.value += kind.value;
+      sum.density += float(count) * kind.density;
+    }
+    return sum;
+  }
+
+  /// Light straight from luminaires that is scattered towards `out`.
+  Spectrum direct_light(RayTree& tree, const Branch& branch, const Place& place) const {
+    const int count = place.splits ? light_samples : 1;
+    const Lobes alone = smooth_lobes & ~followed();
+    SampleContext& sample = tree.sample;
+    Spectrum sum;
+    LuminaireSample light;
+    for (int i = 0; i < count && !sample.aborted(); ++i) {
+      // Choices in equal strata over all rays: together they still choose luminaires as one choice does.
+      const float choice = std::min((float(i) + sample.random.next()) / float(count), one_minus_epsilon);
+      const Point2 u = sample.random.next_pair();
+      const LightChoice chosen = light_sampler->choose(place.point.position, place.point.normal, choice);
+      if (!chosen.luminaire || !sample_luminaire(*chosen.luminaire, place.point, branch.wavelengths, u, light)) continue;
+      const float density = float(count) * chosen.probability * light.density;
+      const ScatterValue rivals = lobe_rays(place, light.direction);
+      Spectrum f = rivals.value * weight_over_density(Heuristic::power, density, light.delta ? 0 : rivals.density);
+      if (place.scatter.has(alone))
+        f += place.scatter.evaluate(place.out, light.direction, Transport::radiance, alone) / density;
+      if (f.black()) continue;
+      sum += f * light.radiance * visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.arena);
+    }
+    return sum;
+  }
+};
+
+const Register<DistributionRenderer> registered;
+
+}  // namespace
+}  // namespace etendue

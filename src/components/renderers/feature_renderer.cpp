@@ -1,0 +1,150 @@
+// What surfaces are like, as colours: normals, distances, names.
+//
+// Except the albedo these are no light, and must not depend on the wavelengths a sample happens to have: they are shown by
+// DisplayColors, exactly and without noise.
+
+#include <algorithm>
+
+#include "display_colors.h"
+#include "etendue/describe/color.h"
+#include "etendue/render/renderer.h"
+#include "transport/ray_steps.h"
+#include "transport/record.h"
+
+namespace etendue {
+namespace {
+
+enum class Feature : std::uint8_t { normal, shading_normal, depth, albedo, uv, object, primitive, position, hit_count, facing };
+
+class FeatureRenderer final : public Renderer {
+  Feature feature = Feature::shading_normal;
+
+ public:
+  static void describe(Description<FeatureRenderer>& d) {
+    d.summary(
+         "Shows what the first surfaces are like instead of light, in colours of linear sRGB, the same for every sample of a "
+         "place. Where nothing is met it is black.")
+        .member<&FeatureRenderer::feature>(
+            "feature", "",
+            "normal, shading_normal: 0.5 + 0.5 n as (r, g, b), n pointing to the surface's front. depth: the distance from the "
+            "camera [m] as grey. albedo: the colour of what is scattered of white light. uv: the fractional parts of the "
+            "surface "
+            "coordinates as (u, v, 0). object, primitive: a colour for each. position: 0.5 + 0.5 d as (r, g, b), d the way "
+            "from "
+            "the scene's centre over the scene's radius. hit_count: how many surfaces the ray meets, at most 1000, as grey. "
+            "facing: the cosine between shading normal and view, grey from the front and red from the back",
+            choices("normal", "shading_normal", "depth", "albedo", "uv", "object", "primitive", "position", "hit_count",
+                    "facing"));
+  }
+
+  std::string limits() const override { return "all light: it shows what surfaces are like"; }
+  std::vector<Advice> misses(const SceneTraits&) const override {
+    return {{"any light, as it shows what surfaces are like", "PathTracer, BidirectionalPathTracer"}};
+  }
+
+  void begin(const RenderContext& context) override {
+    Renderer::begin(context);
+    white_ = rgb_space("srgb").illuminant;
+    objects_.clear();
+    number(context.scene);
+    std::sort(objects_.begin(), objects_.end());
+  }
+
+  Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
+    const Scene& scene = context.scene;
+    MediumStack media;
+    Ray ray = camera_ray;
+    Hit hit;
+    SurfacePoint point;
+    if (!meet_surface(scene, ray, media_around(scene, ray, media), hit, point)) return {};
+    const Vector3 out = -ray.direction;
+    record_surface(sample.record, point, Spectrum(1.0f));
+    const Scatter* scatter = nullptr;
+    if (sample.features || feature == Feature::albedo) scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
+    if (sample.features) note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths);
+
+    Spectrum value;
+    if (feature == Feature::albedo) {  // light after all: white light, scattered
+      if (scatter) value = scatter->albedo(out) * white_->evaluate(sample.wavelengths, ColorUse::radiance);
+    } else {
+      value = display_colors()(color(scene, camera_ray, hit, point, distance(camera_ray.origin, point.position)));
+      sample.wavelengths = display_colors().wavelengths;
+    }
+    sample.note_length(1, value);
+    record_emission(sample.record, value, 1, 1);
+    return value;
+  }
+
+ private:
+  Vector3 color(const Scene& scene, const Ray& ray, const Hit& hit, const SurfacePoint& point, float depth) const {
+    const auto grey = [](float v) { return Vector3{v, v, v}; };
+    switch (feature) {
+      case Feature::normal: return signed_color(Vector3(point.normal));
+      case Feature::shading_normal: return signed_color(Vector3(point.shading_normal));
+      case Feature::depth: return grey(depth);
+      case Feature::uv: return {point.uv.x - std::floor(point.uv.x), point.uv.y - std::floor(point.uv.y), 0};
+      case Feature::object: return id_color(object_number(hit));
+      case Feature::primitive: return id_color(mix_bits(object_number(hit)) + point.primitive + 1);
+      case Feature::position: return signed_color((point.position - scene.centre()) / scene.radius());
+      case Feature::hit_count: return grey(float(hit_count(scene, ray)));
+      case Feature::facing: {
+        const float cosine = -dot(point.shading_normal, ray.direction);
+        return cosine >= 0 ? grey(cosine) : Vector3{-cosine, 0, 0};
+      }
+      case Feature::albedo: break;
+    }
+    return {};
+  }
+
+  static Vector3 signed_color(const Vector3& v) {
+    const auto part = [](float x) { return std::max(0.5f + 0.5f * x, 0.0f); };
+    return {part(v.x), part(v.y), part(v.z)};
+  }
+
+  /// Components between 0.1 and 1, so that nothing is as dark as the background.
+  static Vector3 id_color(std::uint64_t id) {
+    const std::uint64_t bits = mix_bits(id + 0x9e3779b97f4a7c15ull);
+    const auto part = [&](int shift) { return 0.1f + 0.9f / 255 * float((bits >> shift) & 255); };
+    return {part(0), part(8), part(16)};
+  }
+
+  static int hit_count(const Scene& scene, Ray ray) {
+    constexpr int most = 1000;
+    Hit hit;
+    SurfacePoint point;
+    int count = 0;
+    while (count < most && scene.nearest(ray, hit)) {
+      ++count;
+      scene.locate(ray, hit, point);
+      ray.origin = point.exit(ray.direction);
+    }
+    return count;
+  }
+
+  /// Gives all objects their numbers, those of nested scenes too.
+  void number(const Scene& scene) {
+    for (const Ref<SceneObject>& object : scene.objects) {
+      objects_.emplace_back(object.get(), objects_.size() + 1);
+      if (const auto* inner = scene_within(*object)) number(*inner);
+    }
+  }
+
+  /// A number for the object that was hit in this place: a scene that stands in several places holds several objects.
+  std::uint64_t object_number(const Hit& hit) const {
+    const auto of = [&](const SceneObject* object) {
+      const auto place = std::lower_bound(objects_.begin(), objects_.end(), std::pair(object, size_t(0)));
+      return place != objects_.end() && place->first == object ? place->second : 0;
+    };
+    std::uint64_t id = of(hit.object);
+    for (int i = 0; i < hit.depth; ++i) id = mix_bits(id) + of(hit.scenes[i]);
+    return id;
+  }
+
+  Color white_;
+  std::vector<std::pair<const SceneObject*, size_t>> objects_;  // sorted by address, each with its number by place in the file
+};
+
+const Register<FeatureRenderer> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,149 @@
+// Ray tracing as Whitted described it: a tree of mirrored and refracted rays, and shadow rays to lights without extent.
+//
+// The light of luminaires without extent arrives at a point x from one direction w_i each, so what x sends towards `out` is
+// a plain sum, and perfect mirrors and refraction lead to one direction w_k each (Whitted 1980, "An improved illumination
+// model for shaded display", eq. 2, with the surfaces' own f in place of his constants):
+//     L(x, out) = L_e + sum_i f(out, w_i) E_i V_i |cos w_i| + sum_k a_k L(x_k, -w_k),
+// with E_i the irradiance across the light, V_i what of it is not in shadow, and a_k the fraction that specular lobe k
+// scatters. There is no integral to estimate: only wavelengths, the place on the film, the lens and time are drawn, and
+// where refraction disperses light the refracted branch, alone, follows the hero wavelength.
+
+#include "etendue/render/renderer.h"
+#include "transport/ray_steps.h"
+#include "transport/record.h"
+#include "transport/visibility.h"
+
+namespace etendue {
+namespace {
+
+class WhittedRenderer final : public Renderer {
+  int max_depth = 8;
+
+ public:
+  static void describe(Description<WhittedRenderer>& d) {
+    d.summary("Classical ray tracing: shadow rays to luminaires without extent, perfect mirrors and refraction.",
+              "Whitted 1980, An improved illumination model for shaded display")
+        .member<&WhittedRenderer::max_depth>("max_depth", "1",
+                                             "longest path, in segments: 1 shows luminaires only, 2 adds direct light; each "
+                                             "more may double the work where surfaces both reflect and refract",
+                                             range(1, 64));
+  }
+
+  std::string limits() const override {
+    return "light of luminaires with an extent other than seen directly, in mirrors or through glass, and all light that "
+           "diffuse and glossy surfaces send to one another; what is left is exact";
+  }
+
+  std::vector<Advice> misses(const SceneTraits& traits) const override {
+    std::vector<Advice> list;
+    if (!traits.smooth.empty()) {
+      for (const auto* luminaires : {&traits.areas, &traits.environments})
+        if (!luminaires->empty())
+          list.push_back({"light of " + some_of(*luminaires) + " on " + some_of(traits.smooth),
+                          "DirectRenderer, DistributionRenderer, PathTracer"});
+      list.push_back({"light that " + some_of(traits.smooth) + " send on to other surfaces",
+                      "DistributionRenderer, PathTracer, BidirectionalPathTracer"});
+    }
+    miss_caustics(traits, list);
+    miss_media(traits, list);
+    miss_subsurface(traits, list);
+    return list;
+  }
+
+  Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
+    RayTree tree{context.scene, sample};
+    RayBranch camera(context.scene, ray, sample.wavelengths);
+    follow(tree, camera);
+    return tree.radiance;
+  }
+
+ private:
+  /// What passes straight on goes on as the branch itself, since that may happen a thousand times one after the other; mirrored
+  /// and refracted rays, at most `max_depth` deep, are branches of their own.
+  void follow(RayTree& tree, RayBranch& branch) const {
+    while (!tree.sample.aborted() && to_next_surface(tree, branch)) {
+    }
+  }
+
+  /// Returns whether anything passes straight on there.
+  bool to_next_surface(RayTree& tree, RayBranch& branch) const {
+    const ArenaScope memory(tree.sample.arena);
+    const Scene& scene = tree.scene;
+    SampleContext& sample = tree.sample;
+    Hit hit;
+    SurfacePoint point;
+    if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
+      for (const SceneObject* far : scene.infinite_luminaires()) {
+        far->surface_point(branch.ray, hit, point);
+        const Spectrum light = branch.throughput * far->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
+        tree.add(branch.depth, light);
+        record_escape(sample.record, *far, branch.ray, branch.throughput);
+        record_emission(sample.record, light, branch.depth, 1);
+      }
+      return false;
+    }
+    const Vector3 out = -branch.ray.direction;
+    record_surface(sample.record, point, branch.throughput);
+    if (point.object->luminaire()) {
+      const Spectrum light = branch.throughput * point.object->emission->radiance(point, out, branch.wavelengths);
+      tree.add(branch.depth, light);
+      record_emission(sample.record, light, branch.depth, 1);
+    }
+    const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
+    if (sample.features) {
+      note_features(*sample.features, scene, point, hit, scatter, out, branch.wavelengths);
+      sample.features = nullptr;  // of the first surface only
+    }
+    if (!scatter) return false;
+    const bool last = branch.depth >= max_depth;
+    if (!last && scatter->has(smooth_lobes)) {
+      const Spectrum direct = branch.throughput * direct_light(scene, point, *scatter, out, branch.wavelengths, sample.arena);
+      tree.add(branch.depth + 1, direct);
+      record_direct(sample.record, direct, branch.depth + 1, 1);
+    }
+
+    bool first = true, goes_on = false;
+    for (const Lobe lobe : {specular_reflection, specular_transmission, pass_through}) {
+      // What goes straight on is no longer for it, so the last segment may do that.
+      if (!scatter->has(lobe) || (last && lobe != pass_through)) continue;
+      const float choice = sample.random.next();  // a surface may have several mirrors
+      const auto next = scatter->sample(out, choice, sample.random.next_pair(), Transport::radiance, lobe);
+      if (!next || enters_body(point, *next)) continue;
+      RayBranch child = branch;
+      child.throughput *= next->weight;
+      if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();
+      if (child.throughput.black() || !child.may_go_on(lobe)) continue;
+      if (lobe != pass_through) ++child.depth;
+      go_on(point, *next, child.ray, child.around());
+      if (!first) record_surface(sample.record, point, branch.throughput);  // each branch is told from its surface on
+      first = false;
+      record_scatter(sample.record, *next);
+      if (lobe == pass_through) {
+        branch = child;
+        goes_on = true;
+      } else {
+        follow(tree, child);
+      }
+    }
+    return goes_on;
+  }
+
+  /// The sum over all luminaires without extent.
+  static Spectrum direct_light(const Scene& scene, const SurfacePoint& point, const Scatter& scatter, const Vector3& out,
+                               const Wavelengths& wavelengths, Arena& arena) {
+    Spectrum sum;
+    LuminaireSample light;
+    for (const SceneObject* luminaire : scene.luminaires()) {
+      if (!luminaire->delta() || !sample_luminaire(*luminaire, point, wavelengths, {0.5f, 0.5f}, light)) continue;
+      const Spectrum f = scatter.evaluate(out, light.direction, Transport::radiance, smooth_lobes);
+      if (f.black()) continue;
+      sum += f * light.radiance / light.density * visible_fraction(scene, light.shadow, nullptr, wavelengths, arena);
+    }
+    return sum;
+  }
+};
+
+const Register<WhittedRenderer> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,319 @@
+// What all scenes share: their lists of luminaires, and how they nest.
+
+#include "etendue/scene.h"
+
+#include <atomic>
+#include <unordered_set>
+
+#include "etendue/shader.h"
+#include "etendue/transport/medium_stack.h"
+#include "nested_luminaires.h"
+
+namespace etendue {
+namespace {
+
+/// Calls for every scene within a scene, at any depth, once each.
+template <class F>
+void for_nested(const Scene& scene, std::unordered_set<const Scene*>& seen, const F& call) {
+  for (const Ref<SceneObject>& object : scene.objects) {
+    const auto* instance = dynamic_cast<const Instance*>(object.get());
+    Scene* inner = instance ? instance->scene.get() : dynamic_cast<Scene*>(object.get());
+    if (!inner || !seen.insert(inner).second) continue;
+    call(*inner);
+    for_nested(*inner, seen, call);
+  }
+}
+
+/// Finds objects that floats cannot hold where they are.
+class Coarse {
+ public:
+  void look(const SceneObject& object, const Bounds3& box) {
+    const float size = max_component(box.diagonal()), away = max_component(abs(box.centre() - Point3{}));
+    // Of one that is a point there is nothing to spoil. Areas of what is smaller than `least` have squares that are no floats.
+    constexpr float least = 1e-9f;
+    if (!(size > 0) || object.unbounded() || (size > 8 * rounding_bound(2) * away && size > least)) return;
+    if (count_++ > 0) return;
+    first_ = &object;
+    size_ = size;
+    away_ = away;
+  }
+  void say() const {
+    if (count_ == 0) return;
+    const std::string who = fmt::format("{}{}", first_->class_info().name,
+                                        count_ > 1 ? fmt::format(" and {} other objects", count_ - 1) : std::string());
+    if (size_ > 8 * rounding_bound(2) * away_)
+      warn(fmt::format("{}: {:.3g} m large; below 1e-9 m light is not computed exactly. Give lengths in another unit", who,
+                       size_),
+           first_->location_of());
+    else
+      warn(fmt::format(
+               "{}: {:.3g} m large and {:.3g} m away from where the scene is counted from, where places are told apart by "
+               "{:.3g} m: it is misshapen or not seen. Move the camera nearer, or leave it out",
+               who, size_, away_, rounding_bound(2) * away_),
+           first_->location_of());
+  }
+
+ private:
+  const SceneObject* first_ = nullptr;
+  size_t count_ = 0;
+  float size_ = 0, away_ = 0;
+};
+
+/// Lets an object count from another point outside, and all that stands within it if it is no scene; prepares it again.
+void count_within(SceneObject& object, const DoublePoint3& centre, float time) {
+  DoublePoint3 inner = object.transform.inner();
+  if (object.follows_scene && !scene_within(object)) {
+    inner = object.transform.written(time).back(centre);
+    for (SceneObject* part : object.placed_within()) count_within(*part, inner, time);
+  }
+  object.transform.count_from(centre, inner);
+  object.prepare();
+}
+
+/// More boxes than this are searched by a tree.
+constexpr size_t few_interiors = 16;
+
+}  // namespace
+
+const Scene* scene_within(const SceneObject& object) {
+  if (const auto* instance = dynamic_cast<const Instance*>(&object)) return instance->scene.get();
+  return dynamic_cast<const Scene*>(&object);
+}
+
+void Scene::describe(Description<Scene>& d) {
+  d.summary(
+       "Objects, and a structure that finds what a ray meets. A scene is itself an object: scenes nest, and one that "
+       "stands in several places is stored once. Its luminaires are luminaires in each of these places; amounts of light "
+       "they are asked for (a power in watts) are those of each place, whatever its size. A nested scene's own shader, "
+       "emission, interior, sides and priority say nothing.")
+      .member<&Scene::objects>("objects", "", "what is in it", Effect::rebuild);
+}
+
+std::vector<SceneObject*> Scene::placed_within() const {
+  std::vector<SceneObject*> all;
+  for (const Ref<SceneObject>& object : objects) all.push_back(object.get());
+  return all;
+}
+
+// Of the objects' places no more is known before than what they give as their bounds, by floats far from where these count
+// from. That is good enough to choose a better point; from there they are prepared once more.
+void Scene::choose_centre() {
+  Bounds3 all;
+  for (const Ref<SceneObject>& object : objects)
+    if (object && !object->infinite() && !object->unbounded()) all.add(object->bounds());
+  if (all.empty() || !is_finite(all.low) || !is_finite(all.high)) return;
+  // Where floats count from there, places are rounded by no more than 4e-6 of the objects' extent.
+  constexpr float far = 64;
+  const Vector3 away = all.centre() - Point3{};
+  if (!(max_component(abs(away)) > far * max_component(all.diagonal()))) return;
+  const DoublePoint3 centre = transform.inner() + DoubleVector3(away);
+  transform.count_from(transform.outer(), centre);
+  for (const Ref<SceneObject>& object : objects) count_within(*object, centre, *chooses_centre);
+}
+
+void Scene::prepare() {
+  luminaires_.clear();
+  infinite_.clear();
+  interiors_.clear();
+  interior_tree_.clear();
+  bounds_ = {};
+  nesting_ = 0;
+  static std::atomic<std::uint64_t> versions{0};
+  version_ = ++versions;
+  has_interiors_ = has_null_surfaces_ = unbounded_ = false;
+  const auto note_interior = [&](const SceneObject& object) {
+    const bool null_surfaces = object.shader && object.shader->possible_lobes() & pass_through;
+    // A sheet may bound a medium (see enterable); an instance does not know whether what it gives a sheet's shader to has one.
+    const bool may_enter = object.shader && (object.shader->transmits() ||
+                                             (is_sheet(*object.shader) && (object.interior || scene_within(object))));
+    const Scene* inner = scene_within(object);
+    // An instance's shader replaces all those inside.
+    const bool asks_inside = inner && (inner == &object || !object.shader);
+    has_null_surfaces_ |= asks_inside ? inner->has_null_surfaces_ : null_surfaces;
+    if (!(asks_inside ? inner->has_interiors_ : may_enter)) return;
+    has_interiors_ = true;
+    interiors_.push_back(object.bounds());
+  };
+
+  std::unordered_set<const SceneObject*> seen;
+  for (size_t i = 0; i < objects.size(); ++i) {
+    if (!objects[i]) fail("objects", "object " + std::to_string(i + 1) + " of the scene is none");
+    if (!seen.insert(objects[i].get()).second) {
+      const std::string name = objects[i]->origin ? objects[i]->origin->name : "";
+      fail("objects", (name.empty() ? "object " + std::to_string(i + 1) : "'" + name + "'") +
+                          " stands twice in the same scene; put it into a scene, and that into an Instance for each place");
+    }
+    if (!objects[i]->transform.valid())
+      objects[i]->fail("transform",
+                       "the transform is singular or beyond what can be counted with, or mirrors at some of its times only");
+    if (const Scene* inner = scene_within(*objects[i])) nesting_ = std::max(nesting_, 1 + inner->nesting_);
+  }
+  if (nesting_ > Hit::deepest_nesting)
+    fail("objects", "scenes nest more than " + std::to_string(Hit::deepest_nesting) + " deep");
+  if (chooses_centre) choose_centre();
+
+  // Others stand for luminaires of nested scenes; those scenes gave them places in their own lists before.
+  std::unordered_set<const Scene*> visited;
+  for_nested(*this, visited, [](Scene& inner) {
+    for (const Ref<SceneObject>& object : inner.objects) {
+      if (object->infinite() && !object->delta())
+        object->fail("", "an environment cannot stand in a nested scene: it is all around, and belongs into the outermost one");
+      object->luminaire_index = -1;
+    }
+    inner.luminaires_.clear();
+    inner.infinite_.clear();
+    inner.nested_.reset();
+  });
+  const std::shared_ptr<NestedLuminaires> nested = NestedLuminaires::of(*this);
+  nested_ = nested;
+
+  std::vector<const SceneObject*> finite;
+  Coarse coarse;
+  for (const Ref<SceneObject>& object : objects) {
+    const Scene* inner = scene_within(*object);
+    object->luminaire_index = -1;
+    if (object->luminaire() && !object->infinite() && object->emission->only_at_infinity())
+      object->fail("emission", "this emission is of light from infinity: it belongs on an Environment");
+    if (object->luminaire() && !inner) {
+      object->luminaire_index = int(luminaires_.size());
+      luminaires_.push_back(object.get());
+      if (object->infinite() && !object->delta()) infinite_.push_back(object.get());
+    }
+    note_interior(*object);
+    if (object->infinite()) continue;
+    const Bounds3 box = object->bounds();
+    if (box.empty()) continue;  // without extent: a point light, an empty scene
+    if (!is_finite(box.low) || !is_finite(box.high) || !is_finite(box.diagonal()))
+      object->fail("", "the object's bounds are not finite");
+    // Edges longer than this have products whose squares are no floats.
+    constexpr float largest = 2 * SceneObject::endless;
+    if (!object->unbounded() && max_component(box.diagonal()) > largest)
+      object->fail("", "the object is larger than 2e9 m, which is beyond what can be counted with");
+    coarse.look(*object, box);
+    if (object->unbounded()) {
+      unbounded_ = true;
+      if (object->luminaire() && !inner) object->fail("emission", "an object without end would give off endless power");
+    } else {
+      bounds_.add(box);
+    }
+    finite.push_back(object.get());
+  }
+  coarse.say();
+  if (interiors_.size() > few_interiors) {
+    std::vector<Bounds3> boxes;
+    boxes.swap(interiors_);
+    build_interior_tree(boxes);
+    interiors_ = {interior_tree_.front().box};
+  }
+  for (const Ref<SceneObject>& object : objects)
+    if (object->infinite()) object->enclose(centre(), radius());
+  if (nested) {
+    nested->enclose(centre(), radius());
+    luminaires_.reserve(luminaires_.size() + nested->all().size());
+    for (const Ref<PlacedLuminaire>& luminaire : nested->all()) {
+      luminaire->luminaire_index = int(luminaires_.size());
+      luminaires_.push_back(luminaire.get());
+    }
+  }
+  build(finite);
+}
+
+void Scene::build_interior_tree(std::span<Bounds3> boxes) {
+  Bounds3 all;
+  for (const Bounds3& box : boxes) all.add(box);
+  const size_t place = interior_tree_.size();
+  interior_tree_.push_back({all, 0});
+  if (boxes.size() == 1) return;
+  const Vector3 d = all.diagonal();
+  const int axis = d.x > d.y ? (d.x > d.z ? 0 : 2) : (d.y > d.z ? 1 : 2);
+  const auto middle = boxes.begin() + std::ptrdiff_t(boxes.size() / 2);
+  std::nth_element(boxes.begin(), middle, boxes.end(),
+                   [axis](const Bounds3& a, const Bounds3& b) { return a.centre()[axis] < b.centre()[axis]; });
+  build_interior_tree({boxes.begin(), middle});
+  build_interior_tree({middle, boxes.end()});
+  interior_tree_[place].next = std::uint32_t(interior_tree_.size());
+}
+
+bool Scene::in_interior_tree(const Point3& p) const {
+  for (size_t i = 0; i < interior_tree_.size();) {
+    const Node& node = interior_tree_[i];
+    const bool inside = node.box.contains(p);
+    if (inside && node.next == 0) return true;
+    i = inside || node.next == 0 ? i + 1 : node.next;
+  }
+  return false;
+}
+
+Bounds3 Scene::bounds() const { return placed_bounds(transform); }
+
+Bounds3 Scene::placed_bounds(const AnimatedTransform& placed) const {
+  if (unbounded_) return endless_box();
+  return bounds_.empty() ? bounds_ : swept(placed, bounds_);
+}
+
+bool Scene::intersect(const Ray& ray, Hit& hit) const {
+  Transform scratch;
+  const Transform& t = placed(transform, ray.time, scratch);
+  if (!nearest(t.identity() ? ray : ray_into(t, ray), hit)) return false;
+  hit.scenes[hit.depth++] = this;
+  return true;
+}
+
+void Scene::all_hits(const Ray& ray, HitList& list) const {
+  Transform scratch;
+  const Transform& t = placed(transform, ray.time, scratch);
+  const int before = list.size;
+  all(t.identity() ? ray : ray_into(t, ray), list);
+  for (int i = before; i < list.size; ++i) list.hits[i].scenes[list.hits[i].depth++] = this;
+}
+
+bool Scene::occludes(const Ray& ray) const {
+  Transform scratch;
+  const Transform& t = placed(transform, ray.time, scratch);
+  return any(t.identity() ? ray : ray_into(t, ray));
+}
+
+void Scene::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& point) const { locate_nested(ray, hit, point); }
+
+void Scene::locate_nested(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
+  Ray local = ray;
+  for (int i = hit.depth; i-- > 0;) {
+    Transform scratch;
+    const Transform& t = placed(hit.scenes[i]->transform, ray.time, scratch);
+    if (!t.identity()) local = ray_into(t, local);
+  }
+  hit.object->surface_point(local, hit, point);
+  hit.object->tangents(point);  // now: later the way out is forgotten
+  for (int i = 0; i < hit.depth; ++i) {
+    Transform scratch;
+    const Transform& t = placed(hit.scenes[i]->transform, ray.time, scratch);
+    if (!t.identity()) carry_out_of_scene(t, point);
+  }
+  if (nested_ && point.object->luminaire())
+    if (const PlacedLuminaire* luminaire = nested_->find(hit)) point.object = luminaire;
+}
+
+void Scene::tangents(SurfacePoint& point) const {
+  if (point.object && point.object != this) point.object->tangents(point);
+}
+
+double Scene::own_area(float time) const {
+  double sum = 0;
+  for (const Ref<SceneObject>& object : objects)
+    if (!object->infinite() && !object->delta()) sum += double(object->area(time));
+  return sum;
+}
+
+float Scene::placed_area(const AnimatedTransform& placed, float time) const {
+  return float(own_area(time)) * std::pow(std::abs(linear_determinant(placed.at(time))), 2.0f / 3);
+}
+
+float Scene::area(float time) const { return placed_area(transform, time); }
+
+SurfaceSample Scene::sample_area(Point2, float) const {
+  return {};  // a scene is no luminaire
+}
+
+static const Register<Scene> registered;
+
+}  // namespace etendue

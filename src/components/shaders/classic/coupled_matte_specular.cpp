@@ -1,0 +1,104 @@
+// CoupledMatteSpecular: a polished coat over a matt base (varnished wood, tiles), whose base fades where the coat shines.
+
+#include "components/shaders/half_vector.h"
+#include "components/shaders/reflectance.h"
+#include "etendue/core/warp.h"
+#include "etendue/scatter_model.h"
+
+namespace etendue {
+namespace {
+
+// The coupled model of Shirley, Hu, Smits & Lafortune 1997. The coat is a mirror of reflectance
+//   R(theta) = R0 + (1 - R0) (1 - cos(theta))^5,
+// and what it lets through is scattered by the base:
+//   f = k Rm (1 - R(theta)) (1 - R(theta')),  k = 21 / (20 pi (1 - R0))  [1/sr].
+// k makes the matt albedo Rm (1 - R(theta)): the integral of (1 - (1 - c)^5) c over the hemisphere is
+// 2 pi (1/2 - 1/42) = 20 pi / 21. So the whole albedo is R + Rm (1 - R), and nothing is lost when Rm = 1. Written with
+// g(c) = 1 - (1 - c)^5,  1 - R = (1 - R0) g  and  f = 21 / (20 pi) Rm (1 - R0) g(cos(theta)) g(cos(theta')).
+//
+// Sampling: coat or base by their albedos (means over the path's wavelengths), the base with density cos / pi; the weight's
+// spread is that of g.
+class CoupledScatter final : public ScatterModel<CoupledScatter> {
+ public:
+  CoupledScatter(const SurfacePoint& p, Lobes lobes, Spectrum matte, Spectrum normal_reflectance)
+      : ScatterModel(p, lobes), base_(matte * (Spectrum(1.0f) - normal_reflectance)), normal_reflectance_(normal_reflectance) {}
+
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
+    if (!(which & diffuse_reflection) || !(out.z * in.z > 0)) return {};
+    return base_ * (21 / (20 * pi) * passed(out) * passed(in));
+  }
+  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+    if (!(which & diffuse_reflection) || !(out.z * in.z > 0)) return 0;
+    return (1 - mirror_probability(out, which)) * std::abs(in.z) * inverse_pi;
+  }
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    const float mirror = mirror_probability(out, which);
+    if (choice < mirror) {
+      s.in = {-out.x, -out.y, out.z};
+      s.value = reflectance(out);
+      s.density = mirror;
+      s.lobe = specular_reflection;
+      return true;
+    }
+    s.in = warp::cosine_hemisphere(u);
+    s.density = (1 - mirror) * s.in.z * inverse_pi;
+    s.value = base_ * (21 / (20 * pi) * passed(out) * passed(s.in) * s.in.z);
+    s.lobe = diffuse_reflection;
+    if (out.z < 0) s.in.z = -s.in.z;
+    return s.density > 0;
+  }
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    Spectrum sum;
+    if (which & diffuse_reflection) sum += base_ * passed(out);
+    if (which & specular_reflection) sum += reflectance(out);
+    return sum;
+  }
+
+ private:
+  /// g: what a perfectly clear coat lets pass.
+  static float passed(const Vector3& v) { return 1 - schlick_growth(std::abs(v.z)); }
+  Spectrum reflectance(const Vector3& v) const { return Spectrum(1.0f) - (Spectrum(1.0f) - normal_reflectance_) * passed(v); }
+  float mirror_probability(const Vector3& out, Lobes which) const {
+    if (!(which & specular_reflection)) return 0;
+    if (!(which & diffuse_reflection)) return 1;
+    const float mirror = reflectance(out).average(), matte = base_.average() * passed(out);
+    return mirror / (mirror + matte);
+  }
+
+  Spectrum base_, normal_reflectance_;  ///< base_: Rm (1 - R0)
+};
+
+class CoupledMatteSpecular final : public Shader {
+ public:
+  static void describe(Description<CoupledMatteSpecular>& d) {
+    d.summary("A polished surface over a matt base, which fades towards grazing angles as the polish reflects more.",
+              "Shirley, Hu, Smits & Lafortune 1997, A practitioners' assessment of light reflection models")
+        .member<&CoupledMatteSpecular::color>("color", "1",
+                                              "fraction the base reflects of the light that reaches it, per wavelength")
+        .member<&CoupledMatteSpecular::specular>("specular", "1",
+                                                 "fraction the polish reflects at normal incidence, per wavelength");
+  }
+  void prepare() override {
+    require_reflectance(*this, "color", color);
+    require_reflectance(*this, "specular", specular);
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    const Spectrum matte = reflectance_at(*color, p, w), normal_reflectance = reflectance_at(*specular, p, w);
+    const bool base = !(matte * (Spectrum(1.0f) - normal_reflectance)).black();
+    return arena.make<CoupledScatter>(p, Lobes(specular_reflection | (base ? diffuse_reflection : 0)), matte,
+                                      normal_reflectance);
+  }
+  Lobes possible_lobes() const override { return diffuse_reflection | specular_reflection; }
+  bool lossless() const override {
+    const Color same = color->constant();
+    return same && !same->varies() && same->at(550, ColorUse::reflectance) == 1;
+  }
+
+  Ref<ObjectMap> color = constant(0.5f), specular = constant(0.05f);
+};
+
+const Register<CoupledMatteSpecular> registered;
+
+}  // namespace
+}  // namespace etendue

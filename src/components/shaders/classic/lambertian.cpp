@@ -1,0 +1,66 @@
+// Lambertian: light leaves alike in all directions, on the side it came from.
+
+#include "components/shaders/reflectance.h"
+#include "etendue/core/warp.h"
+#include "etendue/scatter_model.h"
+
+namespace etendue {
+namespace {
+
+// f = rho / pi [1/sr], so that the integral of f cos over the hemisphere is rho. Directions are drawn with density
+// cos / pi, so f cos / density = rho for every sample.
+class LambertianScatter final : public ScatterModel<LambertianScatter> {
+ public:
+  LambertianScatter(const SurfacePoint& p, Spectrum reflectance)
+      : ScatterModel(p, diffuse_reflection), reflectance_(reflectance) {
+    has_choice_ = false;
+  }
+
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? reflectance_ * inverse_pi : Spectrum();
+  }
+  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
+  }
+  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    if (!(out.z * in.z > 0)) return {};
+    return {reflectance_ * inverse_pi, std::abs(in.z) * inverse_pi};
+  }
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const override {
+    s.in = warp::cosine_hemisphere(u);
+    s.density = s.in.z * inverse_pi;
+    s.value = reflectance_ * s.density;
+    s.lobe = diffuse_reflection;
+    if (out.z < 0) s.in.z = -s.in.z;
+    return s.density > 0;
+  }
+  Spectrum local_albedo(const Vector3&, Lobes which) const override {
+    return (which & diffuse_reflection) ? reflectance_ : Spectrum();
+  }
+
+ private:
+  Spectrum reflectance_;
+};
+
+class Lambertian final : public Shader {
+ public:
+  static void describe(Description<Lambertian>& d) {
+    d.summary("A matt surface: light leaves alike in all directions.", "Lambert 1760, Photometria")
+        .member<&Lambertian::color>("color", "1", "fraction of light reflected, per wavelength");
+  }
+  void prepare() override { require_reflectance(*this, "color", color); }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    const Spectrum reflectance = reflectance_at(*color, p, w);
+    if (reflectance.black()) return nullptr;
+    return arena.make<LambertianScatter>(p, reflectance);
+  }
+  Lobes possible_lobes() const override { return diffuse_reflection; }
+
+  Ref<ObjectMap> color = constant(0.5f);
+};
+
+const Register<Lambertian> registered;
+
+}  // namespace
+}  // namespace etendue

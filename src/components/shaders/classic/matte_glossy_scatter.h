@@ -1,0 +1,91 @@
+#pragma once
+// MatteGlossyScatter: a glossy lobe over a matte base, both in reflection.
+
+#include "components/shaders/half_vector.h"
+#include "components/shaders/joint_scatter.h"
+#include "etendue/core/warp.h"
+
+namespace etendue {
+
+// The lobe is chosen with a probability in proportion to what it reflects, the matte base else, with density cos / pi. A model
+// states, with `out` and `in` on the same side:
+//   Spectrum matte(out, in)          f of the base [1/sr]
+//   ScatterValue glossy(out, in)     f of the lobe and the density of its directions [1/sr]
+//   Spectrum matte_albedo(out), glossy_albedo(out)
+//   float matte_weight(out), glossy_weight(out)    their parts in the choice
+template <class Model>
+class MatteGlossyScatter : public JointScatter<Model> {
+ public:
+  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+    if (!(out.z * in.z > 0)) return {};
+    return combine(
+        in, glossy_probability(out, which), which, [&] { return model().matte(out, in); },
+        [&] { return model().glossy(out, in); });
+  }
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    Spectrum sum;
+    if (which & diffuse_reflection) sum += model().matte_albedo(out);
+    if (which & glossy_reflection) sum += model().glossy_albedo(out);
+    return sum;
+  }
+
+ protected:
+  using JointScatter<Model>::JointScatter;
+
+  float glossy_probability(const Vector3& out, Lobes which) const {
+    if (!(which & glossy_reflection)) return 0;
+    if (!(which & diffuse_reflection)) return 1;
+    const float glossy = model().glossy_weight(out);
+    return glossy / (glossy + model().matte_weight(out));
+  }
+  /// Of both, where the lobe is chosen with probability `probability`.
+  template <class Matte, class Glossy>
+  static ScatterValue combine(const Vector3& in, float probability, Lobes which, const Matte& matte, const Glossy& glossy) {
+    ScatterValue r;
+    if (which & diffuse_reflection) {
+      r.value = matte();
+      r.density = (1 - probability) * std::abs(in.z) * inverse_pi;
+    }
+    if (which & glossy_reflection) {
+      const ScatterValue lobe = glossy();
+      r.value += lobe.value;
+      r.density += probability * lobe.density;
+    }
+    return r;
+  }
+  static bool complete(Scatter::LocalSample& s, const ScatterValue& both) {
+    s.value = both.value * std::abs(s.in.z);
+    s.density = both.density;
+    return s.density > 0;
+  }
+
+ private:
+  const Model& model() const { return static_cast<const Model&>(*this); }
+};
+
+/// One whose lobe is drawn by its half vector: the model states sample_half(u) besides, a half vector with z > 0.
+template <class Model>
+class HalfVectorScatter : public MatteGlossyScatter<Model> {
+ public:
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, Scatter::LocalSample& s) const override {
+    const auto& model = static_cast<const Model&>(*this);
+    const float probability = this->glossy_probability(out, which);
+    if (choice < probability) {
+      s.in = mirrored_at(model.sample_half(u), above(out));
+      s.lobe = glossy_reflection;
+    } else {
+      s.in = warp::cosine_hemisphere(u);
+      s.lobe = diffuse_reflection;
+    }
+    if (!(s.in.z > 0)) return false;
+    if (out.z < 0) s.in.z = -s.in.z;
+    return this->complete(
+        s, this->combine(
+               s.in, probability, which, [&] { return model.matte(out, s.in); }, [&] { return model.glossy(out, s.in); }));
+  }
+
+ protected:
+  using MatteGlossyScatter<Model>::MatteGlossyScatter;
+};
+
+}  // namespace etendue

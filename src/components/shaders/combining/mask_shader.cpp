@@ -1,0 +1,105 @@
+// MaskShader: a surface with holes, finer than the eye can see or drawn by a map.
+
+#include "components/shaders/part_choice.h"
+#include "components/shaders/scalar_map.h"
+
+namespace etendue {
+namespace {
+
+// With opacity a, f = a f_below, and the fraction 1 - a of light goes straight on, around which there is no cosine and no
+// normal: the lobe is the same for radiance and importance, and the same from both sides.
+//
+// Sampling chooses between the two in proportion to 1 - a and a times the albedo below. Light that the shader below itself
+// lets straight on comes from the second. When only what goes straight on is asked for there is nothing to choose: the
+// weight is the whole fraction, 1 - a + a t, which shadow rays rely on.
+class MaskScatter final : public ScatterCombination {
+ public:
+  MaskScatter(const SurfacePoint& p, const Scatter* below, float opacity)
+      : ScatterCombination(p, Lobes((below ? below->lobes() : no_lobes) | pass_through)), below_(below), opacity_(opacity) {
+    if (below) frame_ = below->frame();
+  }
+
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+    if (!below_ || !below_->has(which & smooth_lobes)) return {};
+    const ScatterValue v = below_->value_and_density(out, in, transport, which);
+    return {v.value * opacity_, v.density * (1 - straight_probability(out, which))};
+  }
+
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override {
+    const float open = 1 - opacity_;
+    if (which == pass_through)
+      return straight_on(out, Spectrum(open) + opacity_ * straight_fraction(below_, out, transport), 1);
+    const float straight = straight_probability(out, which);
+    if (choice < straight) return straight_on(out, Spectrum(open / straight), straight);
+    if (!below_) return std::nullopt;
+    std::optional<ScatterSample> s = below_->sample(out, left_of_choice(choice, straight), u, transport, which);
+    if (!s) return s;
+    s->weight *= opacity_ / (1 - straight);
+    s->density *= 1 - straight;
+    return s;
+  }
+
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
+    Spectrum sum;
+    if (below_) sum = below_->albedo(out, which) * opacity_;
+    if (which & pass_through) sum += Spectrum(1 - opacity_);
+    return sum;
+  }
+
+ private:
+  float straight_probability(const Vector3& out, Lobes which) const {
+    if (!(which & pass_through)) return 0;
+    const float open = 1 - opacity_;
+    return open / (open + promise(below_, opacity_, out, which));
+  }
+
+  const Scatter* below_;  // null: black
+  float opacity_;         // less than 1
+};
+
+class MaskShader final : public Shader {
+ public:
+  static void describe(Description<MaskShader>& d) {
+    d.summary("A shader with holes in it: where opacity is less than 1, the rest of the light goes straight on.")
+        .member<&MaskShader::shader>("shader", "", "the surface where it is there", required)
+        .member<&MaskShader::opacity>("opacity", "1", "fraction of the surface that is there");
+  }
+
+  void prepare() override {
+    if (!shader) fail("shader", "a shader is needed");
+    require_scalar(*this, "opacity", opacity);
+    const Color all = opacity->constant();
+    opaque_ = all && opacity->scalar(SurfacePoint()) >= 1;
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    const float a = scalar_at(*opacity, p);
+    if (a >= 1) return shader->bind(p, w, arena);
+    return arena.make<MaskScatter>(p, a > 0 ? shader->bind(p, w, arena) : nullptr, a);
+  }
+
+  Lobes possible_lobes() const override { return Lobes(shader->possible_lobes() | (opaque_ ? no_lobes : Lobes(pass_through))); }
+  Spectrum interior_index(const Wavelengths& w) const override { return shader->interior_index(w); }
+  bool transmits() const override { return !opaque_ || shader->transmits(); }
+  bool lossless() const override { return shader->lossless(); }
+  // As in a mixture: a walk beneath the surface comes out without asking how much surface is there.
+  bool reciprocal() const override { return shader->reciprocal() && !(moves_exit() && !opacity->constant()); }
+  bool stochastic() const override { return shader->stochastic(); }
+  bool moves_exit() const override { return shader->moves_exit(); }
+  std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
+                                            SampleStream& random, Arena& arena) const override {
+    return shader->sample_exit(p, scene, w, random, arena);
+  }
+
+  Ref<Shader> shader;
+  Ref<ObjectMap> opacity = constant(0.5f);
+
+ private:
+  bool opaque_ = false;
+};
+
+const Register<MaskShader> registered;
+
+}  // namespace
+}  // namespace etendue

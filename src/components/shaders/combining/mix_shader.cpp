@@ -1,0 +1,146 @@
+// MixShader: some of one surface and some of another, finer than the eye can see.
+
+#include "components/shaders/part_choice.h"
+#include "components/shaders/scalar_map.h"
+
+namespace etendue {
+namespace {
+
+// f = (1 - a) f1 + a f2. The mixture is computed, not drawn: a point has both.
+//
+// Shading normals. The parts may have different ones (a bumped part). Each part's public calls give f |cos| by its own; these
+// are what is summed. The adjoint stays right, as it is linear in them (scatter_answers.h).
+//
+// Sampling. A part is chosen with probability P_k, in proportion to its share times its albedo, and gives a direction. That
+// could have come from either part, so the density is P_1 p_1 + P_2 p_2 and the weight
+//     ((1 - a) f1 |cos| + a f2 |cos|) / (P_1 p_1 + P_2 p_2),
+// the balance heuristic. For a specular sample it is that part's share of its weight over P_k. Where a part is stochastic its
+// p_k is not the true density of its samples: dividing by it would be wrong, so a sample then stands for its own part alone,
+// with weight share * weight / P_k. The density returned is the same sum, all the same: comparing densities needs only one
+// and the same function in all places.
+class MixScatter final : public ScatterCombination {
+ public:
+  MixScatter(const SurfacePoint& p, const Scatter* first, const Scatter* second, float amount, bool stochastic)
+      : ScatterCombination(p, Lobes((first ? first->lobes() : no_lobes) | (second ? second->lobes() : no_lobes))),
+        parts_{first, second},
+        shares_{1 - amount, amount},
+        stochastic_(stochastic) {
+    // Where one has been tilted, it is its normal that pictures of normals show.
+    frame_ = first && (!second || !(first->frame().n == p.shading_normal)) ? first->frame() : second->frame();
+  }
+
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+    const float probability[2] = {first_probability(out, which), 1 - first_probability(out, which)};
+    ScatterValue sum;
+    for (int k = 0; k < 2; ++k) {
+      if (!parts_[k] || !parts_[k]->has(which)) continue;
+      const ScatterValue v = parts_[k]->value_and_density(out, in, transport, which);
+      sum.value += v.value * shares_[k];
+      sum.density += probability[k] * v.density;
+    }
+    return sum;
+  }
+
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override {
+    // Both parts' light goes the same way: all of it, without choosing.
+    if (which == pass_through)
+      return straight_on(
+          out,
+          shares_[0] * straight_fraction(parts_[0], out, transport) + shares_[1] * straight_fraction(parts_[1], out, transport),
+          1);
+    const float first = first_probability(out, which);
+    const int k = choice < first ? 0 : 1;
+    if (!parts_[k]) return std::nullopt;
+    std::optional<ScatterSample> s = parts_[k]->sample(out, left_of_choice(choice, first), u, transport, which);
+    if (!s) return s;
+    const float probability = k == 0 ? first : 1 - first;
+    const Scatter* other = parts_[1 - k];
+    if (s->specular() || !other || !other->has(which)) {
+      s->weight *= shares_[k] / probability;
+      s->density *= probability;
+      return s;
+    }
+    const ScatterValue v = other->value_and_density(out, s->direction, transport, which);
+    const float density = probability * s->density + (1 - probability) * v.density;
+    if (stochastic_)
+      s->weight *= shares_[k] / probability;
+    else
+      s->weight = (s->weight * (shares_[k] * s->density) + v.value * shares_[1 - k]) / density;
+    s->density = density;
+    return s;
+  }
+
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
+    Spectrum sum;
+    for (int k = 0; k < 2; ++k)
+      if (parts_[k]) sum += parts_[k]->albedo(out, which) * shares_[k];
+    return sum;
+  }
+
+ private:
+  float first_probability(const Vector3& out, Lobes which) const {
+    const float first = promise(parts_[0], shares_[0], out, which), second = promise(parts_[1], shares_[1], out, which);
+    return first + second > 0 ? first / (first + second) : 0;
+  }
+
+  const Scatter* parts_[2];  // null: black
+  float shares_[2];
+  bool stochastic_;
+};
+
+class MixShader final : public Shader {
+ public:
+  static void describe(Description<MixShader>& d) {
+    d.summary("Some of one surface and some of another, mixed finer than can be seen, or from place to place by a map.")
+        .member<&MixShader::first>("first", "", "the surface where amount is 0; nothing: black", required)
+        .member<&MixShader::second>("second", "", "the surface where amount is 1", required)
+        .member<&MixShader::amount>("amount", "1", "fraction of the surface that is the second one");
+  }
+
+  void prepare() override {
+    if (!first) fail("first", "a shader is needed");
+    if (!second) fail("second", "a shader is needed");
+    require_scalar(*this, "amount", amount);
+    // The walk beneath the surface is asked for without saying which part the light went in by.
+    const bool one = first->moves_exit(), two = second->moves_exit();
+    constexpr Lobes inwards = transmission_lobes & ~pass_through;
+    if ((one && two) || (one && (second->possible_lobes() & inwards)) || (two && (first->possible_lobes() & inwards)))
+      fail(one ? "second" : "first",
+           "lets light into the body too, and the other part leads it out elsewhere: only one of the two can");
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    const float a = scalar_at(*amount, p);
+    if (a <= 0 || first == second) return first->bind(p, w, arena);
+    if (a >= 1) return second->bind(p, w, arena);
+    const Scatter* one = first->bind(p, w, arena);
+    const Scatter* two = second->bind(p, w, arena);
+    if (!one && !two) return nullptr;
+    return arena.make<MixScatter>(p, one, two, a, stochastic());
+  }
+
+  Lobes possible_lobes() const override { return first->possible_lobes() | second->possible_lobes(); }
+  Spectrum interior_index(const Wavelengths& w) const override { return interior_index_of(*first, *second, w); }
+  bool transmits() const override { return first->transmits() || second->transmits(); }
+  bool lossless() const override { return first->lossless() && second->lossless(); }
+  // A walk beneath the surface weighs the amount where light goes in and not where it comes out: from place to place
+  // these differ.
+  bool reciprocal() const override {
+    return first->reciprocal() && second->reciprocal() && !(moves_exit() && !amount->constant());
+  }
+  bool stochastic() const override { return first->stochastic() || second->stochastic(); }
+  bool moves_exit() const override { return first->moves_exit() || second->moves_exit(); }
+  std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
+                                            SampleStream& random, Arena& arena) const override {
+    return (first->moves_exit() ? first : second)->sample_exit(p, scene, w, random, arena);
+  }
+
+  Ref<Shader> first, second;
+  Ref<ObjectMap> amount = constant(0.5f);
+};
+
+const Register<MixShader> registered;
+
+}  // namespace
+}  // namespace etendue

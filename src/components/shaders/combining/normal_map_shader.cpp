@@ -1,0 +1,105 @@
+// NormalMapShader: normals from an image.
+
+#include <cmath>
+
+#include "components/shaders/tangent_frame.h"
+#include "etendue/core/error.h"
+#include "images/linear_image.h"
+#include "perturbed_normal.h"
+
+namespace etendue {
+namespace {
+
+// An image of normals in the surface's own frame: red, green and blue in [0, 1] are x, y and z in [-1, 1], x along the
+// direction in which u grows, y across it on the side to which v grows, z along the shading normal (Cohen et al. 1998,
+// "Appearance-preserving simplification"). It is read by its numbers: a map of colours would make spectra of them, and three
+// directions do not survive that.
+//
+// Between texels the vectors are interpolated linearly. They are not averaged over what a pixel sees: the mean of tilted
+// normals is a flat surface, which is not how a rough one looks. The samples of a pixel average what the normals do instead.
+class NormalMapShader final : public PerturbedNormalShader {
+ public:
+  static void describe(Description<NormalMapShader>& d) {
+    d.summary(
+         "Tilts the normal that shading uses by an image of normals in the surface's frame, laid over the surface coordinates "
+         "like that of an ImageMap.",
+         "Cohen, Olano & Manocha 1998, Appearance-preserving simplification")
+        .member<&NormalMapShader::shader>("shader", "", "the surface that gets the normals", required)
+        .member<&NormalMapShader::file>(
+            "file", "", "the image: red, green, blue in [0, 1] are x (along u), y (along v), z in [-1, 1]", required)
+        .member<&NormalMapShader::strength>("strength", "1", "multiplies the tilt: 0 is flat, 1 as in the image", at_least(0))
+        .member<&NormalMapShader::flip_y>("flip_y", "", "whether green grows against v, as in images made for DirectX")
+        .member<&NormalMapShader::transfer>("transfer", "",
+                                            "how the image's numbers are encoded; nearly all images of normals are linear")
+        .member<&NormalMapShader::repeat>("repeat", "1", "how many times the image is laid along u and along v");
+  }
+
+  void prepare() override {
+    if (!shader) fail("shader", "a shader is needed");
+    if (file.empty()) fail("file", "an image file is needed");
+    if (!(strength >= 0 && strength < infinity)) fail("strength", "must be a finite number, 0 or more");
+    if (!(std::isfinite(repeat.x) && std::isfinite(repeat.y))) fail("repeat", "must be finite numbers");
+    try {
+      check_transfer(transfer);
+    } catch (const Error& e) {
+      fail("transfer", e.what());
+    }
+    try {
+      const LinearImage image = read_linear_image(file.resolved(), transfer);
+      width_ = image.width;
+      height_ = image.height;
+      texels_.resize(image.rgb.size());
+      for (size_t i = 0; i < texels_.size(); ++i) {
+        const float x = image.rgb[i];
+        texels_[i] = std::uint16_t(std::lround(65535 * (x > 0 ? std::min(x, 1.0f) : 0)));
+      }
+    } catch (const Error& e) {
+      fail("file", e.what());
+    }
+    if (width_ < 1 || height_ < 1) fail("file", "the image is empty");
+  }
+
+  FilePath file;
+  float strength = 1;
+  bool flip_y = false;
+  std::string transfer = "linear";
+  Vector2 repeat{1, 1};
+
+ protected:
+  Vector3 tilted(const SurfacePoint& p) const override {
+    Vector3 v = look_up(p.uv.x * repeat.x, p.uv.y * repeat.y);
+    v.x *= strength;
+    v.y *= flip_y ? -strength : strength;
+    v.z = std::max(v.z, 1e-3f);
+    Frame frame = tangent_frame(p);
+    if (dot(frame.t, p.dpdv) < 0) frame.t = -frame.t;  // v runs the other way round
+    return frame.to_world(v);
+  }
+
+ private:
+  /// Bilinear between texel centres, repeated; row 0 of the image is at v = 1.
+  Vector3 look_up(float u, float v) const {
+    const float x = (u - std::floor(u)) * float(width_) - 0.5f, y = (1 - (v - std::floor(v))) * float(height_) - 0.5f;
+    if (!(std::isfinite(x) && std::isfinite(y))) return {0, 0, 1};
+    const float column = std::floor(x), row = std::floor(y), a = x - column, b = y - row;
+    const int x0 = wrap(int(column), width_), x1 = wrap(int(column) + 1, width_);
+    const int y0 = wrap(int(row), height_), y1 = wrap(int(row) + 1, height_);
+    const Vector3 above = (1 - a) * texel(x0, y0) + a * texel(x1, y0), below = (1 - a) * texel(x0, y1) + a * texel(x1, y1);
+    return (1 - b) * above + b * below;
+  }
+  static int wrap(int i, int count) { return i < 0 ? i + count : (i >= count ? i - count : i); }
+  Vector3 texel(int x, int y) const {
+    const std::uint16_t* t = texels_.data() + 3 * (size_t(y) * size_t(width_) + size_t(x));
+    const auto decoded = [](std::uint16_t c) { return float(c) * (2.0f / 65535) - 1; };
+    return {decoded(t[0]), decoded(t[1]), decoded(t[2])};
+  }
+
+  // Sixteen bits hold what images of normals have; as floats a large one would take twice the memory.
+  std::vector<std::uint16_t> texels_;
+  int width_ = 0, height_ = 0;
+};
+
+const Register<NormalMapShader> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,89 @@
+#pragma once
+// Fresnel's equations: the fraction of unpolarised light a smooth boundary reflects.
+
+#include "etendue/core/spectrum.h"
+
+namespace etendue {
+
+/// Between two dielectrics. `cosine` >= 0 is that of the angle of incidence, `eta` the index behind the boundary over
+/// that in front (Born & Wolf 1999, section 1.5.2):
+/// R = (rs^2 + rp^2) / 2 with rs = (cos_i - eta cos_t) / (cos_i + eta cos_t), rp = (eta cos_i - cos_t) / (eta cos_i + cos_t)
+/// and Snell's law for cos_t, the cosine behind, which is returned as well (0 under total reflection).
+inline float fresnel_dielectric(float cosine, float eta, float& cosine_behind) {
+  const float c = clamp(cosine, 0, 1);
+  const float behind_squared = 1 - (1 - c * c) / (eta * eta);
+  if (behind_squared <= 0) {
+    cosine_behind = 0;
+    return 1;
+  }
+  cosine_behind = std::sqrt(behind_squared);
+  if (c == 0) return 1;  // also where eta = 1 leaves 0/0
+  const float rs = (c - eta * cosine_behind) / (c + eta * cosine_behind);
+  const float rp = (eta * c - cosine_behind) / (eta * c + cosine_behind);
+  return 0.5f * (rs * rs + rp * rp);
+}
+inline float fresnel_dielectric(float cosine, float eta) {
+  float unused = 0;
+  return fresnel_dielectric(cosine, eta, unused);
+}
+
+/// The fractions reflected of light polarised across (s) and in (p) the plane of incidence; see fresnel_dielectric.
+struct PolarizedReflectance {
+  float s, p;
+};
+inline PolarizedReflectance fresnel_dielectric_polarized(float cosine, float eta, float& cosine_behind) {
+  const float c = clamp(cosine, 0, 1);
+  cosine_behind = safe_sqrt(1 - (1 - c * c) / (eta * eta));
+  if (cosine_behind == 0 || c == 0) return {1, 1};
+  return {square((c - eta * cosine_behind) / (c + eta * cosine_behind)),
+          square((eta * c - cosine_behind) / (eta * c + cosine_behind))};
+}
+
+/// From a dielectric to a conductor of relative complex index eta + i k (the conductor's over the dielectric's). With
+/// (a + i b)^2 = (eta + i k)^2 - sin^2 (Born & Wolf 1999, section 14.2):
+/// Rs = (a^2 + b^2 + cos^2 - 2 a cos) / (a^2 + b^2 + cos^2 + 2 a cos),
+/// Rp = Rs ((a^2 + b^2) cos^2 + sin^4 - 2 a cos sin^2) / ((a^2 + b^2) cos^2 + sin^4 + 2 a cos sin^2).
+/// a^2 = (a^2 + b^2 + d) / 2 with d = eta^2 - k^2 - sin^2, which cancels for d < 0; a b = eta k then gives it.
+inline float fresnel_conductor(float cosine, float eta, float k) {
+  const float c = clamp(cosine, 0, 1), c2 = c * c, s2 = 1 - c2;
+  const float d = eta * eta - k * k - s2, product = 2 * eta * k;
+  const float sum = std::sqrt(d * d + product * product);  // a^2 + b^2
+  const float a = d > 0 ? std::sqrt(0.5f * (sum + d)) : product > 0 ? product / std::sqrt(2 * (sum - d)) : 0;
+  const float ac2 = 2 * a * c;
+  const float s = (sum + c2 - ac2) / std::max(sum + c2 + ac2, 1e-20f);
+  const float p = (sum * c2 + s2 * s2 - ac2 * s2) / std::max(sum * c2 + s2 * s2 + ac2 * s2, 1e-20f);
+  return clamp(0.5f * s * (1 + p), 0, 1);
+}
+inline Spectrum fresnel_conductor(float cosine, Spectrum eta, Spectrum k) {
+  Spectrum r;
+  for (int i = 0; i < spectrum_size; ++i) r.set(i, fresnel_conductor(cosine, eta[i], k[i]));
+  return r;
+}
+
+/// The mean of fresnel_dielectric over diffuse illumination, the integral of 2 F(c) c dc over the cosine c. From the side
+/// of the lower index (eta > 1) it has a closed form (Walsh 1926, in Duncan & Duntley 1942). What crosses the boundary
+/// is the same from both sides, in units of n^2 (reciprocity), which gives the other side: 1 - F(1/n) = (1 - F(n)) / n^2.
+inline float mean_fresnel_dielectric(float eta) {
+  const double n = eta < 1 ? 1.0 / double(eta) : double(eta);
+  double f = 0;
+  if (n < 1 + 1e-4) {
+    f = (n - 1) / 3;  // the first term of the closed form's series, whose parts cancel here
+  } else {
+    const double n2 = n * n, n4 = n2 * n2, p = n2 + 1, m = n4 - 1;
+    f = 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
+        n2 * (n2 - 1) * (n2 - 1) / (p * p * p) * std::log((n - 1) / (n + 1)) - 2 * n2 * n * (n2 + 2 * n - 1) / (p * m) +
+        8 * n4 * (n4 + 1) / (p * m * m) * std::log(n);
+  }
+  return float(eta < 1 ? 1 - (1 - f) / (n * n) : f);
+}
+
+/// The same of fresnel_conductor, by the Gauss rule of four points for the weight c: within 1e-3.
+inline Spectrum mean_fresnel_conductor(Spectrum eta, Spectrum k) {
+  constexpr float cosines[] = {0.13975986434f, 0.41640956763f, 0.72315698637f, 0.94289580388f};
+  constexpr float weights[] = {0.06236194190f, 0.25969509522f, 0.40692913604f, 0.27101382684f};  // sum to 1
+  Spectrum sum;
+  for (int i = 0; i < 4; ++i) sum += weights[i] * fresnel_conductor(cosines[i], eta, k);
+  return sum;
+}
+
+}  // namespace etendue

@@ -1,0 +1,252 @@
+// HairShader: hair and fur.
+
+#include "hair.h"
+
+#include "components/shaders/joint_scatter.h"
+#include "components/shaders/part_choice.h"
+#include "components/shaders/reflectance.h"
+#include "components/shaders/scalar_map.h"
+#include "components/shaders/tangent_frame.h"
+#include "etendue/transport/medium_stack.h"
+
+namespace etendue {
+namespace {
+
+// With theta, phi of both directions around the fibre (x along it, phi from y to z) and h where the ray met it,
+//   f(out, in) |in.z| = sum over p of A_p(out) M_p(theta_out, theta_in) N_p(phi_in - phi_out)   [1/sr]
+// (Chiang et al. 2016), where M_p is a density of sin(theta) and N_p one of phi, so M_p N_p integrates to 1 over the
+// sphere, and f |cos| to the sum of the A_p. z is along the shading normal, by whose cosine the renderer multiplies: it is
+// divided by here. Hair scatters into the whole sphere; reflected is what leaves on the side it came from.
+//
+// Sampling: a lobe is chosen in proportion to the mean of A_p over the wavelengths, and its M_p and N_p are sampled exactly.
+// What is left of the number that chose the lobe draws phi.
+//
+// Not reciprocal: the exchanged path meets the fibre where this one leaves it, at another h, and f |in.z| does not depend on
+// the ribbon's slope towards `in`. Seen from afar, averaged over h, it is but for the tilt. Importance is the adjoint.
+//
+// On a ribbon h goes from edge to edge, and from behind the other way around. On what encloses a volume, such as a tube, it is
+// the sine of the angle between the normal and `out` around the fibre: with e the direction of `out` across the fibre's
+// x, the normal z is h (e cross x) + sqrt(1 - h^2) e, so h = -e.y.
+class HairScatter final : public JointScatter<HairScatter> {
+ public:
+  static constexpr Lobes all = glossy_reflection | glossy_transmission;
+
+  HairScatter(const SurfacePoint& p, const Frame& frame, const HairFibre& fibre, bool round, Spectrum absorption)
+      : JointScatter(p, frame, all),
+        fibre_(fibre),
+        round_(round),
+        across_(std::isfinite(p.uv.y) ? clamp(-1 + 2 * p.uv.y, -1, 1) : 0),
+        absorption_(absorption) {
+    reciprocal_ = false;
+  }
+
+  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    if (in.z == 0) return {};
+    ScatterValue r = along_and_around(Angles(out), section(out), in);
+    r.value /= std::abs(in.z);
+    return r;
+  }
+
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    const Angles from(out);
+    const HairFibre::Section across = section(out);
+    const auto probability = probabilities(across);
+    size_t p = 0;
+    while (p + 1 < HairFibre::lobes && choice >= probability[p]) choice -= probability[p++];
+    choice = clamp(choice / std::max(probability[p], 1e-20f), 0, one_minus_epsilon);
+
+    const float sine = fibre_.sample_longitudinal(int(p), from.sine, from.cosine, u), cosine = safe_sqrt(1 - sine * sine);
+    const float phi = from.phi + fibre_.sample_azimuthal(int(p), across, choice);
+    s.in = {sine, cosine * std::cos(phi), cosine * std::sin(phi)};
+    s.lobe = s.in.z * out.z > 0 ? glossy_reflection : glossy_transmission;
+    if (!(which & s.lobe) || s.in.z == 0) return false;
+    const ScatterValue r = along_and_around(from, across, s.in);
+    s.value = r.value;
+    s.density = r.density;
+    return true;
+  }
+
+  // Exact: which side light leaves on depends on phi alone.
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    const HairFibre::Section across = section(out);
+    const float front_begins = out.z > 0 ? 0 : -pi;
+    Spectrum sum;
+    for (int p = 0; p < HairFibre::lobes; ++p) {
+      const float reflected = fibre_.azimuthal_share(p, across, front_begins - Angles(out).phi);
+      const float asked = ((which & glossy_reflection) ? reflected : 0) + ((which & glossy_transmission) ? 1 - reflected : 0);
+      sum += across.attenuation[size_t(p)] * asked;
+    }
+    return sum;
+  }
+
+ private:
+  /// A direction in the fibre's angles.
+  struct Angles {
+    explicit Angles(const Vector3& v)
+        : sine(clamp(v.x, -1, 1)), cosine(std::sqrt(v.y * v.y + v.z * v.z)), phi(std::atan2(v.z, v.y)) {}
+    float sine, cosine;  // of theta
+    float phi;
+  };
+
+  HairFibre::Section section(const Vector3& out) const {
+    const Angles from(out);
+    float h = out.z < 0 ? -across_ : across_;
+    if (round_) h = from.cosine > 0 ? clamp(-out.y / from.cosine, -1, 1) : 0;
+    return fibre_.section(from.sine, from.cosine, h, absorption_);
+  }
+  static std::array<float, HairFibre::lobes> probabilities(const HairFibre::Section& across) {
+    std::array<float, HairFibre::lobes> r;
+    float sum = 0;
+    for (size_t p = 0; p < r.size(); ++p) sum += r[p] = across.attenuation[p].average();
+    for (float& x : r) x /= std::max(sum, 1e-30f);
+    return r;
+  }
+  /// f |in.z| and its density.
+  ScatterValue along_and_around(const Angles& from, const HairFibre::Section& across, const Vector3& in) const {
+    const Angles to(in);
+    const auto probability = probabilities(across);
+    ScatterValue r;
+    for (int p = 0; p < HairFibre::lobes; ++p) {
+      const float shape =
+          fibre_.longitudinal(p, from.sine, from.cosine, to.sine, to.cosine) * fibre_.azimuthal(p, across, to.phi - from.phi);
+      r.value += across.attenuation[size_t(p)] * shape;
+      r.density += probability[size_t(p)] * shape;
+    }
+    return r;
+  }
+
+  HairFibre fibre_;
+  bool round_;
+  float across_;  // h on a ribbon seen from its front
+  Spectrum absorption_;
+};
+
+// The wall of a round fibre. The scattering at the point that is seen from outside stands for all that happens within the
+// fibre, and for that light comes from all sides: so it passes the wall on the far side from outside, and a path from the
+// camera passes it from inside. What the path meets from inside, or light that is to leave to the inside, scatters nothing.
+// Of light that arrives from outside the wall thus does both, scatter and let pass: the sum of the two is no fraction.
+class WallScatter final : public ScatterCombination {
+ public:
+  static constexpr Lobes all = HairScatter::all | pass_through;
+
+  WallScatter(const SurfacePoint& p, const HairScatter& fibre) : ScatterCombination(p, all), fibre_(fibre) {
+    frame_ = fibre.frame();
+  }
+
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+    if (!outside(transport == Transport::radiance ? out : in)) return {};
+    const ScatterValue v = fibre_.value_and_density(out, in, transport, which);
+    return {v.value, v.density * (1 - straight_probability(out, transport, which))};
+  }
+
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override {
+    const float straight = straight_probability(out, transport, which);
+    if (choice < straight) return straight_on(out, Spectrum(1 / straight), straight);
+    if (transport == Transport::radiance && !outside(out)) return std::nullopt;
+    std::optional<ScatterSample> s = fibre_.sample(out, left_of_choice(choice, straight), u, transport, which);
+    if (!s || (transport == Transport::importance && !outside(s->direction))) return std::nullopt;
+    s->weight /= 1 - straight;
+    s->density *= 1 - straight;
+    return s;
+  }
+
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
+    if (outside(out)) return fibre_.albedo(out, which);
+    return which & pass_through ? Spectrum(1.0f) : Spectrum();
+  }
+
+ private:
+  bool outside(const Vector3& v) const { return dot(normal_, v) > 0; }
+  float straight_probability(const Vector3& out, Transport transport, Lobes which) const {
+    if (!(which & pass_through) || outside(out) == (transport == Transport::radiance)) return 0;
+    return transport == Transport::importance && which & glossy_lobes ? 0.5f : 1;
+  }
+
+  const HairScatter& fibre_;
+};
+
+class HairShader final : public Shader {
+ public:
+  enum class Pigment { melanin, color, absorption };
+
+  static void describe(Description<HairShader>& d) {
+    d.summary(
+         "Fibres of hair or fur, which run along the first surface coordinate (dpdu). On what encloses a volume, such as a "
+         "tube, the place across the fibre follows from the normal; on anything else, such as a flat ribbon, from the second "
+         "surface coordinate, from 0 to 1, so that it looks like a round fibre.",
+         "Chiang et al. 2016, A practical and controllable hair and fur model for production path tracing")
+        .member<&HairShader::pigment>("pigment", "", "what gives the hair its color: one of the following members",
+                                      choices("melanin", "color", "absorption"))
+        .member<&HairShader::eumelanin>("eumelanin", "1", "concentration of black pigment: 0.3 blond, 1.3 brown, 8 black")
+        .member<&HairShader::pheomelanin>("pheomelanin", "1", "concentration of red pigment")
+        .member<&HairShader::color>("color", "1", "the color of dense hair, in all that is scattered many times")
+        .member<&HairShader::absorption>("absorption", "1", "absorption over a distance of the fibre's radius")
+        .member<&HairShader::longitudinal_roughness>("longitudinal_roughness", "1", "along the fibre, from 0 to 1")
+        .member<&HairShader::azimuthal_roughness>("azimuthal_roughness", "1", "around the fibre, from 0 to 1")
+        .member<&HairShader::tilt>("tilt", "deg", "by which the scales of the cuticle stand off the fibre, towards its tip",
+                                   range(-15, 15))
+        .member<&HairShader::ior>("ior", "1", "index of refraction of the fibre", range(1, 3));
+  }
+
+  void prepare() override {
+    require_scalar(*this, "eumelanin", eumelanin, 0, densest);
+    require_scalar(*this, "pheomelanin", pheomelanin, 0, densest);
+    require_reflectance(*this, "color", color);
+    if (!absorption) fail("absorption", "a map or a colour is needed");
+    if (const Color all = absorption->constant())
+      for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5)
+        if (!(all->at(lambda, ColorUse::coefficient) >= 0 && all->at(lambda, ColorUse::coefficient) < infinity))
+          fail("absorption", "a coefficient of absorption is a number of at least 0");
+    require_scalar(*this, "longitudinal_roughness", longitudinal_roughness);
+    require_scalar(*this, "azimuthal_roughness", azimuthal_roughness);
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    float eta = ior;
+    if (const SceneObject* around = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
+      eta /= MediumStack::index(around, w)[0];
+    const HairFibre fibre(scalar_at(*longitudinal_roughness, p), scalar_at(*azimuthal_roughness, p), radians(tilt), eta);
+    const bool round = p.object && p.object->closed();
+    const auto* scatter = arena.make<HairScatter>(p, tangent_frame(p), fibre, round, absorption_at(p, w, fibre));
+    if (!round) return scatter;
+    return arena.make<WallScatter>(p, *scatter);
+  }
+  Lobes possible_lobes() const override { return WallScatter::all; }
+  // Light that goes through a fibre is outside again: there is no inside to be in.
+  bool transmits() const override { return false; }
+  bool reciprocal() const override { return false; }  // see HairScatter
+
+  Pigment pigment = Pigment::melanin;
+  Ref<ObjectMap> eumelanin = constant(1.3f), pheomelanin = constant(0.2f), color = constant(0.5f), absorption = constant(0.2f);
+  Ref<ObjectMap> longitudinal_roughness = constant(0.3f), azimuthal_roughness = constant(0.3f);
+  float tilt = 2, ior = 1.55f;
+
+ private:
+  static constexpr float densest = 1000;
+
+  Spectrum absorption_at(const SurfacePoint& p, const Wavelengths& w, const HairFibre& fibre) const {
+    switch (pigment) {
+      case Pigment::melanin: return melanin(scalar_at(*eumelanin, p, 0, densest), scalar_at(*pheomelanin, p, 0, densest), w);
+      case Pigment::color: return fibre.absorption_of(reflectance_at(*color, p, w));
+      default:
+        return map(absorption->color(p, w, ColorUse::coefficient), [](float x) { return x > 0 ? std::min(x, 1e6f) : 0; });
+    }
+  }
+  // Per radius of human hair, eumelanin absorbs (0.419, 0.697, 1.37) of red, green and blue and pheomelanin (0.187, 0.4, 1.05)
+  // (d'Eon et al. 2011). That is, within 3 %, what the power laws of their spectra give at 645, 550 and 450 nm:
+  // lambda^-3.33 and lambda^-4.75 (Donner & Jensen 2006, "A spectral BSSRDF for shading human skin").
+  static Spectrum melanin(float black, float red, const Wavelengths& w) {
+    Spectrum r;
+    for (int i = 0; i < spectrum_size; ++i) {
+      const float x = std::log(550 / w[i]);
+      r.set(i, black * 0.697f * std::exp(3.33f * x) + red * 0.4f * std::exp(4.75f * x));
+    }
+    return r;
+  }
+};
+
+const Register<HairShader> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,275 @@
+// Light between two layers.
+//
+// The light that comes out is a sum over paths: in through the face E on the side of `out`, any number of reflections at
+// both faces and scatterings in the medium, and out through the face X on the side of `in` (N is the other one):
+//     f(out, in) |cos| = sum over k of the integral of K_E(out, w_1) T(w_1) K_2(-w_1, w_2) T(w_2) ... K_X(-w_k, in),
+// with K = f |cos| of a face or, per depth, scattering coefficient times phase function of the medium over |cos w|, and T the
+// transmittance exp(-extinction dz / |cos w|) (Guo et al. 2018, eqs. 6 to 10). Each face answers for itself, by its public
+// calls in world directions, for radiance or importance alike: factors for refraction and shading normals are theirs, and
+// multiply to those of the whole. In the medium, where distances go by the shading normal, importance gets the factor of
+// shading normals (Veach 1997, eq. 5.19) at each scattering, so that the adjoint is right throughout.
+//
+// walk() follows one such path from `out`. At each face any lobe is drawn, and the path ends when one lets it out: the product
+// of the weights is an unbiased estimate for the direction that came out, whatever its density is.
+//
+// estimate() is for a given `in`. Paths are told apart by their last event that is not specular, number s of k + 1.
+//   s < k + 1: after it light goes to X by specular events alone, so `in` determines the way. It is traced back from `in`,
+//     out through X and on by specular reflections: a chain of edges. Each vertex of a walk from `out` is connected to all
+//     edges that end there (or cross its depth), by what it scatters into them.
+//   s = k + 1, X itself, with an event k that is specular: the walk from `out` draws w_k, and X is evaluated.
+//   s = k + 1 with an event k that is not specular: both ways are possible, drawing w_k at event k with density p, or
+//     drawing the edge back from X with density q. They are weighted by the balance heuristic, p / (p + q) and q / (p + q). All
+//     that p and q must be for that is the same function in both places, so faces may be stochastic.
+// Inside, the walk only draws reflections: what is let out is counted by the connections. Back from `in` the faces are
+// asked for the adjoint, f*: f*(in, d) |cos d| / |d.ng| = f(d, in) |cos in| / |in.ng|, so an edge carries the product of its
+// weights times |in.ng| / |d.ng|. That is only relied on of faces that are reciprocal: of one that is not, only specular lobes
+// are traced back, and the second and third kind of paths are found from the side of `out` alone.
+
+#include "layer_stack.h"
+
+namespace etendue {
+namespace {
+
+/// Events before a walk is given up: in a thick medium that absorbs nothing, light is scattered often.
+constexpr int longest = 4096;
+constexpr Lobes smooth_transmission = smooth_lobes & transmission_lobes;
+
+/// Russian roulette; `squared_index` undoes the change of radiance by refraction.
+bool survives(Spectrum& carried, float squared_index, HashedRandom& random) {
+  const float survival = carried.maximum() * squared_index;
+  if (!(survival > 0)) return false;
+  if (survival >= 1) return true;
+  if (random.next() >= survival) return false;
+  carried /= survival;
+  return true;
+}
+
+}  // namespace
+
+/// A straight piece of a path traced back from `in`, from one face to the other.
+struct LayerStack::Edge {
+  Vector3 direction;  ///< away from the face it begins at
+  Spectrum carried;
+  int begin = 0;      ///< the face
+  float density = 0;  ///< [1/sr] with which it was drawn among smooth lobes; 0: it is specular
+  int end() const { return 1 - begin; }
+  /// The weight of connecting to it from where a walk would have drawn its direction with density p.
+  float weight(float p) const { return density > 0 ? density / (density + p) : 1; }
+};
+
+struct LayerStack::Edges {
+  static constexpr int most = 16;
+  Edge list[most];
+  int count = 0;
+  const Edge* begin() const { return list; }
+  const Edge* end() const { return list + count; }
+};
+
+Spectrum LayerStack::transmittance(const Vector3& direction, float part) const {
+  if (!medium_.shader) return Spectrum(1.0f);
+  return exp(medium_.extinction() * (-part * slant(direction)));
+}
+
+float LayerStack::adjoint_factor(Transport transport, const Vector3& a, const Vector3& b) const {
+  if (transport == Transport::radiance || normal_ == shading_normal_) return 1;
+  const float up = std::abs(dot(shading_normal_, a) * dot(normal_, b)),
+              down = std::abs(dot(normal_, a) * dot(shading_normal_, b));
+  return down > 0 ? up / down : 0;
+}
+
+/// What of a face's transmission may be drawn from outside instead of from between.
+Lobes LayerStack::reversible(int side) const {
+  return faces_[side].reciprocal ? transmission_lobes : Lobes(specular_transmission | pass_through);
+}
+
+void LayerStack::trace_back(const Vector3& in, Transport transport, HashedRandom& random, Edges& edges) const {
+  const Transport back = adjoint(transport);
+  int at = side(in);
+  float choice = random.next();
+  std::optional<ScatterSample> s = face(at).sample(in, choice, random.next_pair(), back, reversible(at));
+  Spectrum carried(std::abs(dot(normal_, in)));
+  float squared_index = 1;
+  while (s) {
+    carried *= s->weight;
+    if (back == Transport::radiance) squared_index *= s->eta * s->eta;
+    const float cosine = std::abs(dot(normal_, s->direction));
+    if (!(cosine > 0) || carried.black()) return;
+    edges.list[edges.count++] = {s->direction, carried / cosine, at, s->specular() ? 0 : s->density};
+    at = 1 - at;
+    if (!s->specular() || edges.count == Edges::most || !face(at).has(specular_reflection)) return;
+    carried *= transmittance(s->direction, 1);
+    if (!survives(carried, squared_index, random)) return;
+    const Vector3 from = -s->direction;
+    choice = random.next();
+    s = face(at).sample(from, choice, random.next_pair(), back, specular_reflection);
+  }
+}
+
+// The depth of the next scattering along w is drawn for one wavelength, chosen in proportion to what is carried; all are
+// divided by the density of the mixture, as on long distances (transport/media.h). True: scattered before the face is reached.
+bool LayerStack::fly(const Vector3& w, float& z, Spectrum& carried, HashedRandom& random) const {
+  const int towards = side(w);
+  const float reach = towards == 0 ? z : 1 - z;
+  if (!medium_.scatters()) {
+    carried *= transmittance(w, reach);
+    z = float(towards);
+    return false;
+  }
+  const Spectrum per_depth = medium_.extinction() * slant(w);
+  const Spectrum share = carried / std::max(carried.average() * spectrum_size, 1e-30f);
+  float choice = random.next();
+  int k = 0;
+  while (k + 1 < spectrum_size && choice >= share[k]) choice -= share[k++];
+  const float depth = -std::log1p(-random.next()) / std::max(per_depth[k], 1e-30f);
+  const bool scattered = depth < reach;
+  const Spectrum left = exp(per_depth * -std::min(depth, reach));
+  const Spectrum mixture = share * left * (scattered ? per_depth : Spectrum(1.0f));
+  const float density = mixture.average() * spectrum_size;
+  if (!(density > 0)) {
+    carried = {};
+    return false;
+  }
+  carried *= left * (1 / density);
+  if (scattered) carried *= medium_.scattering * slant(w);
+  z = scattered ? clamp(towards == 0 ? z - depth : z + depth, 0, 1) : float(towards);
+  return scattered;
+}
+
+bool LayerStack::walk(const Vector3& out, const ScatterSample& entering, Transport transport, HashedRandom& random,
+                      LayerWalk& walk) const {
+  walk.weight = entering.weight;
+  walk.probability = entering.density;
+  walk.eta = entering.eta;
+  walk.smooth = !entering.specular();
+  walk.straight = entering.lobe == pass_through;
+  walk.dispersive = entering.dispersive;
+  Vector3 w = entering.direction;
+  float z = float(side(out));
+  for (int event = 0; event < longest; ++event) {
+    if (event > 3 && !survives(walk.weight, transport == Transport::radiance ? square(walk.eta) : 1, random)) return false;
+    if (fly(w, z, walk.weight, random)) {
+      float density = 0;
+      const Vector3 next = medium_.shader->sample_phase(medium_.position, -w, random.next_pair(), density);
+      walk.weight *= adjoint_factor(transport, -w, next);
+      w = next;
+      walk.smooth = true;
+      continue;
+    }
+    if (walk.weight.black()) return false;
+    const float choice = random.next();
+    const auto s = face(side(w)).sample(-w, choice, random.next_pair(), transport);
+    if (!s) return false;
+    walk.weight *= s->weight;
+    walk.probability *= std::min(s->density, 1.0f);
+    walk.eta *= s->eta;
+    walk.smooth |= !s->specular();
+    walk.straight &= s->lobe == pass_through;
+    walk.dispersive |= s->dispersive;
+    w = s->direction;
+    if (s->transmitted()) {
+      walk.direction = w;
+      return true;
+    }
+  }
+  return false;
+}
+
+Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport transport, HashedRandom& random) const {
+  Spectrum sum;
+  const int exit = side(in);
+  const Scatter& leaving = face(exit);
+  int at = side(out);
+  if (!face(at).has(transmission_lobes) || !leaving.has(transmission_lobes)) return sum;
+  Edges edges;
+  trace_back(in, transport, random, edges);
+
+  const bool evaluates = leaving.has(smooth_transmission);
+  const auto leave = [&](const Spectrum& carried, const Vector3& w, float z, float density) {
+    if (!evaluates || side(w) != exit) return;
+    Spectrum f = leaving.evaluate(-w, in, transport, transmission_lobes);
+    if (f.black()) return;
+    const float back = density > 0 ? leaving.density(in, -w, adjoint(transport), reversible(exit)) : 0;
+    if (density > 0) f *= density / (density + back);
+    sum += carried * f * transmittance(w, std::abs(float(exit) - z));
+  };
+
+  Spectrum carried(1.0f);
+  Vector3 from = out;
+  Lobes lobes = transmission_lobes;
+  float z = float(at), squared_index = 1;
+  for (int event = 0; event < longest;) {
+    const Scatter& here = face(at);
+    if (here.has(lobes & smooth_lobes))
+      for (const Edge& edge : edges) {
+        if (edge.end() != at) continue;
+        const ScatterValue v = here.value_and_density(from, -edge.direction, transport, lobes);
+        if (v.value.black()) continue;
+        sum += carried * v.value * edge.carried * transmittance(edge.direction, 1) * edge.weight(v.density);
+      }
+    const float choice = random.next();
+    const auto s = here.sample(from, choice, random.next_pair(), transport, lobes);
+    if (!s) return sum;
+    carried *= s->weight;
+    if (transport == Transport::radiance) squared_index *= s->eta * s->eta;
+    Vector3 w = s->direction;
+    leave(carried, w, z, s->specular() ? 0 : s->density);
+
+    while (fly(w, z, carried, random) && ++event < longest) {
+      for (const Edge& edge : edges) {
+        const float phase = medium_.shader->phase(medium_.position, -w, -edge.direction);
+        const float factor = phase * adjoint_factor(transport, -w, -edge.direction) * edge.weight(phase);
+        sum += carried * edge.carried * transmittance(edge.direction, std::abs(float(edge.begin) - z)) * factor;
+      }
+      float density = 0;
+      const Vector3 next = medium_.shader->sample_phase(medium_.position, -w, random.next_pair(), density);
+      carried *= adjoint_factor(transport, -w, next);
+      w = next;
+      leave(carried, w, z, density);
+      if (event > 1 && !survives(carried, squared_index, random)) return sum;
+    }
+    if (event > 1 && !survives(carried, squared_index, random)) return sum;
+    at = side(w);
+    from = -w;
+    lobes = reflection_lobes;
+    ++event;
+  }
+  return sum;
+}
+
+// Light that goes in, is reflected by N or goes through it, and comes out: what came back is left to an even part. A direction
+// inside is drawn from `out` by E, and one from `in` by X; between them N has a density that changes by
+// dw / d(in) = |in.n| / (eta^2 |w.n|) on the way out (Snell's law).
+float LayerStack::density(const Vector3& out, const Vector3& in, Transport transport, HashedRandom& random) const {
+  const Scatter &entering = face(side(out)), &leaving = face(side(in));
+  const bool through = side(out) != side(in);
+  const float even = std::max(leaving.cosine(in), 1e-4f) * inverse_pi;
+  float choice = random.next();
+  const auto from = entering.sample(out, choice, random.next_pair(), transport, transmission_lobes);
+  if (!from) return even;
+  const auto fraction = [](const Scatter& s, const Vector3& v, Lobes part) {
+    const float all = s.albedo(v).average();
+    return all > 0 ? s.albedo(v, part).average() / all : 0;
+  };
+  const Scatter& behind = face(1 - side(out));
+  const float share = std::max(fraction(behind, -from->direction, through ? transmission_lobes : reflection_lobes), 0.02f);
+  float direct = 0;
+  if (through && leaving.has(smooth_transmission)) {
+    direct = leaving.density(-from->direction, in, transport);
+  } else {
+    choice = random.next();
+    if (const auto to = leaving.sample(in, choice, random.next_pair(), adjoint(transport), transmission_lobes)) {
+      const float spread =
+          std::abs(dot(normal_, in)) / (square(to->eta) * std::max(std::abs(dot(normal_, to->direction)), 1e-4f));
+      direct = through ? share * entering.density(out, -to->direction, transport, transmission_lobes)
+                       : behind.density(-from->direction, -to->direction, transport);
+      direct *= spread;
+    }
+  }
+  // The fewer ways there are for a direct crossing, the more comes evenly.
+  const float clear = transmittance(from->direction, 1).average();
+  const bool scatters = medium_.scatters();
+  const float directly = direct > 0 ? (scatters ? 0.8f * clear : 0.8f) : 0;
+  return directly * direct + (1 - directly) * share * even;
+}
+
+}  // namespace etendue

@@ -1,0 +1,160 @@
+// The scattering of two layers.
+//
+// f is what the face on the side of `out` reflects itself, f_E, and what was between, of which LayerStack has estimates.
+//
+// A sample draws one of E's lobes. When that reflects, it stands for f_E; when not, for what was between, by a walk. The
+// weights are unbiased estimates of each part's f |cos| over the true density, for any test function g: the mean of
+// weight * g(direction) is the integral of f |cos| g. The true density of walks is not known. The one that `density` gives
+// and samples carry is P_E p_E + P_T q, p_E exactly and q about the density of walks, a hashed function of both directions:
+// the same wherever it is asked for. Multiple importance sampling with w_1 = p / (p + l) for samples and w_2 = l / (p + l) for
+// light sampled with density l uses only that w_1 + w_2 = 1 at each direction: the sum is then the integral of
+// (w_1 + w_2) f |cos| g, whatever function p is.
+
+#include "layered_scatter.h"
+
+#include "components/shaders/part_choice.h"
+
+namespace etendue {
+
+Lobes lobes_between(Lobes near, Lobes far, bool scatters) {
+  if (!(near & transmission_lobes)) return no_lobes;
+  constexpr Lobes specular_in = specular_transmission | pass_through, smooth_in = smooth_lobes & transmission_lobes;
+  constexpr Lobes smooth_back = smooth_lobes & reflection_lobes;
+  const bool diffuse = scatters || ((near | far) & diffuse_lobes), both_pass = near & far & pass_through;
+  const bool bent = scatters || (near & smooth_in) || ((far & smooth_back) && (near & reflection_lobes)) ||
+                    ((far & reflection_lobes) && (near & smooth_back));
+  Lobes lobes = no_lobes;
+  if (scatters || ((far & reflection_lobes) && (bent || (far & smooth_back))))
+    lobes |= diffuse ? diffuse_reflection : glossy_reflection;
+  if ((near & specular_in) && (far & specular_reflection)) lobes |= specular_reflection;
+  if (far & transmission_lobes) {
+    if (bent || (far & smooth_in)) lobes |= diffuse ? diffuse_transmission : glossy_transmission;
+    if (both_pass) lobes |= pass_through;
+    const bool refracts = ((near | far) & specular_transmission) || (near & far & specular_reflection);
+    if ((near & specular_in) && (far & specular_in) && refracts) lobes |= specular_transmission;
+  }
+  return lobes;
+}
+
+LayeredScatter::LayeredScatter(const SurfacePoint& p, const LayerStack* const* front, const LayerStack* const* back, int stacks,
+                               int walks, std::uint64_t seed, Lobes lobes)
+    : ScatterCombination(p, lobes), stacks_(stacks), walks_(walks), seed_(seed) {
+  for (int i = 0; i < stacks; ++i) {
+    sides_[0][i] = front[i];
+    sides_[1][i] = back[i];
+  }
+  const Frame &top = front[0]->face(0).frame(), &bottom = front[0]->face(1).frame();
+  frame_ = top.n == p.shading_normal ? bottom : top;  // that of the one that was tilted, if one was
+}
+
+LayeredScatter::Question::Question(const LayerStack& stack, const Vector3& out, Lobes which) {
+  const int side = stack.side(out);
+  const Scatter& near = stack.face(side);
+  possible = lobes_between(near.lobes(), stack.face(1 - side).lobes(), stack.medium().scatters());
+  between = possible & which;
+  face = Lobes((which & reflection_lobes) | (between ? transmission_lobes : no_lobes));
+}
+
+HashedRandom LayeredScatter::numbers(Use use, const Vector3& out, const Vector3& other, Transport transport) const {
+  HashedRandom random(seed_ ^ (2 * std::uint64_t(use) + std::uint64_t(transport)));
+  random.add(out, other.x);
+  random.add(other.y, other.z);
+  return random;
+}
+
+float LayeredScatter::density_between(const LayerStack& stack, Lobes asked, const Vector3& out, const Vector3& in,
+                                      Transport transport) const {
+  HashedRandom random = numbers(Use::density, out, in, transport);
+  const Scatter& near = stack.face(stack.side(out));
+  float goes_in = 1;
+  if (near.has(asked & reflection_lobes)) {
+    const float all = near.albedo(out, asked).average();
+    goes_in = std::max(all > 0 ? near.albedo(out, transmission_lobes).average() / all : 0, 0.01f);
+  }
+  return goes_in * stack.density(out, in, transport, random);
+}
+
+ScatterValue LayeredScatter::world_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
+                                                     Lobes which) const {
+  const LayerStack* const* stacks = seen_from(out);
+  const LayerStack& stack = *stacks[0];
+  const Scatter& face = stack.face(stack.side(out));
+  const Question q(stack, out, which);
+  const bool same_side = stack.side(out) == stack.side(in);
+  ScatterValue sum;
+  if (same_side && face.has(which & reflection_lobes & smooth_lobes)) {
+    sum.value = face.evaluate(out, in, transport, which & reflection_lobes);
+    sum.density = face.density(out, in, transport, q.face);
+  }
+  if (!(q.between & smooth_lobes & (same_side ? reflection_lobes : transmission_lobes))) return sum;
+  Spectrum between;
+  for (int i = 0; i < stacks_; ++i) {
+    HashedRandom random = numbers(Use::estimate, out, in, transport);
+    Spectrum estimate;
+    for (int walk = 0; walk < walks_; ++walk) estimate += stacks[i]->estimate(out, in, transport, random);
+    if (i == 0)
+      between = estimate;
+    else
+      between.set(i, estimate[0]);
+  }
+  sum.value += between / float(walks_);
+  sum.density += density_between(stack, q.face, out, in, transport);
+  if (!sum.value.finite()) sum.value = {};
+  return sum;
+}
+
+std::optional<ScatterSample> LayeredScatter::world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                                          Lobes which) const {
+  const LayerStack& stack = *seen_from(out)[0];
+  const int side = stack.side(out);
+  const Scatter& face = stack.face(side);
+  if (which == pass_through) {  // nothing to choose, as shadow rays rely on
+    const Spectrum both = straight_fraction(&face, out, transport) * straight_fraction(&stack.face(1 - side), out, transport);
+    return straight_on(out, both * stack.transmittance(out, 1), 1);
+  }
+  const Question q(stack, out, which);
+  std::optional<ScatterSample> s = face.sample(out, choice, u, transport, q.face);
+  if (!s) return s;
+  const bool walked = s->transmitted();
+  if (walked) {
+    HashedRandom random = numbers(Use::walk, out, {choice, u.x, u.y}, transport);
+    LayerWalk walk;
+    if (!stack.walk(out, *s, transport, random, walk) || !walk.weight.finite()) return std::nullopt;
+    const bool reflected = stack.side(walk.direction) == side;
+    const Lobes one_side = reflected ? reflection_lobes : transmission_lobes;
+    const Lobes smooth = q.possible & smooth_lobes & one_side;
+    const Lobe lobe = walk.smooth     ? Lobe(smooth)
+                      : walk.straight ? pass_through
+                                      : (reflected ? specular_reflection : specular_transmission);
+    if (!(q.between & lobe)) return std::nullopt;
+    s = ScatterSample{walk.direction, walk.weight, walk.probability, lobe, walk.eta, walk.dispersive};
+  }
+  if (!s->specular()) {
+    const bool same_side = stack.side(s->direction) == side;
+    if (walked) s->density = same_side ? face.density(out, s->direction, transport, q.face) : 0;
+    if (q.between & smooth_lobes & (same_side ? reflection_lobes : transmission_lobes))
+      s->density += density_between(stack, q.face, out, s->direction, transport);
+  }
+  return s;
+}
+
+Spectrum LayeredScatter::world_albedo(const Vector3& out, Lobes which) const {
+  const LayerStack& stack = *seen_from(out)[0];
+  const Question q(stack, out, which);
+  Spectrum sum = stack.face(stack.side(out)).albedo(out, which & reflection_lobes);
+  if (q.between == no_lobes) return sum;
+  const LayerStack::Albedo a = stack.albedo(out);
+  if (q.between & smooth_lobes & reflection_lobes) sum += a.smooth[0];
+  if (q.between & smooth_lobes & transmission_lobes) sum += a.smooth[1];
+  if (q.between & specular_reflection) sum += a.specular[0];
+  // What passes straight on is part of what goes through specularly, unless it is all of it.
+  if (q.between & (specular_transmission | pass_through)) {
+    Spectrum straight;
+    if (q.possible & pass_through) straight = world_sample(out, 0, {}, Transport::importance, pass_through)->weight;
+    if (q.between & pass_through) sum += straight;
+    if (q.between & specular_transmission) sum += max(a.specular[1] - straight, 0);
+  }
+  return sum;
+}
+
+}  // namespace etendue

@@ -1,0 +1,166 @@
+// SheenShader: the bright edges of velvet and dusty things, over any other surface.
+
+#include "sheen.h"
+#include "components/shaders/part_choice.h"
+#include "components/shaders/reflectance.h"
+#include "components/shaders/scalar_map.h"
+#include "etendue/core/warp.h"
+#include "etendue/scatter_model.h"
+
+namespace etendue {
+namespace {
+
+/// The fibres alone. E is at most 0.93, and small but near the horizon; directions are drawn uniformly, with density 1 / (2
+/// pi).
+class SheenScatter final : public ScatterModel<SheenScatter> {
+ public:
+  SheenScatter(const SurfacePoint& p, const Frame& frame, const SheenLobe& lobe, Spectrum color)
+      : ScatterModel(p, frame, glossy_reflection), lobe_(lobe), color_(color) {
+    has_choice_ = false;
+  }
+
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? color_ * lobe_.value(out, in) : Spectrum();
+  }
+  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? warp::hemisphere_density : 0;
+  }
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const override {
+    s.in = warp::hemisphere(u);
+    if (out.z < 0) s.in.z = -s.in.z;
+    s.value = color_ * (lobe_.value(out, s.in) * std::abs(s.in.z));
+    s.density = warp::hemisphere_density;
+    s.lobe = glossy_reflection;
+    return s.in.z != 0;
+  }
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    return (which & glossy_reflection) ? color_ * lobe_.albedo(out) : Spectrum();
+  }
+
+ private:
+  SheenLobe lobe_;
+  Spectrum color_;
+};
+
+// f = c w f_sheen + t(out, in) f_base, where w is the fraction of the surface that has fibres and
+//   t(out, in) = min(T(out), T(in)),   T(v) = 1 - w E(v).
+// The albedo is at most w E(out) + T(out) = 1 whatever the base is, as t <= T(out); f stays reciprocal, as t is symmetric.
+// No larger t has both properties for every base: one that reflects into a single direction allows for no more. Estevez &
+// Kulla 2017 scale by T(in) and T(out) as well. Fibres take no light away: what they do not reflect comes to the
+// base, grey. A base that scatters widely loses some (a white Lambertian one 13 % by default), as if fibres held it back.
+class CoveredScatter final : public ScatterCombination {
+ public:
+  CoveredScatter(const SurfacePoint& p, const SheenScatter& sheen, const SheenLobe& lobe, float weight, const Scatter& base,
+                 bool stochastic)
+      : ScatterCombination(p, Lobes(sheen.lobes() | base.lobes())),
+        sheen_(sheen),
+        base_(base),
+        lobe_(lobe),
+        weight_(weight),
+        stochastic_(stochastic) {
+    frame_ = base.frame();
+  }
+
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+    const float probability = sheen_probability(out, which);
+    const ScatterValue a = sheen_.value_and_density(out, in, transport, which);
+    const ScatterValue b = base_.value_and_density(out, in, transport, which);
+    return {a.value + b.value * through(out, in), lerp(probability, b.density, a.density)};
+  }
+
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override {
+    const float sheen = sheen_probability(out, which);
+    const bool fibres = choice < sheen;
+    const Scatter& chosen = fibres ? static_cast<const Scatter&>(sheen_) : base_;
+    std::optional<ScatterSample> s = chosen.sample(out, left_of_choice(choice, sheen), u, transport, which);
+    if (!s) return s;
+    const float probability = fibres ? sheen : 1 - sheen, t = through(out, s->direction);
+    const float share = fibres ? 1 : t;
+    if (s->specular()) {
+      s->weight *= share / probability;
+      s->density *= probability;
+      return s;
+    }
+    const Scatter& other = fibres ? base_ : static_cast<const Scatter&>(sheen_);
+    const ScatterValue v = other.value_and_density(out, s->direction, transport, which);
+    const float density = probability * s->density + (1 - probability) * v.density;
+    if (stochastic_)  // the base's density is not that of its samples: each sample stands for its own part
+      s->weight *= share / probability;
+    else
+      s->weight = (s->weight * (share * s->density) + v.value * (fibres ? t : 1)) / density;
+    s->density = density;
+    return s;
+  }
+
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
+    return sheen_.albedo(out, which) + base_.albedo(out, which) * passed(out);
+  }
+
+ private:
+  /// T(v).
+  float passed(const Vector3& v) const { return 1 - weight_ * lobe_.albedo(frame_.to_local(v)); }
+  float through(const Vector3& out, const Vector3& in) const { return std::min(passed(out), passed(in)); }
+  float sheen_probability(const Vector3& out, Lobes which) const {
+    const float a = promise(&sheen_, 1, out, which), b = promise(&base_, passed(out), out, which);
+    return a + b > 0 ? a / (a + b) : 0;
+  }
+
+  const SheenScatter& sheen_;
+  const Scatter& base_;
+  SheenLobe lobe_;
+  float weight_;
+  bool stochastic_;
+};
+
+class SheenShader final : public Shader {
+ public:
+  static void describe(Description<SheenShader>& d) {
+    d.summary(
+         "Upright fibres, as of velvet, peaches or dust, which shine where a surface is seen from the side; over another "
+         "surface, which gets what they let through, or over black.",
+         "Estevez & Kulla 2017, Production friendly microfacet sheen BRDF")
+        .member<&SheenShader::color>("color", "1", "fraction of light the fibres reflect, per wavelength")
+        .member<&SheenShader::weight>("weight", "1", "fraction of the surface that has fibres")
+        .member<&SheenShader::roughness>("roughness", "1",
+                                         "from 0 (upright fibres, a thin bright edge) to 1 (in disorder); below 0.1 as 0.1")
+        .member<&SheenShader::base>("base", "", "what lies under the fibres; nothing: black");
+  }
+
+  void prepare() override {
+    require_reflectance(*this, "color", color);
+    require_scalar(*this, "weight", weight);
+    require_scalar(*this, "roughness", roughness);
+    SheenLobe(0.5f).mean_albedo();  // makes the table
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    const Scatter* below = base ? base->bind(p, w, arena) : nullptr;
+    const float covered = scalar_at(*weight, p);
+    if (covered <= 0) return below;
+    const SheenLobe lobe(scalar_at(*roughness, p));
+    const SheenScatter* sheen = arena.make<SheenScatter>(p, below ? below->frame() : Frame(p.shading_normal), lobe,
+                                                         reflectance_at(*color, p, w) * covered);
+    if (!below) return sheen;
+    return arena.make<CoveredScatter>(p, *sheen, lobe, covered, *below, base->stochastic());
+  }
+
+  Lobes possible_lobes() const override { return Lobes(glossy_reflection | (base ? base->possible_lobes() : no_lobes)); }
+  Spectrum interior_index(const Wavelengths& w) const override { return base ? base->interior_index(w) : Spectrum(1.0f); }
+  bool transmits() const override { return base && base->transmits(); }
+  bool reciprocal() const override { return !base || (base->reciprocal() && !base->moves_exit()); }
+  bool stochastic() const override { return base && base->stochastic(); }
+  bool moves_exit() const override { return base && base->moves_exit(); }
+  std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
+                                            SampleStream& random, Arena& arena) const override {
+    return base ? base->sample_exit(p, scene, w, random, arena) : std::nullopt;
+  }
+
+  Ref<ObjectMap> color = constant(0.8f), weight = constant(1.0f), roughness = constant(0.4f);
+  Ref<Shader> base;
+};
+
+const Register<SheenShader> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,189 @@
+// Conductor: a metal, polished or rough.
+
+#include <fmt/format.h>
+
+#include "components/shaders/fresnel.h"
+#include "components/shaders/reflectance.h"
+#include "components/shaders/tangent_frame.h"
+#include "etendue/core/warp.h"
+#include "etendue/describe/color.h"
+#include "etendue/scatter_model.h"
+#include "etendue/transport/medium_stack.h"
+#include "roughness.h"
+
+namespace etendue {
+namespace {
+
+/// A conductor's index over that of what is in front of it.
+struct RelativeIndex {
+  Spectrum n, k;
+  Spectrum reflectance(float cosine) const { return fresnel_conductor(cosine, n, k); }
+  Spectrum mean_reflectance() const { return mean_fresnel_conductor(n, k); }
+};
+
+class PolishedConductor final : public ScatterModel<PolishedConductor> {
+ public:
+  PolishedConductor(const SurfacePoint& p, const RelativeIndex& index, Spectrum tint)
+      : ScatterModel(p, specular_reflection), index_(index), tint_(tint) {
+    has_choice_ = false;
+  }
+
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
+  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
+    s.in = {-out.x, -out.y, out.z};
+    s.value = tint_ * index_.reflectance(std::abs(out.z));
+    s.density = 1;
+    s.lobe = specular_reflection;
+    return true;
+  }
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    return (which & specular_reflection) ? tint_ * index_.reflectance(std::abs(out.z)) : Spectrum();
+  }
+
+ private:
+  RelativeIndex index_;
+  Spectrum tint_;
+};
+
+// Light scattered once, f1 = F D(m) G2 / (4 |out.z in.z|)  [1/sr]  (Torrance & Sparrow 1967; Walter et al. 2007, eq. 20),
+// and more than once, f2 (see MultipleReflection), together f.
+//
+// The first is sampled by visible normals, the second by the cosine. A sample is of the second with the probability q
+// that is its share of the light, F taken for its mean. Reflections of the first kind that lead under the surface are
+// absorbed, so the density integrates to less than 1.
+class RoughConductor final : public ScatterModel<RoughConductor> {
+ public:
+  RoughConductor(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution,
+                 const RelativeIndex& index, Spectrum tint, bool multiple)
+      : ScatterModel(p, frame, glossy_reflection),
+        distribution_(distribution),
+        multiple_reflection_(distribution),
+        index_(index),
+        tint_(tint) {
+    const Spectrum mean = index.mean_reflectance();
+    if (multiple) multiple_ = multiple_reflection_.factor(mean);
+    multiple_over_single_ = multiple_.average() / std::max(mean.average(), 1e-6f);
+    has_choice_ = multiple;
+  }
+
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
+    return local_value_and_density(out, in, which).value;
+  }
+  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    if (!(out.z * in.z > 0)) return 0;
+    return density(out, in, reflection_half_vector(out, in), probability_of_multiple(multiple_reflection_.missing(out)));
+  }
+  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    if (!(out.z * in.z > 0)) return {};
+    const Vector3 m = reflection_half_vector(out, in);
+    const float missing = multiple_reflection_.missing(out);
+    Spectrum value = index_.reflectance(std::abs(dot(out, m))) * (distribution_.D(m) * distribution_.visibility(out, in));
+    if (has_choice_) value += multiple_ * multiple_reflection_.value(missing, multiple_reflection_.missing(in));
+    return {tint_ * value, density(out, in, m, probability_of_multiple(missing))};
+  }
+
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    if (has_choice_ && choice < probability_of_multiple(multiple_reflection_.missing(out))) {
+      s.in = warp::cosine_hemisphere(u);
+      if (out.z < 0) s.in.z = -s.in.z;
+    } else {
+      s.in = reflect(out, distribution_.sample_visible(out, u));
+    }
+    const ScatterValue both = local_value_and_density(out, s.in, which);
+    s.value = both.value * std::abs(s.in.z);
+    s.density = both.density;
+    s.lobe = glossy_reflection;
+    return s.density > 0;
+  }
+
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    if (!(which & glossy_reflection)) return {};
+    const float missing = multiple_reflection_.missing(out);
+    return tint_ * (index_.reflectance(distribution_.typical_cosine(out)) * (1 - missing) + multiple_ * missing);
+  }
+
+ private:
+  float probability_of_multiple(float missing) const {
+    const float multiple = missing * multiple_over_single_;
+    return multiple / (multiple + 1 - missing);
+  }
+  float density(const Vector3& out, const Vector3& in, const Vector3& m, float multiple) const {
+    return (1 - multiple) * distribution_.visible_density(out, m) * reflection_jacobian(dot(out, m)) +
+           multiple * std::abs(in.z) * inverse_pi;
+  }
+
+  MicrofacetDistribution distribution_;
+  MultipleReflection multiple_reflection_;
+  RelativeIndex index_;
+  Spectrum tint_, multiple_;  ///< multiple_: light scattered more than once, over that for F = 1
+  float multiple_over_single_ = 0;
+};
+
+class Conductor final : public Shader {
+ public:
+  static void describe(Description<Conductor>& d) {
+    d.summary("A metal, polished or rough, on both sides. It reflects as its complex refractive index says.",
+              "Walter et al. 2007, Microfacet models for refraction through rough surfaces; Heitz 2014, Understanding the "
+              "masking-shadowing function; Kulla & Conty 2017, Revisiting physically based shading at Imageworks")
+        .member<&Conductor::ior>("ior", "1", "complex index of refraction: metal(\"Au\"), or complex(n, k)")
+        .member<&Conductor::color>("color", "1", "what the reflectance is multiplied by, per wavelength")
+        .member<&Conductor::roughness>("roughness", "1",
+                                       "the alpha of the distribution of facets, along the surface's u direction unless "
+                                       "rotated (not its square root); below 0.001 polished")
+        .member<&Conductor::roughness_y>("roughness_y", "1", "alpha across that direction; by default the same")
+        .member<&Conductor::rotation>("rotation", "turn", "turns those directions, counter-clockwise")
+        .member<&Conductor::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
+        .member<&Conductor::multiple_scattering>("multiple_scattering", "",
+                                                 "whether light that meets more than one facet is counted, or lost");
+  }
+
+  void prepare() override {
+    if (!ior) fail("ior", "an index of refraction is needed");
+    const Color k = ior->imaginary();
+    for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
+      const float real = ior->at(lambda, ColorUse::coefficient), imaginary = k ? k->at(lambda, ColorUse::coefficient) : 0;
+      const bool n_good = real > 0 && real < 100, k_good = imaginary >= 0 && imaginary < 100;
+      if (n_good && k_good) continue;
+      const std::string n_wrong = fmt::format("n must be more than 0 and less than 100, and is {:.6g}", real),
+                        k_wrong = fmt::format("k must be at least 0 and less than 100, and is {:.6g}", imaginary);
+      fail("ior", fmt::format("{} at {:.0f} nm", n_good ? k_wrong : k_good ? n_wrong : n_wrong + "; " + k_wrong, lambda));
+    }
+    require_reflectance(*this, "color", color);
+    require_roughness(*this, roughness, roughness_y);
+    if (!rotation) fail("rotation", "a map or a number is needed");
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    const Spectrum tint = reflectance_at(*color, p, w);
+    if (tint.black()) return nullptr;
+    const Color imaginary = ior->imaginary();
+    RelativeIndex index{ior->evaluate(w, ColorUse::coefficient),
+                        imaginary ? imaginary->evaluate(w, ColorUse::coefficient) : Spectrum()};
+    if (const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr) {
+      const Spectrum n = MediumStack::index(outside, w);
+      index = {index.n / n, index.k / n};
+    }
+    const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_y.get(), p);
+    if (d.smooth()) return arena.make<PolishedConductor>(p, index, tint);
+    const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
+    return arena.make<RoughConductor>(p, frame, d, index, tint, multiple_scattering);
+  }
+  Lobes possible_lobes() const override {
+    const Color x = roughness->constant(), y = roughness_y ? roughness_y->constant() : x;
+    if (!x || !y) return glossy_reflection | specular_reflection;
+    const SurfacePoint nowhere;
+    return distribution_at(distribution, *roughness, roughness_y.get(), nowhere).smooth() ? specular_reflection
+                                                                                          : glossy_reflection;
+  }
+
+  Color ior = metal_index("Al");
+  Ref<ObjectMap> color = constant(1.0f), roughness = constant(0.2f), roughness_y, rotation = constant(0.0f);
+  MicrofacetDistribution::Kind distribution = MicrofacetDistribution::ggx;
+  bool multiple_scattering = true;
+};
+
+const Register<Conductor> registered;
+
+}  // namespace
+}  // namespace etendue

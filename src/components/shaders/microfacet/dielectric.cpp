@@ -1,0 +1,150 @@
+// Dielectric: the boundary of glass, water and the like, smooth or rough.
+
+#include "components/shaders/fresnel.h"
+#include "components/shaders/tangent_frame.h"
+#include "etendue/scatter_model.h"
+#include "etendue/transport/medium_stack.h"
+#include "rough_dielectric.h"
+#include "roughness.h"
+
+namespace etendue {
+namespace {
+
+// Of the light that arrives, the fraction F is reflected and 1 - F refracted. Which one a path follows is drawn with the
+// hero's F, so the hero's weight is 1. Reflection has the same direction at every wavelength: the others are kept, with
+// weight F_i / F_hero. Refraction has the hero's direction; where the index differs between the path's wavelengths the
+// sample is marked dispersive and the path drops the others, which makes up for them in the hero's own density (see
+// Wavelengths::drop_secondary). A wavelength that is totally reflected has F_i = 1 like any other.
+class DielectricScatter final : public ScatterModel<DielectricScatter> {
+ public:
+  /// eta: index inside over index outside.
+  DielectricScatter(const SurfacePoint& p, Spectrum eta, bool varies, bool dispersive)
+      : ScatterModel(p, specular_reflection | specular_transmission), eta_(eta), varies_(varies), dispersive_(dispersive) {
+    has_captives_ = true;
+  }
+
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
+  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+
+  bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
+    float cosine_behind = 0;
+    const Spectrum reflected = reflectance(out, cosine_behind);
+    const float hero = reflected[0];
+    float reflect_probability = hero;
+    if (!(which & specular_transmission)) reflect_probability = 1;
+    if (!(which & specular_reflection)) reflect_probability = 0;
+
+    if (choice < reflect_probability) {
+      s.in = {-out.x, -out.y, out.z};
+      s.value = reflected;
+      s.density = reflect_probability;
+      s.lobe = specular_reflection;
+      return true;
+    }
+    if (hero >= 1) return false;  // only refraction was asked for, and there is none
+    const float eta = towards(out, eta_[0]);
+    s.in = {-out.x / eta, -out.y / eta, out.z > 0 ? -cosine_behind : cosine_behind};
+    s.value = varies_ ? Spectrum(1 - hero) : Spectrum(1.0f) - reflected;
+    s.density = 1 - reflect_probability;
+    s.lobe = specular_transmission;
+    s.eta = eta;
+    s.dispersive = dispersive_;
+    return true;
+  }
+
+  bool holds_captive(const Vector3& out) const override {
+    float unused = 0;
+    return fresnel_dielectric(std::abs(out.z), towards(out, eta_[0]), unused) >= 1;
+  }
+
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    float unused = 0;
+    const Spectrum reflected = reflectance(out, unused);
+    Spectrum sum;
+    if (which & specular_reflection) sum += reflected;
+    if (which & specular_transmission) sum += Spectrum(1.0f) - reflected;
+    return sum;
+  }
+
+ private:
+  /// Index behind the boundary over index in front, seen from `out`.
+  static float towards(const Vector3& out, float eta) { return out.z > 0 ? eta : 1 / eta; }
+
+  /// F per wavelength, and the hero's cosine behind the boundary.
+  Spectrum reflectance(const Vector3& out, float& cosine_behind) const {
+    const float cosine = std::abs(out.z);
+    Spectrum r(fresnel_dielectric(cosine, towards(out, eta_[0]), cosine_behind));
+    if (varies_) {
+      float unused = 0;
+      for (int i = 1; i < spectrum_size; ++i) r.set(i, fresnel_dielectric(cosine, towards(out, eta_[i]), unused));
+    }
+    return r;
+  }
+
+  Spectrum eta_;
+  bool varies_, dispersive_;
+};
+
+class Dielectric final : public Shader {
+ public:
+  static void describe(Description<Dielectric>& d) {
+    d.summary("The boundary of a transparent body, smooth or rough: Fresnel reflection and refraction, with dispersion.",
+              "Born & Wolf 1999, Principles of Optics, section 1.5; Walter et al. 2007, Microfacet models for refraction "
+              "through rough surfaces; Kulla & Conty 2017, Revisiting physically based shading at Imageworks; nested bodies "
+              "after Schmidt & Budge 2002")
+        .member<&Dielectric::ior>("ior", "1",
+                                  "index of refraction inside the object: a number, glass(\"N-BK7\"), or a spectrum")
+        .member<&Dielectric::roughness>("roughness", "1",
+                                        "the alpha of the distribution of facets, along the surface's u direction unless "
+                                        "rotated (not its square root); below 0.001 smooth")
+        .member<&Dielectric::roughness_y>("roughness_y", "1", "alpha across that direction; by default the same")
+        .member<&Dielectric::rotation>("rotation", "turn", "turns those directions, counter-clockwise")
+        .member<&Dielectric::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
+        .member<&Dielectric::multiple_scattering>(
+            "multiple_scattering", "",
+            "whether light that meets more than one facet is counted, or lost; where roughness_y differs it is lost");
+  }
+
+  void prepare() override {
+    if (!ior) fail("ior", "an index of refraction is needed");
+    if (ior->imaginary()) fail("ior", "a dielectric's index is real; this one is complex (a metal's)");
+    for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
+      const float n = ior->at(lambda, ColorUse::coefficient);
+      if (!(n > 0 && n < 100))
+        fail("ior", "an index of refraction lies between 0 and 100, and this is " + std::to_string(n) + " at " +
+                        std::to_string(int(lambda)) + " nm");
+    }
+    require_roughness(*this, roughness, roughness_y);
+    if (!rotation) fail("rotation", "a map or a number is needed");
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr;
+    Spectrum eta = interior_index(w);
+    if (outside) eta = eta / MediumStack::index(outside, w);
+    const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_y.get(), p);
+    if (!RoughDielectric::smooth(d, eta)) {
+      const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
+      return arena.make<RoughDielectric>(p, frame, d, eta, multiple_scattering, w.single());
+    }
+    const bool varies = eta.minimum() != eta.maximum();
+    return arena.make<DielectricScatter>(p, eta, varies, varies && !w.single());
+  }
+  Lobes possible_lobes() const override {
+    constexpr Lobes smooth = specular_reflection | specular_transmission, rough = glossy_reflection | glossy_transmission;
+    return everywhere(roughness, 0) && (!roughness_y || everywhere(roughness_y, 0)) ? smooth : smooth | rough;
+  }
+  Spectrum interior_index(const Wavelengths& w) const override { return ior->evaluate(w, ColorUse::coefficient); }
+  /// Rough, it loses up to a hundredth at some angles: tables are as exact as that.
+  bool lossless() const override { return !(possible_lobes() & glossy_lobes); }
+
+  Color ior = flat_spectrum(1.5f);
+  Ref<ObjectMap> roughness = constant(0.0f), roughness_y, rotation = constant(0.0f);
+  MicrofacetDistribution::Kind distribution = MicrofacetDistribution::ggx;
+  bool multiple_scattering = true;
+};
+
+const Register<Dielectric> registered;
+
+}  // namespace
+}  // namespace etendue

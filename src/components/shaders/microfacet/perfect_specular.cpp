@@ -1,0 +1,52 @@
+// PerfectSpecular: a mirror.
+
+#include "components/shaders/reflectance.h"
+#include "etendue/scatter_model.h"
+
+namespace etendue {
+namespace {
+
+class PerfectSpecularScatter final : public ScatterModel<PerfectSpecularScatter> {
+ public:
+  PerfectSpecularScatter(const SurfacePoint& p, Spectrum reflectance)
+      : ScatterModel(p, specular_reflection), reflectance_(reflectance) {}
+
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
+  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
+    s.in = {-out.x, -out.y, out.z};
+    s.value = reflectance_;
+    s.density = 1;
+    s.lobe = specular_reflection;
+    return true;
+  }
+  Spectrum local_albedo(const Vector3&, Lobes which) const override {
+    return (which & specular_reflection) ? reflectance_ : Spectrum();
+  }
+
+ private:
+  Spectrum reflectance_;
+};
+
+class PerfectSpecular final : public Shader {
+ public:
+  static void describe(Description<PerfectSpecular>& d) {
+    d.summary("A mirror, of the same reflectance at every angle, on both sides.")
+        .member<&PerfectSpecular::color>("color", "1", "fraction of light reflected, per wavelength");
+  }
+  void prepare() override { require_reflectance(*this, "color", color); }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    const Spectrum reflectance = reflectance_at(*color, p, w);
+    if (reflectance.black()) return nullptr;
+    return arena.make<PerfectSpecularScatter>(p, reflectance);
+  }
+  Lobes possible_lobes() const override { return specular_reflection; }
+
+  Ref<ObjectMap> color = constant(1.0f);
+};
+
+const Register<PerfectSpecular> registered;
+
+}  // namespace
+}  // namespace etendue

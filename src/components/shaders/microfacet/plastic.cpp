@@ -1,0 +1,162 @@
+// Plastic: a diffuse body under a dielectric coat, polished or rough.
+
+#include <optional>
+
+#include "components/shaders/fresnel.h"
+#include "components/shaders/joint_scatter.h"
+#include "components/shaders/reflectance.h"
+#include "etendue/core/warp.h"
+#include "etendue/transport/medium_stack.h"
+#include "roughness.h"
+
+namespace etendue {
+namespace {
+
+// The coat reflects F (or, rough, the lobe F D G2 / (4 |out.z in.z|)) and lets T(v) through, which is all the rest. Under it
+// the body reflects rho diffusely; of that the coat reflects the part Fi back to the body, again and again. With eta the index
+// of the coat over that in front, the light that leaves is spread over eta^2 times the solid angle:
+//   f_d = T(out) T(in) rho / (pi eta^2 (1 - rho Fi))  [1/sr]
+// (Saunderson 1942, with the angles of Wolff 1994, "Diffuse-reflectance model for smooth dielectric surfaces"). A boundary lets
+// as much light through from both sides in units of eta^2, so with Tm the mean of T under diffuse light 1 - Fi = Tm / eta^2,
+// for a smooth coat the mean Fresnel reflectance from inside. So f_d has the albedo T(out) rho (1 - Fi) / (1 - rho Fi), and
+// where rho = 1 nothing is lost. f_d is reciprocal.
+//
+// Without `nonlinear`, rho Fi is replaced by Fi below the bar: the colour is then that of the body, T(out) rho, and not
+// the deeper one that light gets by meeting it often.
+struct Coat {
+  float eta, through_mean;                   ///< Tm
+  std::optional<CoatTransmittance> rough{};  ///< none: polished
+
+  Coat(float index, const MicrofacetDistribution& d) : eta(index) {
+    if (!d.smooth()) rough.emplace(d, index);
+    through_mean = rough ? rough->mean() : 1 - mean_fresnel_dielectric(index);
+  }
+  float through(const Vector3& v) const { return rough ? (*rough)(v) : 1 - fresnel_dielectric(std::abs(v.z), eta); }
+};
+
+class PlasticScatter final : public JointScatter<PlasticScatter> {
+ public:
+  PlasticScatter(const SurfacePoint& p, const MicrofacetDistribution& distribution, const Coat& coat, Spectrum body,
+                 bool nonlinear)
+      : JointScatter(p,
+                     Lobes((body.black() ? 0 : diffuse_reflection) | (coat.rough ? glossy_reflection : specular_reflection))),
+        distribution_(distribution),
+        coat_(coat) {
+    const float inside = clamp(1 - coat.through_mean / square(coat.eta), 0, 0.9999f);
+    const Spectrum kept = nonlinear ? Spectrum(1.0f) - body * inside : Spectrum(1 - inside);
+    body_ = body / kept;
+    body_albedo_ = body_ * (1 - inside);
+    body_ /= square(coat.eta);
+    body_weight_ = body_albedo_.average();
+  }
+
+  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+    if (!(out.z * in.z > 0)) return {};
+    const float through = coat_.through(out), coat_probability = probability_of_coat(through, which);
+    ScatterValue r;
+    if (which & diffuse_reflection) {
+      r.value = body_ * (through * coat_.through(in) * inverse_pi);
+      r.density = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
+    }
+    if (which & glossy_reflection) {
+      const Vector3 m = reflection_half_vector(out, in);
+      const float cosine = std::abs(dot(out, m));
+      r.value += Spectrum(fresnel_dielectric(cosine, coat_.eta) * distribution_.D(m) * distribution_.visibility(out, in));
+      r.density += coat_probability * distribution_.visible_density(out, m) * reflection_jacobian(cosine);
+    }
+    return r;
+  }
+
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    const float through = coat_.through(out), coat_probability = probability_of_coat(through, which);
+    if (choice < coat_probability) {
+      if (which & specular_reflection) {
+        s.in = {-out.x, -out.y, out.z};
+        s.value = Spectrum(1 - through);
+        s.density = coat_probability;
+        s.lobe = specular_reflection;
+        return true;
+      }
+      s.in = reflect(out, distribution_.sample_visible(out, u));
+      s.lobe = glossy_reflection;
+    } else {
+      s.in = warp::cosine_hemisphere(u);
+      if (out.z < 0) s.in.z = -s.in.z;
+      s.lobe = diffuse_reflection;
+    }
+    const ScatterValue both = local_value_and_density(out, s.in, which);
+    s.value = both.value * std::abs(s.in.z);
+    s.density = both.density;
+    return s.density > 0;
+  }
+
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    const float through = coat_.through(out);
+    Spectrum sum;
+    if (which & diffuse_reflection) sum += body_albedo_ * through;
+    if (which & (glossy_reflection | specular_reflection)) sum += Spectrum(1 - through);
+    return sum;
+  }
+
+ private:
+  float probability_of_coat(float through, Lobes which) const {
+    if (!(which & diffuse_reflection)) return 1;
+    if (!(which & (glossy_reflection | specular_reflection))) return 0;
+    return (1 - through) / (1 - through + through * body_weight_);
+  }
+
+  MicrofacetDistribution distribution_;
+  Coat coat_;
+  Spectrum body_;         ///< f_d pi / (T(out) T(in))
+  Spectrum body_albedo_;  ///< albedo of the body seen through the coat, over T(out)
+  float body_weight_;
+};
+
+class Plastic final : public Shader {
+ public:
+  static void describe(Description<Plastic>& d) {
+    d.summary(
+         "A diffuse body under a clear dielectric coat, polished or rough, with all reflections between the two: "
+         "plastic, varnished wood, glazed china, ...",
+         "Saunderson 1942, Calculation of the color of pigmented plastics; Wolff 1994, Diffuse-reflectance model for smooth "
+         "dielectric surfaces")
+        .member<&Plastic::color>("color", "1", "fraction of light the body under the coat reflects, per wavelength")
+        .member<&Plastic::ior>("ior", "1", "index of refraction of the coat", range(1, 4))
+        .member<&Plastic::roughness>("roughness", "1",
+                                     "the alpha of the distribution of the coat's facets (not its square root); below 0.001 "
+                                     "polished")
+        .member<&Plastic::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
+        .member<&Plastic::nonlinear>(
+            "nonlinear", "",
+            "whether light that the coat throws back to the body takes on its colour again, which makes "
+            "colours deeper");
+  }
+
+  void prepare() override {
+    require_reflectance(*this, "color", color);
+    require_roughness(*this, roughness, nullptr);
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    float eta = ior;
+    // The coat's own dispersion is left out, and that of what lies in front, too, which is the same at all wavelengths then.
+    if (const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
+      eta /= MediumStack::index(outside, w).average();
+    const MicrofacetDistribution d = distribution_at(distribution, *roughness, nullptr, p);
+    return arena.make<PlasticScatter>(p, d, Coat(eta, d), reflectance_at(*color, p, w), nonlinear);
+  }
+  Lobes possible_lobes() const override {
+    return Lobes(diffuse_reflection | specular_reflection | (everywhere(roughness, 0) ? 0 : glossy_reflection));
+  }
+  bool lossless() const override { return everywhere(color, 1) && everywhere(roughness, 0); }
+
+  Ref<ObjectMap> color = constant(0.5f), roughness = constant(0.1f);
+  float ior = 1.5f;
+  MicrofacetDistribution::Kind distribution = MicrofacetDistribution::ggx;
+  bool nonlinear = true;
+};
+
+const Register<Plastic> registered;
+
+}  // namespace
+}  // namespace etendue

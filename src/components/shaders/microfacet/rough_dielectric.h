@@ -1,0 +1,173 @@
+#pragma once
+// RoughDielectric: scattering at a boundary of facets between two transparent bodies.
+
+#include "components/shaders/fresnel.h"
+#include "components/shaders/joint_scatter.h"
+#include "etendue/core/warp.h"
+#include "microfacet.h"
+
+namespace etendue {
+
+// With m the facet that reflects or refracts `out` into `in`, and eta the index on the side of `in` over that on the side of
+// `out`, in the convention of importance (Walter et al. 2007, eq. 20 and 21):
+//   f = F D(m) G2 / (4 |out.z in.z|)                                                                      in reflection,
+//   f = (1 - F) D(m) G2' |out.m in.m| eta^2 / ((out.m + eta in.m)^2 |out.z in.z|)   [1/sr]                in refraction.
+// To this comes what is scattered more than once (see MultipleRefraction) where that is asked for.
+//
+// Sampling: with the probability 1 - E(out) light is scattered more than once, to either side by their shares, by the
+// cosine. Else a visible normal is drawn, which reflects with the probability F.
+//
+// Dispersion. One direction `in` takes another facet at each wavelength, and f is known for all of them. A density of the
+// hero's alone would let f / density of the others grow without bound where lobes are narrow. So each of the path's
+// wavelengths is as likely to choose the direction, and the density is the mean of theirs (the balance heuristic of Wilkie et
+// al. 2014, "Hero wavelength spectral sampling", at a single vertex): no weight exceeds 4 times that of a path of its own, and
+// no wavelength needs to be dropped. Light scattered more than once is known for the hero: that which gets through is
+// multiplied by eta / eta_hero, which keeps both transports adjoint at every wavelength; what it gains or loses by that is the
+// relative difference of the indices times the few hundredths of light that are scattered so.
+class RoughDielectric final : public JointScatter<RoughDielectric> {
+ public:
+  /// eta: index below (z < 0) over that above. `multiple`: whether light scattered more than once is counted, where it is
+  /// known. `single`: the path has only its hero left.
+  RoughDielectric(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution, Spectrum eta,
+                  bool multiple, bool single)
+      : JointScatter(p, frame, glossy_reflection | glossy_transmission),
+        distribution_(distribution),
+        multiple_refraction_({distribution.kind, std::sqrt(distribution.alpha_x * distribution.alpha_y)}, eta[0]),
+        eta_(eta),
+        multiple_(multiple && MultipleRefraction::known(distribution, eta[0])),
+        varies_(eta.minimum() != eta.maximum()),
+        choosing_(varies_ && !single ? spectrum_size : 1) {}
+
+  /// Whether a boundary is as good as smooth: light is bent, or at least reflected, by next to nothing.
+  static bool smooth(const MicrofacetDistribution& d, const Spectrum& eta) {
+    const float bend = std::max(std::abs(eta.maximum() - 1), std::abs(1 - eta.minimum()));
+    return d.smooth() || std::max(d.alpha_x, d.alpha_y) * bend < 3e-4f;
+  }
+
+  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+    if (out.z == 0 || in.z == 0) return {};
+    ScatterValue r = out.z * in.z > 0 ? reflection(out, in, which) : transmission(out, in, which);
+    if (multiple_) {
+      const float missing = multiple_refraction_.missing(out), through = through_probability(out, which);
+      const float side = out.z * in.z > 0 ? 1 - through : through;
+      const float more = multiple_refraction_.value(out, in);
+      r.value += side_factor(out, in) * more;
+      r.density = lerp(missing, r.density, side * std::abs(in.z) * inverse_pi);
+    }
+    return r;
+  }
+
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    if (out.z == 0) return false;
+    const float missing = multiple_ ? multiple_refraction_.missing(out) : 0;
+    if (choice < missing) {
+      s.in = warp::cosine_hemisphere(u);
+      const bool below = choice < missing * through_probability(out, which);
+      if (below == (out.z > 0)) s.in.z = -s.in.z;
+    } else {
+      choice = (choice - missing) / (1 - missing) * float(choosing_);
+      const int chosen = std::min(int(choice), choosing_ - 1);
+      choice -= float(chosen);
+      const float eta = towards(out, eta_[chosen]);
+      const Vector3 m = distribution_.sample_visible(out, u);
+      float cosine_behind = 0;
+      const float reflected = fresnel_dielectric(std::abs(dot(out, m)), eta, cosine_behind);
+      const bool reflects = choice < reflect_probability(reflected, which);
+      if (!reflects && reflected >= 1) return false;  // only refraction was asked for, and there is none
+      s.in = reflects ? reflect(out, m) : refract(out, m, eta, cosine_behind);
+      if ((s.in.z * out.z > 0) != reflects) return false;  // another facet is in the way
+    }
+    const bool above = s.in.z * out.z > 0;
+    const ScatterValue both = local_value_and_density(out, s.in, which);
+    s.value = both.value * std::abs(s.in.z);
+    s.density = both.density;
+    s.lobe = above ? glossy_reflection : glossy_transmission;
+    if (!above) s.eta = towards(out, eta_[0]);
+    return s.density > 0;
+  }
+
+  // What is reflected once, and what is lost to more than one facet, stand in tables for isotropic distributions. Of others
+  // it is taken for a mean of that of the alphas along and across `out`.
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    const float eta = towards(out, eta_[0]), s2 = out.x * out.x + out.y * out.y, x2 = s2 > 0 ? out.x * out.x / s2 : 1;
+    float missing = 0, reflected = 0;
+    const auto add = [&](float weight, float along_x) {
+      const float alpha = std::sqrt(lerp(along_x, square(distribution_.alpha_y), square(distribution_.alpha_x)));
+      const MicrofacetDistribution d(distribution_.kind, alpha);
+      missing += weight * MultipleRefraction(d, eta_[0]).missing(out);
+      reflected += weight * (1 - CoatTransmittance(d, eta)(out));
+    };
+    const float along = distribution_.isotropic() ? 1 : 0.5f + 0.2f * s2;
+    add(along, x2);
+    if (along < 1) add(1 - along, 1 - x2);
+    const float back = multiple_ ? missing * (1 - multiple_refraction_.transmitted_share(out)) : 0;
+    float sum = 0;
+    if (which & glossy_reflection) sum += reflected + back;
+    if (which & glossy_transmission) sum += std::max(1 - (multiple_ ? 0 : missing) - reflected - back, 0.0f);
+    return Spectrum(sum);
+  }
+  Spectrum relative_index(const Vector3& out, const Vector3& in) const override {
+    if (out.z * in.z > 0) return Spectrum(1.0f);
+    return out.z > 0 ? eta_ : Spectrum(1.0f) / eta_;
+  }
+
+ private:
+  /// Index behind the boundary over index in front, seen from `out`.
+  static float towards(const Vector3& out, float eta) { return out.z > 0 ? eta : 1 / eta; }
+
+  /// Of light scattered more than once: eta / eta_hero through the surface.
+  Spectrum side_factor(const Vector3& out, const Vector3& in) const {
+    if (!varies_ || out.z * in.z > 0) return Spectrum(1.0f);
+    return relative_index(out, in) / towards(out, eta_[0]);
+  }
+  static float reflect_probability(float reflected, Lobes which) {
+    if (!(which & glossy_transmission)) return 1;
+    return (which & glossy_reflection) ? reflected : 0;
+  }
+  float through_probability(const Vector3& out, Lobes which) const {
+    if (!(which & glossy_transmission)) return 0;
+    return (which & glossy_reflection) ? multiple_refraction_.transmitted_share(out) : 1;
+  }
+
+  ScatterValue reflection(const Vector3& out, const Vector3& in, Lobes which) const {
+    const Vector3 m = reflection_half_vector(out, in);
+    const float out_m = std::abs(dot(out, m));
+    const float front = distribution_.D(m) * distribution_.visibility(out, in);
+    ScatterValue r;
+    float probability = 0;
+    for (int i = 0; i < (varies_ ? spectrum_size : 1); ++i) {
+      const float reflected = fresnel_dielectric(out_m, towards(out, eta_[i]));
+      r.value.set(i, front * reflected);
+      if (i < choosing_) probability += reflect_probability(reflected, which) / float(choosing_);
+    }
+    if (!varies_) r.value = Spectrum(r.value[0]);
+    r.density = probability * distribution_.visible_density(out, m) * reflection_jacobian(out_m);
+    return r;
+  }
+
+  ScatterValue transmission(const Vector3& out, const Vector3& in, Lobes which) const {
+    const float front = distribution_.G2_through(out, in) / std::abs(out.z * in.z);
+    ScatterValue r;
+    for (int i = 0; i < (varies_ ? spectrum_size : 1); ++i) {
+      const float eta = towards(out, eta_[i]);
+      const Vector3 m = refraction_half_vector(out, in, eta);
+      const float out_m = dot(out, m), in_m = dot(in, m);
+      if (!(out_m * out.z > 0 && in_m * in.z > 0)) continue;
+      const float reflected = fresnel_dielectric(std::abs(out_m), eta), jacobian = refraction_jacobian(out_m, in_m, eta);
+      r.value.set(i, front * (1 - reflected) * distribution_.D(m) * std::abs(out_m) * jacobian);
+      if (i < choosing_)
+        r.density +=
+            (1 - reflect_probability(reflected, which)) * distribution_.visible_density(out, m) * jacobian / float(choosing_);
+    }
+    if (!varies_) r.value = Spectrum(r.value[0]);
+    return r;
+  }
+
+  MicrofacetDistribution distribution_;
+  MultipleRefraction multiple_refraction_;
+  Spectrum eta_;
+  bool multiple_, varies_;
+  int choosing_;  ///< how many of the path's wavelengths may choose the direction
+};
+
+}  // namespace etendue

@@ -1,0 +1,28 @@
+#pragma once
+// The members by which shaders are told how rough a microfacet surface is.
+
+#include "components/shaders/scalar_map.h"
+#include "microfacet.h"
+
+namespace etendue {
+
+/// The distribution at a point; `roughness_y` may be null, and is then as `roughness`.
+inline MicrofacetDistribution distribution_at(MicrofacetDistribution::Kind kind, const ObjectMap& roughness,
+                                              const ObjectMap* roughness_y, const SurfacePoint& p) {
+  const float x = roughness.scalar(p);
+  return {kind, x, roughness_y ? roughness_y->scalar(p) : x};
+}
+
+/// Throws at the members unless they are maps, or numbers from 0 to 1.
+inline void require_roughness(const Component& owner, const Ref<ObjectMap>& roughness, const Ref<ObjectMap>& roughness_y) {
+  require_scalar(owner, "roughness", roughness);
+  if (roughness_y) require_scalar(owner, "roughness_y", roughness_y);
+}
+
+/// Whether the map is that number everywhere.
+inline bool everywhere(const Ref<ObjectMap>& map, float value) {
+  const Color all = map->constant();
+  return all && !all->varies() && all->at(550, ColorUse::reflectance) == value;
+}
+
+}  // namespace etendue

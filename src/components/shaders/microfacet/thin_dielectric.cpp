@@ -1,0 +1,132 @@
+// ThinDielectric: a pane of glass, so thin that light leaves it where it came in.
+
+#include "components/shaders/fresnel.h"
+#include "components/shaders/reflectance.h"
+#include "etendue/scatter_model.h"
+#include "etendue/transport/medium_stack.h"
+#include "roughness.h"
+
+namespace etendue {
+namespace {
+
+// Inside a slab light goes to and fro: with R the reflectance of one boundary, the same from both sides, and a what is left
+// after one passage, its parts sum to geometric series (Stokes 1862):
+//   R' = R + (1 - R)^2 a^2 R / (1 - a^2 R^2),  T' = (1 - R)^2 a / (1 - a^2 R^2);  T' = (1 - R) / (1 + R) where a = 1.
+// They hold for each polarisation on its own, which all passages keep; unpolarised light is half of each. The slab is thicker
+// than the light's coherence, so intensities add. A passage at the angle of cosine c' inside is 1 / c' times as long as one
+// along the normal: a = color^(1 / c').
+class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
+ public:
+  /// eta: index of the slab over that around it; `passage`: what is left after one passage along the normal.
+  ThinDielectricScatter(const SurfacePoint& p, Spectrum eta, Spectrum passage)
+      : ScatterModel(p, specular_reflection | pass_through),
+        eta_(eta),
+        passage_(passage),
+        clear_(passage.minimum() >= 1),
+        flat_(eta.minimum() == eta.maximum() && passage.minimum() == passage.maximum()) {}
+
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
+  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+
+  bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
+    const Slab slab = slab_at(std::abs(out.z));
+    const float reflected = (which & specular_reflection) ? slab.reflected.average() : 0;
+    const float transmitted = (which & pass_through) ? slab.transmitted.average() : 0;
+    if (!(reflected + transmitted > 0)) return false;
+    const float probability = transmitted > 0 ? reflected / (reflected + transmitted) : 1;
+    if (choice < probability) {
+      s.in = {-out.x, -out.y, out.z};
+      s.value = slab.reflected;
+      s.density = probability;
+      s.lobe = specular_reflection;
+    } else {
+      s.in = -out;
+      s.value = slab.transmitted;
+      s.density = 1 - probability;
+      s.lobe = pass_through;
+    }
+    return true;
+  }
+
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    const Slab slab = slab_at(std::abs(out.z));
+    Spectrum sum;
+    if (which & specular_reflection) sum += slab.reflected;
+    if (which & pass_through) sum += slab.transmitted;
+    return sum;
+  }
+
+ private:
+  struct Slab {
+    Spectrum reflected, transmitted;
+  };
+  Slab slab_at(float cosine) const {
+    Slab slab;
+    for (int i = 0; i < (flat_ ? 1 : spectrum_size); ++i) {
+      float cosine_behind = 0;
+      const PolarizedReflectance r = fresnel_dielectric_polarized(cosine, eta_[i], cosine_behind);
+      const float a = clear_ ? 1 : cosine_behind > 0 ? std::pow(passage_[i], 1 / cosine_behind) : 0;
+      float reflected = 0, transmitted = 0;
+      for (const float R : {r.s, r.p}) {
+        if (R >= 1) {
+          reflected += 0.5f;
+          continue;
+        }
+        const float through = (1 - R) * (1 - R) * a / (1 - a * a * R * R);
+        transmitted += 0.5f * through;
+        reflected += 0.5f * (R + through * a * R);
+      }
+      slab.reflected.set(i, reflected);
+      slab.transmitted.set(i, transmitted);
+    }
+    if (flat_) slab = {Spectrum(slab.reflected[0]), Spectrum(slab.transmitted[0])};
+    return slab;
+  }
+
+  Spectrum eta_, passage_;
+  bool clear_, flat_;
+};
+
+class ThinDielectric final : public Shader {
+ public:
+  static void describe(Description<ThinDielectric>& d) {
+    d.summary(
+         "A thin pane of glass, film of water, ...: it mirrors, and lets light pass straight on, with all reflections inside. "
+         "A single surface stands for the whole pane; colours of interference are left out. Around a closed object it "
+         "bounds the medium that this names as its interior, which has the index of what is around; without one, what is "
+         "around goes on inside.",
+         "Stokes 1862, On the intensity of the light reflected from or transmitted through a pile of plates")
+        .member<&ThinDielectric::ior>("ior", "1", "index of refraction: a number, glass(\"N-BK7\"), or a spectrum")
+        .member<&ThinDielectric::color>("color", "1", "fraction of light left after one passage along the normal");
+  }
+
+  void prepare() override {
+    if (!ior) fail("ior", "an index of refraction is needed");
+    if (ior->imaginary()) fail("ior", "a dielectric's index is real; this one is complex (a metal's)");
+    for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
+      const float n = ior->at(lambda, ColorUse::coefficient);
+      if (!(n > 0 && n < 100))
+        fail("ior", "an index of refraction lies between 0 and 100, and this is " + std::to_string(n) + " at " +
+                        std::to_string(int(lambda)) + " nm");
+    }
+    require_reflectance(*this, "color", color);
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    Spectrum eta = ior->evaluate(w, ColorUse::coefficient);
+    if (const SceneObject* around = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
+      eta = eta / MediumStack::index(around, w);
+    return arena.make<ThinDielectricScatter>(p, eta, reflectance_at(*color, p, w));
+  }
+  Lobes possible_lobes() const override { return specular_reflection | pass_through; }
+  bool transmits() const override { return false; }
+  bool lossless() const override { return everywhere(color, 1); }
+
+  Color ior = flat_spectrum(1.5f);
+  Ref<ObjectMap> color = constant(1.0f);
+};
+
+const Register<ThinDielectric> registered;
+
+}  // namespace
+}  // namespace etendue

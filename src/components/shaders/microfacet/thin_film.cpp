@@ -1,0 +1,166 @@
+// ThinFilm: oil on water, a soap bubble, the coating of a lens, the tarnish on steel.
+
+#include "components/shaders/scalar_map.h"
+#include "etendue/object_map.h"
+#include "etendue/scatter_model.h"
+#include "etendue/transport/medium_stack.h"
+#include "film_interference.h"
+
+namespace etendue {
+namespace {
+
+// A film is thin when it is shorter than the light is coherent: what its two faces reflect adds up in amplitude, and depends
+// on the wavelength. The path's wavelengths are all computed, each for itself; there is no image in RGB to be band-limited
+// as by Belcour & Barla 2017, who give the colours that must come out. Nothing is absorbed between dielectrics, so what is
+// not reflected goes on, refracted as if the film were not there (its faces are parallel: Snell's law holds across it).
+//
+// Whether a path is reflected is drawn with the mean of the reflectances over its wavelengths, not the hero's alone: the
+// hero's may vanish where the others' do not. The weights R_i / mean R are then at most their number.
+class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
+ public:
+  struct Layers {
+    Spectrum outside, film, base, absorbing;  ///< indices; that of the base is base + i absorbing
+    Spectrum thickness;                       ///< in wavelengths
+    bool through = false;                     ///< light goes on into the base
+    bool dispersive = false, single = false;
+  };
+
+  ThinFilmScatter(const SurfacePoint& p, const Layers& layers)
+      : ScatterModel(p, Lobes(specular_reflection | (layers.through ? Lobes(specular_transmission) : no_lobes))),
+        layers_(layers) {}
+
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
+  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+
+  bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
+    const Spectrum reflected = reflectance(out);
+    float reflect_probability = reflected.average();
+    if (!(which & specular_transmission)) reflect_probability = 1;
+    if (!(which & specular_reflection)) reflect_probability = 0;
+    if (choice < reflect_probability) {
+      s.in = {-out.x, -out.y, out.z};
+      s.value = reflected;
+      s.density = reflect_probability;
+      s.lobe = specular_reflection;
+      return true;
+    }
+    const float eta = towards(out), cosine2 = 1 - (1 - out.z * out.z) / (eta * eta);
+    if (!(cosine2 > 0)) return false;  // total reflection of the hero, which alone says where the path would go
+    s.in = {-out.x / eta, -out.y / eta, out.z > 0 ? -std::sqrt(cosine2) : std::sqrt(cosine2)};
+    s.value = Spectrum(1.0f) - reflected;
+    s.density = 1 - reflect_probability;
+    s.lobe = specular_transmission;
+    s.eta = eta;
+    s.dispersive = layers_.dispersive;
+    return s.density > 0;
+  }
+
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    const Spectrum reflected = reflectance(out);
+    Spectrum sum;
+    if (which & specular_reflection) sum += reflected;
+    if (which & specular_transmission) sum += Spectrum(1.0f) - reflected;
+    return sum;
+  }
+
+ private:
+  /// The hero's index behind the film over that in front, seen from `out`.
+  float towards(const Vector3& out) const {
+    const float eta = layers_.base[0] / layers_.outside[0];
+    return out.z > 0 ? eta : 1 / eta;
+  }
+  Spectrum reflectance(const Vector3& out) const {
+    const bool inside = layers_.through && out.z < 0;
+    const float cosine = std::abs(out.z);
+    Spectrum r;
+    for (int i = 0; i < spectrum_size; ++i) {
+      const float before = inside ? layers_.base[i] : layers_.outside[i],
+                  behind = inside ? layers_.outside[i] : layers_.base[i];
+      // Beyond the critical angle of the base all is reflected, exactly.
+      const bool total = layers_.absorbing[i] == 0 && square(before) * (1 - cosine * cosine) >= square(behind);
+      r.set(i, total ? 1
+                     : film_fractions(cosine, before, layers_.film[i], {behind, layers_.absorbing[i]}, layers_.thickness[i])
+                           .reflected);
+      if (layers_.single) return Spectrum(r[0]);
+    }
+    return r;
+  }
+
+  Layers layers_;
+};
+
+class ThinFilm final : public Shader {
+ public:
+  static void describe(Description<ThinFilm>& d) {
+    d.summary(
+         "A transparent film, about as thick as light waves are long, on glass or metal: interference colours. With a base of "
+         "the index of what is around it is a soap film.",
+         "Born & Wolf 1999, Principles of Optics, section 1.6.4; Belcour & Barla 2017, A practical extension to microfacet "
+         "theory for the modeling of varying iridescence")
+        .member<&ThinFilm::thickness>("thickness", "nm", "of the film")
+        .member<&ThinFilm::film_ior>("film_ior", "1", "index of refraction of the film")
+        .member<&ThinFilm::base_ior>("base_ior", "1",
+                                     "index of refraction of what the film lies on; complex for a metal: metal(\"Al\")")
+        .member<&ThinFilm::opaque>("opaque", "",
+                                   "whether light that gets into the base is absorbed there, as by a metal it is");
+  }
+
+  void prepare() override {
+    require_scalar(*this, "thickness", thickness, 0, thickest);
+    check_index("film_ior", film_ior);
+    check_index("base_ior", base_ior);
+    if (film_ior->imaginary())
+      fail("film_ior", "the film is a dielectric: its index is real, and this one is complex (a metal's)");
+    const Color k = base_ior->imaginary();
+    for (float lambda = wavelength_low; k && lambda <= wavelength_high; lambda += 5)
+      if (!(k->at(lambda, ColorUse::coefficient) >= 0 && k->at(lambda, ColorUse::coefficient) < 100))
+        fail("base_ior", "the imaginary part of an index of refraction lies between 0 and 100");
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    ThinFilmScatter::Layers layers;
+    layers.outside = MediumStack::index(p.media && p.object ? p.media->outside_of(*p.object) : nullptr, w);
+    layers.film = film_ior->evaluate(w, ColorUse::coefficient);
+    layers.base = base_ior->evaluate(w, ColorUse::coefficient);
+    if (const Color k = base_ior->imaginary()) layers.absorbing = k->evaluate(w, ColorUse::coefficient);
+    const float nanometres = scalar_at(*thickness, p, 0, thickest);
+    for (int i = 0; i < spectrum_size; ++i) layers.thickness.set(i, nanometres / w[i]);
+    layers.through = through();
+    layers.single = w.single();
+    const Spectrum eta = layers.base / layers.outside;
+    layers.dispersive = eta.minimum() != eta.maximum() && !w.single();
+    return arena.make<ThinFilmScatter>(p, layers);
+  }
+
+  Lobes possible_lobes() const override {
+    return Lobes(specular_reflection | (through() ? Lobes(specular_transmission) : no_lobes));
+  }
+  Spectrum interior_index(const Wavelengths& w) const override {
+    return through() ? base_ior->evaluate(w, ColorUse::coefficient) : Spectrum(1.0f);
+  }
+  bool lossless() const override { return through(); }
+
+  Ref<ObjectMap> thickness = constant(400.0f);
+  Color film_ior = flat_spectrum(1.33f), base_ior = flat_spectrum(1.5f);
+  bool opaque = false;
+
+ private:
+  static constexpr float thickest = 1e5f;  // [nm]; no lamp's light is coherent for longer
+
+  bool through() const { return !opaque && !base_ior->imaginary(); }
+
+  void check_index(const char* member, const Color& index) const {
+    if (!index) fail(member, "an index of refraction is needed");
+    for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
+      const float n = index->at(lambda, ColorUse::coefficient);
+      if (!(n > 0 && n < 100))
+        fail(member, "an index of refraction lies between 0 and 100, and this is " + std::to_string(n) + " at " +
+                         std::to_string(int(lambda)) + " nm");
+    }
+  }
+};
+
+const Register<ThinFilm> registered;
+
+}  // namespace
+}  // namespace etendue

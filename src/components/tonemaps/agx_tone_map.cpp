@@ -1,0 +1,89 @@
+#include "color_matrix.h"
+#include "etendue/describe/color.h"
+#include "etendue/exposed_tone_map.h"
+
+namespace etendue {
+namespace {
+
+// AgX, after T. Sobotka (github.com/sobotka/AgX-S2O3): three steps, in which the components of a colour are bent one by one.
+//  1. The colour is expressed in a space whose primaries lie 1 / (1 - 0.2) times as far from white as the display's. So no
+//     component of a colour that the display can show is zero; of most others none is negative. For sRGB the matrix from one
+//     space to the other is the published "inset" (0.8424, 0.0784, 0.0792; ...).
+//  2. The logarithm to base 2 over middle grey, from -10 to 6.5 stops, becomes x in [0, 1]; a sigmoid of it is the code value
+//     y of a display whose light is y^2.2. It goes from 0 to 1, through 1/2 with the slope a at middle grey, x_0 = 10 / 16.5:
+//       y = 1/2 + s t / (1 + |t|^p)^(1/p),   t = a (x - x_0) / s,
+//     p = 3 below and 3.25 above middle grey. At the distance d of the end from x_0 the second term is 1/2 if
+//       s = a d ((2 a d)^p - 1)^(-1/p).
+//     Sobotka has a = 2. With a = 16.5 ln 2 / (2 * 2.2) = 2.6 the light of the display changes near middle grey by the same
+//     factor as that of the scene (d ln y^2.2 = 2.2 a / (16.5 y) d log2 L): pictures that are not toned down look so.
+//  3. Back from the wide space to the display's, of code values (B. Wrensch, "Minimal AgX implementation", 2023, whose
+//     polynomial is a fit to the sigmoid with a = 2). Without this "outset" middle tones are paler than they were.
+// Because every component is bent by itself, saturated colours go to white as they get brighter, as film's do, instead of
+// stopping at the most saturated colour that there is.
+constexpr double middle_grey = 0.18, lowest_stops = -10, highest_stops = 6.5, widening = 1 / (1 - 0.2), display_power = 2.2;
+
+class Sigmoid {
+ public:
+  explicit Sigmoid(double slope) : slope_(slope), below_(scale(pivot, toe)), above_(scale(1 - pivot, shoulder)) {}
+
+  /// Code value in [0, 1] of a component of light.
+  double operator()(double light) const {
+    if (!(light > 0)) return 0;
+    const double stops = std::clamp(std::log2(light / middle_grey), lowest_stops, highest_stops);
+    const double d = (stops - lowest_stops) / (highest_stops - lowest_stops) - pivot;
+    return std::clamp(0.5 + (d < 0 ? -half(-d, below_, toe) : half(d, above_, shoulder)), 0.0, 1.0);
+  }
+
+  static constexpr double pivot = -lowest_stops / (highest_stops - lowest_stops), toe = 3, shoulder = 3.25;
+
+ private:
+  double half(double d, double s, double power) const {
+    const double t = slope_ * d / s;
+    return s * t / std::pow(1 + std::pow(t, power), 1 / power);
+  }
+  double scale(double d, double power) const { return slope_ * d * std::pow(std::pow(2 * slope_ * d, power) - 1, -1 / power); }
+
+  double slope_, below_, above_;
+};
+
+class AgXToneMap final : public ExposedToneMap {
+  float contrast = 2.6f;
+
+ public:
+  static void describe(Description<AgXToneMap>& d) {
+    d.summary(
+         "A filmic curve over 16.5 stops: middle grey stays, shadows and lights are compressed, and bright saturated colours "
+         "go to white instead of being clipped. Most colours beyond the RGB space are drawn in; hues stay near what they are.",
+         "T. Sobotka, AgX; B. Wrensch 2023, Minimal AgX implementation")
+        // The slope of a straight line from middle grey to white is 1 / (2 * 6.5 / 16.5) = 1.27; an S is steeper.
+        .member<&AgXToneMap::contrast>("contrast", "1",
+                                       "slope of the curve at middle grey: 2 is the original's, which is soft; 2.6 keeps "
+                                       "contrasts there as they are in the scene",
+                                       range(1.3, 10), Effect::retone);
+  }
+
+ protected:
+  void develop(Image& xyz) const override {
+    const RgbSpace& space = rgb_space(color_space);
+    auto primaries = space.primaries;
+    for (auto& p : primaries)
+      for (size_t i = 0; i < 2; ++i) p[i] = space.white[i] + widening * (p[i] - space.white[i]);
+    const RgbSpace wide = make_rgb_space("the wide one of AgX", primaries, space.white);
+    const ColorMatrix outset = space.from_xyz * wide.to_xyz;
+    const Sigmoid sigmoid{double(contrast)};
+    for (size_t i = 0; i + 2 < xyz.values.size(); i += 3) {
+      double* v = &xyz.values[i];
+      ColorTriple c = wide.from_xyz * ColorTriple{v[0], v[1], v[2]};
+      for (double& x : c) x = sigmoid(x);
+      c = outset * c;
+      for (double& x : c) x = std::pow(std::clamp(x, 0.0, 1.0), display_power);
+      c = space.to_xyz * c;
+      std::copy(c.begin(), c.end(), v);
+    }
+  }
+};
+
+static const Register<AgXToneMap> registered;
+
+}  // namespace
+}  // namespace etendue

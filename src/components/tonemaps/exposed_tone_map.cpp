@@ -1,0 +1,114 @@
+#include "etendue/exposed_tone_map.h"
+
+#include <fmt/format.h>
+
+#include "luminance.h"
+
+namespace etendue {
+namespace {
+
+// The automatic exposure makes the mean logarithm of luminance a middle grey, as a light meter does, but for three things.
+//
+// What is dark. Lit things before a background that is almost black should be as bright as before one that is not. Each
+// pixel counts by
+//   w = 1 / (1 + (F / L)^2),   F = 2^-7 L_p,
+// where L_p is the luminance that `percentile` percent of the lit pixels do not exceed: what is far below F does not count,
+// and none of this jumps when a pixel changes a little.
+//
+// What is bright. What exceeds the luminance that `percentile` percent by weight do not exceed counts as that: lamps, their
+// mirror images and fireflies light a scene and are not what is lit.
+//
+// What is bright or dark by nature. Snow should not become grey. Reinhard (2003, Parameter estimation for photographic tone
+// reproduction, equation 4) shifts the key by where the mean lies between the darkest and the brightest:
+//   key = key_0 4^f,   f = (2 log L_mean - log L_low - log L_high) / (log L_high - log L_low).
+// Instead of the minimum and the maximum, L_low and L_high are here the mean logarithms of the darkest and of the brightest
+// tenth by weight, so that single pixels do not decide.
+//
+// key_0 = 0.5^2.2 = 0.22: half the code values of a display.
+constexpr double floor_below = 0x1p-7, tenth = 0.1;
+const double key_light = std::pow(0.5, 2.2);
+
+/// A pixel's share of all weight, and the binary logarithm of its luminance.
+struct Metered {
+  double logarithm, share;
+};
+
+/// The mean over the ranks [from, to] of logarithms in increasing order, where shares sum to 1.
+double mean_between(const std::vector<Metered>& all, double from, double to) {
+  double below = 0, sum = 0, share = 0;
+  for (const Metered& m : all) {
+    const double inside = std::min(below + m.share, to) - std::max(below, from);
+    if (inside > 0) {
+      sum += inside * m.logarithm;
+      share += inside;
+    }
+    below += m.share;
+  }
+  return share > 0 ? sum / share : all.back().logarithm;
+}
+
+double automatic_factor(const Image& xyz, double percentile) {
+  std::vector<double> luminances = positive_luminances(xyz);
+  if (luminances.empty()) return 1;
+  const double floor = floor_below * percentile_of(luminances, percentile);
+  std::sort(luminances.begin(), luminances.end());
+  std::vector<Metered> all;
+  all.reserve(luminances.size());
+  double total = 0;
+  for (const double l : luminances) {
+    const double ratio = floor / l, weight = 1 / (1 + ratio * ratio);
+    total += weight;
+    all.push_back({std::log2(l), weight});
+  }
+  double mean = 0, share = 0, most = all.back().logarithm;
+  for (Metered& m : all) {
+    if (share < percentile / 100) most = m.logarithm;
+    m.share /= total;
+    m.logarithm = std::min(m.logarithm, most);
+    mean += m.share * m.logarithm;
+    share += m.share;
+  }
+  const double low = mean_between(all, 0, tenth), high = mean_between(all, 1 - tenth, 1);
+  const double f = high - low > 1e-6 ? std::clamp((2 * mean - low - high) / (high - low), -1.0, 1.0) : 0;
+  return key_light * std::exp2(2 * f - mean);
+}
+
+}  // namespace
+
+void ExposedToneMap::describe(Description<ExposedToneMap>& d) {
+  d.summary(
+       "Tone maps that begin with an exposure, as a camera does: the picture is multiplied so that middle grey is 0.18. What "
+       "was found automatically is written into the file as 'exposure'. Pieces of one picture and pictures of a film each "
+       "find their own: give them one that is fixed.")
+      .member<&ExposedToneMap::exposure>("exposure", "",
+                                         "automatic: from the lit pixels' mean logarithm of luminance; lamps, fireflies and "
+                                         "a black background change it little. fixed: as stops say",
+                                         choices("automatic", "fixed"), Effect::retone)
+      .member<&ExposedToneMap::stops>("stops", "1",
+                                      "each doubles the light: added to what is automatic, or alone if fixed (at 0, "
+                                      "luminance 1 stays 1)",
+                                      range(-64, 64), Effect::retone)
+      .member<&ExposedToneMap::percentile>("percentile", "1",
+                                           "of automatic exposure: percentage of the pixels with light that lamps and "
+                                           "highlights leave; those count as the brightest of the rest, and what is far "
+                                           "darker than it does not count",
+                                           Range{0, 100, true}, Effect::retone);
+}
+
+static const Register<ExposedToneMap> registered;
+
+double ExposedToneMap::exposure_factor(const Image& xyz) const {
+  const double found = exposure == Exposure::automatic ? automatic_factor(xyz, double(percentile)) : 1;
+  return std::clamp(found * std::exp2(double(stops)), 0x1p-300, 0x1p300);
+}
+
+void ExposedToneMap::map(Image& xyz) const {
+  constexpr double most = 1e30;
+  const double factor = exposure_factor(xyz);
+  for (double& v : xyz.values) v = std::isnan(v) ? 0 : std::clamp(v * factor, -most, most);
+  xyz.metadata.erase("exposure");
+  if (exposure == Exposure::automatic) xyz.metadata["exposure"] = fmt::format("{:.2f} stops", std::log2(factor));
+  develop(xyz);
+}
+
+}  // namespace etendue

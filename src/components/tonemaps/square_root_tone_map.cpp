@@ -1,0 +1,28 @@
+#include "etendue/tone_map.h"
+#include "luminance.h"
+
+namespace etendue {
+namespace {
+
+class SquareRootToneMap final : public ToneMap {
+  float percentile = 100;
+
+ public:
+  static void describe(Description<SquareRootToneMap>& d) {
+    d.summary(
+         "The square root of the luminance relative to white, chromaticities kept: brings up dark places. The result is "
+         "light, still to be encoded; to let the root itself stand for the encoding, set transfer to linear.")
+        .member<&SquareRootToneMap::percentile>("percentile", "1", "percentage of the pixels with light that stay below white",
+                                                Range{0, 100, true}, Effect::retone);
+  }
+
+ protected:
+  void map(Image& xyz) const override {
+    map_luminance(xyz, white_luminance(xyz, double(percentile)), [](double x) { return std::sqrt(x); });
+  }
+};
+
+static const Register<SquareRootToneMap> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,129 @@
+#include "etendue/describe/component.h"
+
+#include <cstdio>
+#include <mutex>
+#include <set>
+#include <unordered_set>
+
+#include "etendue/describe/registry.h"
+#include "expansion.h"
+#include "guard.h"
+
+namespace etendue {
+
+Component::~Component() = default;
+
+const ClassInfo& Component::class_info() const {
+  const ClassInfo* info = Registry::instance().find(std::type_index(typeid(*this)));
+  if (!info) throw Error(std::string("a component of an unregistered class (") + typeid(*this).name() + ")");
+  return *info;
+}
+
+Location Component::location_of(std::string_view member) const {
+  if (!origin) return {};
+  for (const auto& [name, place] : origin->members)
+    if (name == member) return place;
+  return origin->location;
+}
+
+void Component::fail(std::string_view member, const std::string& message) const {
+  std::string who = class_info().name;
+  if (!member.empty()) who += "." + std::string(member);
+  throw Error(who + ": " + message, location_of(member));
+}
+
+void prepare_tree(Component& root) {
+  // Depth-first with a stack of its own: nothing here needs more room for a longer chain.
+  struct Step {
+    Component* component;
+    std::vector<Component*> rest;
+  };
+  std::unordered_set<const Component*> seen;
+  std::vector<Step> way;
+  Expansion expansion;
+  const auto visit = [&](Component& c) {
+    if (seen.insert(&c).second) way.push_back({&c, components_of(c)});
+  };
+  root.before_prepare();
+  visit(root);
+  while (!way.empty()) {
+    Step& step = way.back();
+    if (!step.rest.empty()) {
+      Component* next = step.rest.back();
+      step.rest.pop_back();
+      visit(*next);
+      continue;
+    }
+    Component& c = *step.component;
+    way.pop_back();
+    expansion.check(c);
+    try {
+      c.prepare();
+    } catch (...) {
+      // Helpers that know nothing of components throw without a place; the component's own is the nearest.
+      blame(c, "preparing");
+    }
+  }
+}
+
+void warn(const std::string& message, Location at) {
+  static std::mutex mutex;
+  static std::set<std::string> said;
+  const std::lock_guard lock(mutex);
+  std::string text = at.known() ? std::string(at.file) + ":" : "";
+  if (at.line > 0) text += std::to_string(at.line) + ":" + std::to_string(at.column) + ":";
+  if (!text.empty()) text += " ";
+  text += "warning: " + message + "\n";
+  if (said.insert(text).second) std::fputs(text.c_str(), stderr);
+}
+
+const char* intern(const std::string& text) {
+  static std::mutex mutex;
+  static auto* all = new std::set<std::string>;  // never destroyed: locations outlive everything
+  const std::lock_guard lock(mutex);
+  return all->insert(text).first->c_str();
+}
+
+namespace {
+
+/// Insertions, deletions, replacements and exchanges of neighbours that turn a into b.
+size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
+  for (size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (size_t i = 1; i <= a.size(); ++i)
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const bool same = std::tolower(a[i - 1]) == std::tolower(b[j - 1]);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + !same});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+std::string small_letters(std::string text) {
+  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+}  // namespace
+
+std::string suggestion(const std::string& given, const std::vector<std::string>& known) {
+  if (given.size() > 100) return {};
+  const std::string* best = nullptr;
+  const size_t most = std::max<size_t>(1, given.size() / 3);
+  size_t best_rank = 1000;
+  for (const std::string& name : known) {
+    if (name.size() > 100) continue;
+    const size_t distance = edit_distance(given, name);
+    size_t rank = distance <= most ? distance : 1000;
+    // Else a beginning, as "Path" of "PathTracer", or a part, as "depth" of "max_depth", or a whole with something about it.
+    const std::string a = small_letters(name), b = small_letters(given);
+    const std::string &longer = a.size() > b.size() ? a : b, &shorter = a.size() > b.size() ? b : a;
+    if (shorter.size() >= 3 && longer.starts_with(shorter)) rank = std::min<size_t>(rank, 2);
+    if (shorter.size() >= 4 && longer.find(shorter) != std::string::npos) rank = std::min<size_t>(rank, 100);
+    if (rank < best_rank) best_rank = rank, best = &name;
+  }
+  return best ? " (did you mean '" + *best + "'?)" : std::string();
+}
+
+}  // namespace etendue

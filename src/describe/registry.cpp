@@ -1,0 +1,328 @@
+#include "etendue/describe/registry.h"
+
+#include <cxxabi.h>
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+#include "etendue/describe/description.h"
+#include "files/input_files.h"
+#include "guard.h"
+#include "plugin.h"
+#include "words.h"
+
+namespace etendue {
+
+namespace {
+// Zero before any constructor runs, so that nodes can enlist in any order.
+constinit RegistrationNode* pending = nullptr;
+}  // namespace
+
+void enlist(RegistrationNode& node) noexcept {
+  node.next = pending;
+  pending = &node;
+}
+
+RegistrationNode* take_pending() { return std::exchange(pending, nullptr); }
+
+std::string detail::bare_class_name(const std::type_info& type) {
+  int status = 0;
+  const std::unique_ptr<char, void (*)(void*)> text(abi::__cxa_demangle(type.name(), nullptr, nullptr, &status), std::free);
+  std::string full = status == 0 ? text.get() : type.name();
+  const size_t last = full.rfind("::");
+  return last == std::string::npos ? full : full.substr(last + 2);
+}
+
+std::string_view name(Effect e) {
+  constexpr std::array<std::string_view, 3> names = {"retone", "rerender", "rebuild"};
+  return names[size_t(e)];
+}
+
+std::string_view name(Kind k) {
+  constexpr std::array<std::string_view, 13> names = {"boolean", "integer",   "number",   "string", "file",
+                                                      "choice",  "vector2",   "vector3",  "point3", "normal3",
+                                                      "color",   "transform", "component"};
+  return names[size_t(k)];
+}
+
+std::string Range::text() const {
+  const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
+  if (has_low && has_high)
+    return open_low ? fmt::format("more than {:.12g} and at most {:.12g}", low, high)
+                    : fmt::format("from {:.12g} to {:.12g}", low, high);
+  if (has_low) return (open_low ? "more than " : "at least ") + fmt::format("{:.12g}", low);
+  if (has_high) return fmt::format("at most {:.12g}", high);
+  return "any number";
+}
+
+bool ClassInfo::is_a(const ClassInfo& ancestor) const {
+  for (const ClassInfo* c = this; c; c = c->parent)
+    if (c == &ancestor) return true;
+  return false;
+}
+
+const Member* ClassInfo::find(std::string_view member) const {
+  for (const Member& m : members)
+    if (m.name == member) return &m;
+  return nullptr;
+}
+
+struct Registry::State {
+  std::recursive_mutex mutex;
+  std::map<std::string, std::unique_ptr<ClassInfo>, std::less<>> by_name;
+  std::unordered_map<std::type_index, const ClassInfo*> by_type;
+  std::map<std::string, void*> plugins;
+  std::map<std::string, std::string> refused;  // plugins and the reason: opened once more, they would enlist nothing
+  std::string provider;                        // of what is adopted now
+};
+
+Registry::Registry() : s(new State) {}
+
+Registry& Registry::instance() {
+  static Registry* registry = new Registry;  // never destroyed: components of plugins may outlive main
+  return *registry;
+}
+
+namespace {
+
+/// What is wrong with a description; empty when nothing is.
+std::string fault(const ClassInfo& info) {
+  if (info.summary.empty()) return "has no summary";
+  for (size_t i = 0; i < info.members.size(); ++i) {
+    const Member& m = info.members[i];
+    if (m.text.empty()) return "member '" + m.name + "' is not documented";
+    const bool number = m.kind == Kind::number || m.kind == Kind::vector2 || m.kind == Kind::vector3 || m.kind == Kind::point3;
+    if (number && m.unit.empty()) return "member '" + m.name + "' has no unit";
+    if (m.kind == Kind::choice && m.choices.empty()) return "member '" + m.name + "' does not name its choices";
+    for (size_t k = 0; k < i; ++k)
+      if (info.members[k].name == m.name) return "member '" + m.name + "' is described twice";
+  }
+  if (!info.literal.empty() && !info.find(info.literal)) return "has no member '" + info.literal + "' to stand for it";
+  return {};
+}
+
+}  // namespace
+
+void Registry::adopt() {
+  if (!pending) return;
+  const std::lock_guard lock(s->mutex);
+  std::unordered_map<std::type_index, RegistrationNode*> waiting;
+  std::vector<ClassInfo*> added;
+  std::string faults;
+  const auto defined_twice = [&](const std::string& name, const std::string& first_provider) {
+    const auto where = [](const std::string& provider) {
+      return provider.empty() ? std::string("this program") : "'" + provider + "'";
+    };
+    faults += first_provider == s->provider
+                  ? fmt::format("\n  {}: {} defines this class twice", name, where(s->provider))
+                  : fmt::format("\n  {}: there already is a class of this name: both {} and {} define it", name,
+                                where(first_provider), where(s->provider));
+  };
+  for (RegistrationNode* n = take_pending(); n; n = n->next) {
+    if (const auto known = s->by_type.find(n->type); known != s->by_type.end())
+      defined_twice(known->second->name, known->second->provider);
+    else if (!waiting.try_emplace(n->type, n).second)
+      defined_twice(detail::bare_class_name(n->type), s->provider);
+  }
+
+  // Parents before children: a class begins with its parent's members.
+  const std::function<const ClassInfo*(const std::type_info&)> take = [&](const std::type_info& type) -> const ClassInfo* {
+    if (const auto known = s->by_type.find(type); known != s->by_type.end()) return known->second;
+    const auto node = waiting.find(type);
+    if (node == waiting.end()) return nullptr;
+    auto info = std::make_unique<ClassInfo>();
+    info->name = detail::bare_class_name(type);
+    info->type = type;
+    info->provider = s->provider;
+    info->create = node->second->create;
+    if (node->second->parent != typeid(void)) {
+      info->parent = take(node->second->parent);
+      if (info->parent)
+        info->members = info->parent->members;
+      else if (node->second->parent != typeid(Component))
+        faults += fmt::format("\n  {}: its parent class {} is not registered", info->name,
+                              detail::bare_class_name(node->second->parent));
+    }
+    try {
+      node->second->describe(*info);
+    } catch (...) {
+      faults += fmt::format("\n  {}: describe() failed: {}", info->name, thrown_text());
+      return nullptr;
+    }
+    if (const std::string wrong = fault(*info); !wrong.empty()) faults += "\n  " + info->name + ": " + wrong;
+    ClassInfo* raw = info.get();
+    if (!s->by_name.try_emplace(info->name, std::move(info)).second) {
+      defined_twice(detail::bare_class_name(type), s->by_name.find(detail::bare_class_name(type))->second->provider);
+      return nullptr;
+    }
+    s->by_type[type] = raw;
+    added.push_back(raw);
+    return raw;
+  };
+  for (const auto& [type, node] : waiting) take(node->type);
+
+  // Defaults come from a default-constructed object; such objects may hold others of the classes just added.
+  for (ClassInfo* info : added) {
+    if (info->abstract() || !faults.empty()) continue;
+    try {
+      const Ref<Component> object = etendue::create(*info);
+      for (Member& m : info->members) {
+        m.default_value = m.get(*object, m);
+        if (m.required) continue;
+        try {
+          const Ref<Component> scratch = etendue::create(*info);
+          if (m.kind != Kind::component) m.store(*scratch, m, m.default_value);
+        } catch (const Error& e) {
+          faults += fmt::format("\n  {}.{}: its default is not allowed: {}", info->name, m.name, e.what());
+        }
+      }
+    } catch (...) {
+      faults += fmt::format("\n  {}", thrown_text());
+    }
+  }
+  if (faults.empty()) return;
+  for (const ClassInfo* info : added) {
+    s->by_type.erase(info->type);
+    s->by_name.erase(info->name);
+  }
+  throw Error("classes that cannot be used:" + faults);
+}
+
+const ClassInfo* Registry::find(std::string_view name) const {
+  const_cast<Registry*>(this)->adopt();
+  const std::lock_guard lock(s->mutex);
+  const auto found = s->by_name.find(name);
+  return found == s->by_name.end() ? nullptr : found->second.get();
+}
+
+const ClassInfo* Registry::find(std::type_index type) const {
+  const_cast<Registry*>(this)->adopt();
+  const std::lock_guard lock(s->mutex);
+  const auto found = s->by_type.find(type);
+  return found == s->by_type.end() ? nullptr : found->second;
+}
+
+std::vector<const ClassInfo*> Registry::all() const {
+  const_cast<Registry*>(this)->adopt();
+  const std::lock_guard lock(s->mutex);
+  std::vector<const ClassInfo*> list;
+  for (const auto& [name, info] : s->by_name) list.push_back(info.get());
+  return list;
+}
+
+std::vector<const ClassInfo*> Registry::subclasses(const ClassInfo& of) const {
+  std::vector<const ClassInfo*> list = all();
+  std::erase_if(list, [&](const ClassInfo* c) { return c->abstract() || !c->is_a(of); });
+  return list;
+}
+
+Ref<Component> Registry::create(std::string_view name) const {
+  const ClassInfo* info = find(name);
+  std::vector<std::string> known;
+  if (info && info->abstract())
+    for (const ClassInfo* c : subclasses(*info)) known.push_back(c->name);
+  if (!info) throw Error(fmt::format("there is no class '{}'{}", name, meant_class(std::string(name))));
+  if (info->abstract())
+    throw Error(fmt::format("'{}' is an interface; write one of its classes: {}", name, fmt::join(known, ", ")));
+  return etendue::create(*info);
+}
+
+std::vector<std::string> Registry::plugins() const {
+  const std::lock_guard lock(s->mutex);
+  std::vector<std::string> list;
+  for (const auto& [path, handle] : s->plugins) list.push_back(path);
+  return list;
+}
+
+void Registry::load_plugin(const std::string& path) {
+  adopt();
+  const std::string file = find_plugin(path);
+  note_input(file);
+  {
+    const std::lock_guard lock(s->mutex);
+    if (s->plugins.contains(file)) return;
+    if (const auto known = s->refused.find(file); known != s->refused.end()) throw Error(known->second);
+  }
+  const auto named = [&] { return Error("plugin '" + file + "': " + thrown_text()); };
+  try {
+    // Without the lock: the child process could not take it once more.
+    check_plugin(file, [&] {
+      s->provider = file;
+      adopt();
+    });
+  } catch (...) {
+    throw named();
+  }
+  const std::lock_guard lock(s->mutex);
+  s->provider = file;
+  try {
+    s->plugins[file] = open_plugin(file);  // its static nodes enlist themselves; nothing of them is called yet
+    adopt();
+    s->provider.clear();
+  } catch (...) {
+    s->provider.clear();
+    s->plugins.erase(file);
+    take_pending();
+    const Error reason = named();
+    s->refused[file] = reason.what();
+    throw reason;
+  }
+}
+
+Value get(const Component& c, std::string_view member) {
+  const ClassInfo& info = c.class_info();
+  const Member* m = info.find(member);
+  if (!m) throw Error(no_member(info, std::string(member)));
+  return m->get(c, *m);
+}
+
+void set(Component& c, std::string_view member, const Value& value) {
+  const ClassInfo& info = c.class_info();
+  const Member* m = info.find(member);
+  if (!m) throw Error(no_member(info, std::string(member)), value.location);
+  try {
+    m->store(c, *m, value);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}.{} {}", info.name, member, e.what()), e.location.known() ? e.location : value.location);
+  }
+}
+
+namespace {
+
+using Copies = std::unordered_map<const Component*, Ref<Component>>;
+
+Ref<Component> copy_once(const Component& c, Copies& made);
+
+Value copy_value(const Value& v, Copies& made) {
+  Value out = v;
+  if (const auto* c = v.as<Ref<Component>>()) {
+    if (*c) out.data = copy_once(**c, made);
+  } else if (const auto* list = v.as<Value::List>()) {
+    Value::List copies;
+    for (const Value& item : *list) copies.push_back(copy_value(item, made));
+    out.data = std::move(copies);
+  }
+  return out;
+}
+
+Ref<Component> copy_once(const Component& c, Copies& made) {
+  if (const auto known = made.find(&c); known != made.end()) return known->second;
+  const ClassInfo& info = c.class_info();
+  Ref<Component> out = create(info);
+  made[&c] = out;
+  for (const Member& m : info.members) m.store(*out, m, copy_value(m.get(c, m), made));
+  if (c.origin) out->origin = std::make_unique<Component::Origin>(*c.origin);
+  return out;
+}
+
+}  // namespace
+
+Ref<Component> copy(const Component& c) {
+  Copies made;
+  return copy_once(c, made);
+}
+
+}  // namespace etendue

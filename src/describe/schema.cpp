@@ -1,0 +1,229 @@
+// Classes as JSON, and the JSON Schema of everything that can be written.
+
+#include <cmath>
+
+#include "etendue/describe/reflection.h"
+#include "reflection_values.h"
+
+namespace etendue {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json member_json(const Member& member) {
+  Json json;
+  json["name"] = member.name;
+  json["type"] = std::string(name(member.kind));
+  if (member.list) json["list"] = true;
+  if (member.kind == Kind::component) json["class"] = member.component_class;
+  if (!unit_text(member).empty()) json["unit"] = member.unit;
+  if (member.required) json["required"] = true;
+  json["default"] = value_json(member.default_value, member);
+  if (member.range) {
+    if (std::isfinite(member.range->low)) json["range"][member.range->open_low ? "more_than" : "low"] = member.range->low;
+    if (std::isfinite(member.range->high)) json["range"]["high"] = member.range->high;
+  }
+  if (!member.choices.empty()) json["choices"] = member.choices;
+  json["effect"] = std::string(name(member.effect));
+  if (member.owner) json["declared_by"] = member.owner->name;
+  json["text"] = member.text;
+  return json;
+}
+
+Json as_json(const ClassInfo& info) {
+  Json json;
+  json["name"] = info.name;
+  if (const ClassInfo* parent = parent_of(info)) json["parent"] = parent->name;
+  json["abstract"] = info.abstract();
+  json["summary"] = info.summary;
+  if (!info.source.empty()) json["source"] = info.source;
+  if (!info.provider.empty()) json["provider"] = info.provider;
+  if (!info.literal.empty()) json["literal"] = info.literal;
+  json["members"] = Json::array();
+  for (const Member& member : info.members) json["members"].push_back(member_json(member));
+  json["subclasses"] = Json::array();
+  for (const ClassInfo* other : makeable(info))
+    if (other != &info) json["subclasses"].push_back(other->name);
+  return json;
+}
+
+// ---- schema ---------------------------------------------------------------------------------------------------------
+
+Json reference(const std::string& definition) { return {{"$ref", "#/$defs/" + definition}}; }
+
+Json either(const Json& one, const Json& other) { return {{"anyOf", Json::array({one, other})}}; }
+
+/// The value itself.
+Json plain_item_schema(const Member& member) {
+  Json json;
+  switch (member.kind) {
+    case Kind::boolean: json["type"] = "boolean"; break;
+    case Kind::integer:
+    case Kind::number:
+      json["type"] = member.kind == Kind::integer ? "integer" : "number";
+      if (member.range) {
+        if (std::isfinite(member.range->low)) json[member.range->open_low ? "exclusiveMinimum" : "minimum"] = member.range->low;
+        if (std::isfinite(member.range->high)) json["maximum"] = member.range->high;
+      }
+      break;
+    case Kind::string:
+      json["type"] = "string";
+      if (!member.choices.empty()) json["enum"] = member.choices;
+      break;
+    case Kind::file: json["type"] = "string"; break;
+    case Kind::choice: json["enum"] = member.choices; break;
+    case Kind::vector2:
+    case Kind::vector3:
+    case Kind::point3:
+    case Kind::normal3: {
+      const int size = member.kind == Kind::vector2 ? 2 : 3;
+      json = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", size}, {"maxItems", size}};
+      break;
+    }
+    case Kind::color: return reference("color");
+    case Kind::transform: return reference("transform");
+    case Kind::component: return reference(member.component_class + ".any");
+  }
+  return json;
+}
+
+/// What fits the member as a single value, its list left aside: the value, or an expression that gives it, where a string is
+/// not the value itself.
+Json item_schema(const Member& member) {
+  const Json json = plain_item_schema(member);
+  switch (member.kind) {
+    case Kind::string:
+    case Kind::file:
+    case Kind::color:
+    case Kind::transform:
+    case Kind::component: return json;  // a text, or expressions are among what is referred to
+    case Kind::choice: return either(json, {{"type", "string"}, {"description", "The name of a param."}});
+    default: return either(json, reference("expression"));
+  }
+}
+
+/// Rows may also be written flat.
+bool is_row(const Member& member) {
+  return member.kind == Kind::vector2 || member.kind == Kind::vector3 || member.kind == Kind::point3 ||
+         member.kind == Kind::normal3;
+}
+
+Json member_schema(const Member& member) {
+  Json json = item_schema(member);
+  if (member.list) {
+    json = {{"type", "array"}, {"items", is_row(member) ? either(json, {{"type", "number"}}) : json}};
+    if (member.kind != Kind::string && member.kind != Kind::file) json = either(json, reference("expression"));
+  } else if (member.kind == Kind::component || member.kind == Kind::color) {
+    json = either(json, {{"type", "null"}});
+  }
+  json["description"] = member.text;
+  if (!unit_text(member).empty()) json["x-unit"] = member.unit;
+  json["x-effect"] = std::string(name(member.effect));
+  if (!member.required) json["default"] = value_json(member.default_value, member);
+  return json;
+}
+
+Json class_schema(const ClassInfo& info) {
+  Json json;
+  json["type"] = "object";
+  json["description"] = info.source.empty() ? info.summary : info.summary + " Source: " + info.source;
+  json["properties"]["class"] = {{"const", info.name}};
+  Json required = Json::array({"class"});
+  for (const Member& member : info.members) {
+    json["properties"][member.name] = member_schema(member);
+    if (member.required) required.push_back(member.name);
+  }
+  json["required"] = required;
+  json["additionalProperties"] = false;
+  return json;
+}
+
+/// Anything that may stand where the class is expected.
+Json any_schema(const ClassInfo& info) {
+  Json any = Json::array();
+  for (const ClassInfo* other : makeable(info)) {
+    any.push_back(reference(other->name));
+    // A plain value becomes an object of a class that says so.
+    if (other->literal.empty()) continue;
+    if (const Member* member = other->find(other->literal)) any.push_back(member_schema(*member));
+  }
+  if (any.empty()) return {{"not", Json::object()}, {"description", "No class of this interface is known."}};
+  any.push_back(reference("expression"));
+  return {{"description", info.summary}, {"anyOf", any}};
+}
+
+/// A Job, and what stands beside it in a file.
+Json root_schema() {
+  const ClassInfo* job = Registry::instance().find("Job");
+  Json root = job ? class_schema(*job) : Json{{"type", "object"}};
+  root.erase("description");
+  const Json texts = {{"type", "array"}, {"items", {{"type", "string"}}}};
+  const auto table = [](const std::string& description) {
+    Json anything = Json::array(
+        {reference("expression"), {{"type", "number"}}, {{"type", "boolean"}}, {{"type", "array"}}, {{"type", "null"}}});
+    for (const ClassInfo* info : described_classes())
+      if (!info->abstract()) anything.push_back(reference(info->name));
+    return Json{{"type", "object"},
+                {"description", description},
+                {"propertyNames", {{"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}},
+                {"additionalProperties", {{"anyOf", anything}}}};
+  };
+  Json& properties = root["properties"];
+  properties["$schema"] = {{"type", "string"}};
+  properties["$include"] = texts;
+  properties["$include"]["description"] = "Descriptions whose names become known here.";
+  properties["$plugin"] = texts;
+  properties["$plugin"]["description"] = "Shared libraries whose classes become known here.";
+  properties["$params"] = table("Names that -D replaces.");
+  properties["$names"] = table("Names for components and values, shared by reference wherever an expression says the name.");
+  return root;
+}
+
+}  // namespace
+
+std::string class_json(const ClassInfo& info) { return as_json(info).dump(2); }
+
+std::string classes_json() {
+  Json all = Json::array();
+  for (const ClassInfo* info : described_classes()) all.push_back(as_json(*info));
+  return all.dump(2);
+}
+
+std::string json_schema() {
+  Json definitions;
+  definitions["expression"] = {
+      {"type", "string"},
+      {"minLength", 1},
+      {"description",
+       "An expression of the render description language: a name of \"$names\" or \"$params\", a number with its unit such as "
+       "\"10 cm\", a call such as \"blackbody(2856 K)\", or arithmetic."}};
+  const auto numbers = [](int count) {
+    return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", count}, {"maxItems", count}};
+  };
+  definitions["color"] = {
+      {"description", "A number for all wavelengths, linear sRGB, or an expression such as blackbody(2856 K)."},
+      {"anyOf", Json::array({{{"type", "number"}}, numbers(3), reference("expression")})}};
+  definitions["transform"] = {
+      {"description", "A matrix of 3 rows of 4, row by row, or an expression such as translate(0, 1 m, 0)."},
+      {"anyOf", Json::array({numbers(12), reference("expression")})}};
+  for (const ClassInfo* info : described_classes()) {
+    if (!info->abstract()) definitions[info->name] = class_schema(*info);
+    definitions[info->name + ".any"] = any_schema(*info);
+  }
+  Json schema;
+  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["$id"] = "urn:etendue:scene:" ETENDUE_VERSION;
+  schema["title"] = "Étendue " ETENDUE_VERSION " render description (JSON)";
+  schema["description"] =
+      "A scene as JSON, which etendue check, render, verify and save read from files that end in .json, and which etendue save "
+      "-o "
+      "FILE.json writes. The root is the Job. Numbers without a unit are in the unit of \"x-unit\". What a schema cannot say "
+      "is "
+      "checked when the scene is read: that files are there, names known, and expressions right.";
+  schema.update(root_schema());
+  schema["$defs"] = std::move(definitions);
+  return schema.dump(2);
+}
+
+}  // namespace etendue

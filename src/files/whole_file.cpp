@@ -1,0 +1,131 @@
+#include "whole_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "etendue/core/error.h"
+
+namespace etendue {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
+  throw Error(fmt::format("cannot write '{}': {}", path, reason));
+}
+
+std::string reason(int code) { return std::generic_category().message(code); }
+
+/// 0 or what went wrong.
+int write_all(int descriptor, std::span<const std::span<const std::byte>> pieces) {
+  for (std::span<const std::byte> rest : pieces)
+    while (!rest.empty()) {
+      const ssize_t done = ::write(descriptor, rest.data(), rest.size());
+      if (done < 0 && errno == EINTR) continue;
+      if (done <= 0) return done < 0 ? errno : EIO;
+      rest = rest.subspan(size_t(done));
+    }
+  return 0;
+}
+
+/// Where the bytes go.
+struct Place {
+  std::filesystem::path target;  ///< a link is followed: it stays, and its file is replaced
+  std::filesystem::path folder;
+  bool existed = false;
+  struct stat old{};
+
+  bool plain() const { return !existed || S_ISREG(old.st_mode); }
+  /// The new file, until it is whole.
+  std::string beside() const { return (folder / fmt::format(".{}.part-{}", target.filename().string(), ::getpid())).string(); }
+};
+
+/// Throws when nothing can be written there.
+Place place_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  if (path.empty()) refuse(path, "the file has no name");
+  Place place;
+  std::error_code code;
+  place.target = path;
+  if (fs::exists(place.target, code)) place.target = fs::canonical(place.target, code);
+  if (code) refuse(path, code.message());
+  place.existed = ::stat(place.target.c_str(), &place.old) == 0;
+  if (!place.target.has_filename() || (place.existed && S_ISDIR(place.old.st_mode))) refuse(path, "it is a folder");
+  if (place.existed && ::access(place.target.c_str(), W_OK) != 0) refuse(path, reason(errno));
+  place.folder = place.target.has_parent_path() ? place.target.parent_path() : fs::path(".");
+  if (place.plain() && !fs::exists(place.folder, code))
+    refuse(path, fmt::format("there is no folder '{}'", place.folder.string()));
+  return place;
+}
+
+int open_beside(const Place& place, const std::string& path) {
+  const int descriptor = ::open(place.beside().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) refuse(path, reason(errno));
+  return descriptor;
+}
+
+}  // namespace
+
+void require_writable(const std::string& path) {
+  const Place place = place_of(path);
+  int failure = 0;
+  if (place.plain()) {
+    const int descriptor = open_beside(place, path);
+    ::unlink(place.beside().c_str());
+    // A block is more than what file systems find room for beside a file's name.
+    const std::vector<std::byte> block(4096);
+    const std::span<const std::byte> piece(block);
+    failure = write_all(descriptor, std::span(&piece, 1));
+    if (::close(descriptor) != 0 && !failure) failure = errno;
+  } else if (S_ISCHR(place.old.st_mode) || S_ISBLK(place.old.st_mode)) {  // of the others opening may wait, or be noticed
+    const int descriptor = ::open(place.target.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor < 0) refuse(path, reason(errno));
+    if (::write(descriptor, "", 0) < 0 && errno != EAGAIN) failure = errno;  // no bytes, but a full device says so
+    ::close(descriptor);
+  }
+  if (failure) refuse(path, reason(failure));
+}
+
+void write_whole_file(const std::string& path, const void* data, size_t size) {
+  const std::span<const std::byte> piece(static_cast<const std::byte*>(data), size);
+  write_whole_file(path, std::span(&piece, 1));
+}
+
+void write_whole_file(const std::string& path, const std::string& text) { write_whole_file(path, text.data(), text.size()); }
+
+void write_whole_file(const std::string& path, std::span<const std::span<const std::byte>> pieces) {
+  const Place place = place_of(path);
+  if (!place.plain()) {
+    const int descriptor = ::open(place.target.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0) refuse(path, reason(errno));
+    const int failure = write_all(descriptor, pieces);
+    ::close(descriptor);
+    if (failure) refuse(path, reason(failure));
+    return;
+  }
+
+  const std::string beside = place.beside();
+  const int descriptor = open_beside(place, path);
+  int failure = write_all(descriptor, pieces);
+  if (!failure && place.existed && ::fchmod(descriptor, place.old.st_mode & 07777) != 0) failure = errno;
+  if (!failure && ::fsync(descriptor) != 0) failure = errno;
+  if (::close(descriptor) != 0 && !failure) failure = errno;
+  if (!failure && ::rename(beside.c_str(), place.target.c_str()) != 0) failure = errno;
+  if (failure) {
+    ::unlink(beside.c_str());
+    refuse(path, reason(failure));
+  }
+  // The new name itself reaches the disk with its folder; not all file systems can say so, hence no error.
+  const int folder_descriptor = ::open(place.folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder_descriptor >= 0) {
+    ::fsync(folder_descriptor);
+    ::close(folder_descriptor);
+  }
+}
+
+}  // namespace etendue

@@ -1,0 +1,53 @@
+// Image files as linear numbers, and textures of them.
+
+#include "linear_image.h"
+
+#include "etendue/core/error.h"
+#include "etendue/describe/color.h"
+#include "files/regular_file.h"
+#include "image_library.h"
+
+namespace etendue {
+namespace {
+
+/// What `use` makes of the image library, with the file named when it fails.
+template <class Use>
+auto reading(const std::string& path, Use use) {
+  try {
+    return use(image_library());
+  } catch (const Error& e) {
+    throw Error("cannot read '" + path + "': " + e.what());
+  } catch (const std::bad_alloc&) {
+    throw Error("cannot read '" + path + "': " + no_memory_to_read);
+  }
+}
+
+}  // namespace
+
+void check_transfer(const std::string& transfer) {
+  if (transfer == automatic_transfer) return;
+  std::vector<std::string> known = transfer_names();
+  known.push_back(automatic_transfer);
+  if (std::find(known.begin(), known.end(), transfer) == known.end())
+    throw Error("unknown transfer function '" + transfer + "'" + suggestion(transfer, known));
+}
+
+void check_channel(const std::string& path, const std::string& channel) {
+  if (channel.empty()) return;
+  try {
+    image_library().check_channel(path, channel);
+  } catch (const std::bad_alloc&) {
+    throw Error("cannot read '" + path + "': " + no_memory_to_read);
+  }
+}
+
+LinearImage read_linear_image(const std::string& path, const std::string& transfer) {
+  return reading(path, [&](const ImageLibrary& library) { return library.read_linear(path, transfer); });
+}
+
+std::shared_ptr<const ImageTexture> read_texture(const std::string& path, const std::string& transfer,
+                                                 const std::string& channel) {
+  return reading(path, [&](const ImageLibrary& library) { return library.open_texture(path, transfer, channel); });
+}
+
+}  // namespace etendue

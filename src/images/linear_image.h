@@ -1,0 +1,32 @@
+#pragma once
+// Image files as linear numbers: what encodes them is undone before anything filters them.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace etendue {
+
+/// The transfer function a file's numbers are in, when `transfer` is "auto": "srgb" for integers, "linear" for floats.
+inline constexpr const char* automatic_transfer = "auto";
+/// Throws Error with a suggestion for an unknown name.
+void check_transfer(const std::string& transfer);
+
+/// Throws Error for a file that has no such channel, saying which it has. "": all; else the name of a channel ("A", "depth.Z")
+/// or of a layer ("diffuse" for diffuse.R, diffuse.G and diffuse.B). A file that cannot be read at all passes.
+void check_channel(const std::string& path, const std::string& channel);
+
+/// Pixels from top to bottom, three channels interleaved; a grey image has three equal ones, and alpha is left out.
+struct LinearImage {
+  int width = 0, height = 0;
+  std::vector<float> rgb;
+};
+/// Throws Error naming the file and the reason.
+LinearImage read_linear_image(const std::string& path, const std::string& transfer);
+
+class ImageTexture;
+/// For ImageTexture::open, which says what it does.
+std::shared_ptr<const ImageTexture> read_texture(const std::string& path, const std::string& transfer,
+                                                 const std::string& channel);
+
+}  // namespace etendue

@@ -1,0 +1,268 @@
+// What is said about scenes whose picture will be black, and of parts that have no effect; and that nothing is said about sound
+// ones.
+
+#include "app/scene_warnings.h"
+#include "etendue/render/job.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "support/image_file.h"
+#include "support/render_support.h"
+
+namespace etendue::test {
+namespace {
+
+const std::string camera = "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 0], fov: 40 deg }";
+const std::string sky = "Environment { emission: EnvironmentEmission { radiance: 1 } }\n";
+const std::string matt = "shader: Lambertian {}";
+
+std::vector<SceneWarning> said(const std::string& objects, const std::string& from = camera,
+                               const std::string& renderer = "PathTracer { samples: 1 }") {
+  const Ref<Job> job = load_job_text(job_text(renderer, from, 8, objects), "scene.etd");
+  prepare_tree(*job);
+  return scene_warnings(*job);
+}
+
+/// Expects one warning of a kind, which says all of `words`, where `there` begins in the job's text.
+void expect(const std::string& objects, const std::string& kind, const std::vector<std::string>& words,
+            const std::string& there, const std::string& from = camera) {
+  const std::vector<SceneWarning> list = said(objects, from);
+  ASSERT_EQ(list.size(), 1u) << objects << (list.size() > 1 ? "\n" + list[0].text + "\n" + list[1].text : "");
+  EXPECT_EQ(list[0].kind, kind);
+  for (const std::string& word : words)
+    EXPECT_NE(list[0].text.find(word), std::string::npos) << word << " in: " << list[0].text;
+  const std::string text = job_text("PathTracer { samples: 1 }", from, 8, objects);
+  const size_t at = text.find(there), line = text.rfind('\n', at);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(list[0].at.line, std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n') + 1) << list[0].text;
+  EXPECT_EQ(list[0].at.column, int(at - line)) << list[0].text;
+}
+
+TEST(SceneWarnings, SoundScenesAreSilent) {
+  for (const char* object :
+       {"Sphere { shader: Lambertian {} }\n",
+        "Sphere { shader: Dielectric {}, interior: HomogeneousVolume { absorption: 1 } }\n",
+        "Sphere { shader: ThinDielectric {}, interior: HomogeneousVolume { absorption: 1 } }\n",
+        "Sphere { shader: PassThrough {}, interior: HomogeneousVolume { scattering: 1 } }\n",
+        "Sphere { radius: 0.1, emission: DiffuseEmission {} }\n", "Rectangle { shader: ThinDielectric {} }\n",
+        "Rectangle { shader: Lambertian { color: AddMap { first: 0.2, second: 0.3 } }, sides: front }\n",
+        "Sphere { shader: Dielectric {}, priority: 2 }\n", "Point { emission: DiffuseEmission {} }\n"})
+    for (const SceneWarning& w : said(object + sky)) ADD_FAILURE() << object << w.text;
+}
+
+TEST(SceneWarnings, NothingEmits) {
+  const std::vector<SceneWarning> list = said("Sphere { " + matt + " }\n");
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].kind, "dark");
+  EXPECT_TRUE(said("Sphere { " + matt + " }\n", camera, "FeatureRenderer {}").empty());
+  EXPECT_TRUE(said("Sphere {}\n", camera, "AmbientOcclusionRenderer {}").empty());
+}
+
+TEST(SceneWarnings, NoShader) { expect("Sphere {}\n" + sky, "no shader", {"black", "Lambertian"}, "Sphere"); }
+
+TEST(SceneWarnings, ADarkEnvironment) { expect("Environment {}\n" + sky, "dark luminaire", {"no emission"}, "Environment {}"); }
+
+TEST(SceneWarnings, InteriorsThatNothingEnters) {
+  const std::string medium = "interior: HomogeneousVolume { absorption: 1 }";
+  expect("Sphere { " + matt + ", " + medium + " }\n" + sky, "interior", {"Lambertian", "PassThrough"}, "HomogeneousVolume");
+  expect("Sphere { emission: DiffuseEmission {}, " + medium + " }\n" + sky, "interior", {"no shader"}, "HomogeneousVolume");
+  expect("Rectangle { shader: PassThrough {}, " + medium + " }\n" + sky, "interior", {"not closed"}, "HomogeneousVolume");
+  expect("Sphere { shader: Dielectric {}, sides: front, " + medium + " }\n" + sky, "interior", {"sides"}, "HomogeneousVolume");
+}
+
+TEST(SceneWarnings, MembersWithoutEffect) {
+  expect("Sphere { " + matt + ", priority: 3 }\n" + sky, "without effect", {"priority"}, "3 }");
+  expect("Sphere { emission: DiffuseEmission {}, sides: front }\n" + sky, "without effect", {"sides"}, "front");
+  expect("Rectangle { shader: PassThrough {}, sides: front }\n" + sky, "without effect", {"sides"}, "front");
+  expect("Environment { shader: Lambertian {}, emission: EnvironmentEmission {} }\n", "without effect", {"shader"},
+         "Lambertian");
+  expect("Instance { sides: front, scene: BruteForceScene { objects: [ Sphere { " + matt + " } ] } }\n" + sky, "without effect",
+         {"instance", "sides"}, "front");
+  expect("BruteForceScene { shader: Lambertian {}, objects: [ Sphere { " + matt + " } ] }\n" + sky, "without effect",
+         {"nested scene", "shader"}, "Lambertian");
+}
+
+const std::string tetrahedron = "positions: [[0,0,0], [1,0,0], [0,1,0], [0,0,1]], triangles: [[0,2,1], [0,1,3], [0,3,2], ";
+
+TEST(SceneWarnings, GlassThatIsNotClosed) {
+  expect("TriangleMesh { " + tetrahedron + "], shader: Dielectric {} }\n" + sky, "open body", {"3 edges", "ThinDielectric"},
+         "Dielectric");
+  EXPECT_TRUE(said("TriangleMesh { " + tetrahedron + "[1,2,3]], shader: Dielectric {} }\n" + sky).empty());
+  // One triangle the wrong way around: no edge is open, and yet it has no inside.
+  const auto list = said("TriangleMesh { " + tetrahedron + "[1,3,2]], shader: Dielectric {} }\n" + sky);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_NE(list[0].text.find("same way around"), std::string::npos);
+  expect("Disc { shader: Dielectric {} }\n" + sky, "open body", {"not closed"}, "Dielectric");
+}
+
+TEST(SceneWarnings, ImagesWithoutCoordinates) {
+  const ImageFile image("card.exr", 2, 2, std::vector<float>(12, 0.5f));
+  const std::string map = "ImageMap { file: \"" + image.path + "\" }", mesh = "TriangleMesh { " + tetrahedron + "[1,2,3]], ";
+  const std::string shader = "shader: Lambertian { color: ";
+  expect(mesh + shader + map + " } }\n" + sky, "no uv", {"surface coordinates", "PlanarMap"}, "ImageMap");
+  EXPECT_TRUE(said(mesh + shader + "PlanarMap { map: " + map + " } } }\n" + sky).empty());
+  EXPECT_TRUE(said(mesh + "uvs: [[0,0], [1,0], [0,1], [1,1]], " + shader + map + " } }\n" + sky).empty());
+  EXPECT_TRUE(said("Sphere { " + shader + map + " } }\n" + sky).empty());
+}
+
+struct TextFile {
+  std::string path;
+  TextFile(const std::string& name, const std::string& text) : path(testing::TempDir() + name) { std::ofstream(path) << text; }
+  ~TextFile() { std::filesystem::remove(path); }
+};
+
+TEST(SceneWarnings, MaterialsOfFiles) {
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+  const TextFile one("one.obj", "mtllib x.mtl\n" + points + "usemtl wood\nf 1 2 3\nf 2 4 3\n"),
+      two("two.obj", "mtllib x.mtl\n" + points + "usemtl wood\nf 1 2 3\nusemtl dark iron\nf 2 4 3\n");
+  const auto mesh = [](const TextFile& file, const std::string& more) {
+    return "TriangleMesh { file: \"" + file.path + "\"" + more + " }\n";
+  };
+  expect(mesh(two, ", " + matt) + sky, "materials", {"2 materials", "'wood'", "'dark iron'"}, "\"" + two.path);
+  EXPECT_TRUE(said(mesh(one, ", " + matt) + sky).empty());  // one for all is what it has
+  expect(mesh(one, "") + sky, "no shader", {"'wood'", "not read"}, "TriangleMesh");
+}
+
+TEST(SceneWarnings, ColoursOfVertices) {
+  const TextFile ply(
+      "colours.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar "
+      "red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "end_header\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n");
+  const std::string mesh = "TriangleMesh { file: \"" + ply.path + "\", shader: Lambertian { ";
+  expect(mesh + "} }\n" + sky, "vertex colours", {"AttributeMap"}, "\"" + ply.path);
+  EXPECT_TRUE(said(mesh + "color: AttributeMap { name: \"color\" } } }\n" + sky).empty());
+}
+
+TEST(SceneWarnings, WhatTheCameraSees) {
+  expect("Sphere { " + matt + " }\n" + sky, "sees nothing", {"looks from", "'to'"}, "[0, 0, 9]",
+         "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }");
+  EXPECT_TRUE(said(sky, "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }").empty());
+  EXPECT_TRUE(said("Sphere { center: [0, 0, 1000], radius: 0.01, " + matt + " }\n" + sky,
+                   "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }")
+                  .empty());
+}
+
+TEST(SceneWarnings, ACameraInTheDark) {
+  const std::string inside = "PerspectiveCamera { from: [0, 0, 0], to: [0, 0, 1], fov: 40 deg }";
+  expect("Box { size: [2, 2, 2], " + matt + " }\n" + sky, "in the dark", {"Box", "lets no light in"}, "[0, 0, 0]", inside);
+  EXPECT_TRUE(
+      said("Box { size: [2, 2, 2], " + matt + " }\nPoint { position: [0, 0.9, 0], emission: DiffuseEmission {} }\n", inside)
+          .empty());
+  EXPECT_TRUE(said("Box { size: [2, 2, 2], shader: Dielectric {} }\n" + sky, inside).empty());
+  EXPECT_TRUE(said("Sphere { shader: Lambertian {}, emission: DiffuseEmission { sides: back } }\n", inside).empty());
+}
+
+TEST(SceneWarnings, AFewOfAKindAndHowManyMore) {
+  std::string objects;
+  for (int i = 0; i < 9; ++i) objects += fmt::format("Sphere {{ center: [{}, 0, 0], radius: 0.1 }}\n", 0.2 * i);
+  const std::vector<SceneWarning> list = said(objects + sky);
+  EXPECT_EQ(list.size(), 9u);
+  testing::internal::CaptureStderr();
+  show_warnings(list);
+  const std::string shown = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::count(shown.begin(), shown.end(), '\n'), 3) << shown;
+  EXPECT_NE(shown.find("scene.etd:6:1: warning: "), std::string::npos) << shown;
+  EXPECT_NE(shown.find("(and 6 more like this)"), std::string::npos) << shown;
+}
+
+TEST(SceneWarnings, ReflectancesAboveOne) {
+  const ImageFile bright("bright.exr", 2, 1, {0.2f, 0.2f, 0.2f, 0.5f, 3.5f, 0.5f});
+  const ImageFile sound("sound.exr", 2, 1, {0.2f, 0.2f, 0.2f, 0.5f, 1, 0.5f});
+  const auto told = [](const std::string& color) {
+    testing::internal::CaptureStderr();
+    prepare_tree(*load_job_text(
+        job_text("PathTracer {}", camera, 8, "Sphere { shader: Lambertian { color: " + color + " } }\n" + sky), "bright.etd"));
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(told("ImageMap { file: \"" + sound.path + "\" }"), "");
+  EXPECT_EQ(told("rgb(1, 1, 0.2)"), "");
+  const std::string image = told("ImageMap { file: \"" + bright.path + "\" }");
+  EXPECT_NE(image.find("bright.etd:6:38: warning: Lambertian.color: "), std::string::npos) << image;
+  EXPECT_NE(image.find("3.5"), std::string::npos) << image;
+  const std::string nested = told("UvTransformMap { map: ImageMap { file: \"" + bright.path + "\" } }");
+  EXPECT_NE(nested.find("warning: Lambertian.color: "), std::string::npos) << nested;
+  const std::string rgb = told("rgb(1.5, 0.2, 0.1)");
+  EXPECT_NE(rgb.find("bright.etd:6:38: warning: Lambertian.color: "), std::string::npos) << rgb;
+  EXPECT_NE(rgb.find("1.5"), std::string::npos) << rgb;
+}
+
+TEST(SceneWarnings, ReflectancesThatTogetherAreMoreThanArrives) {
+  const auto told = [](const std::string& shader) {
+    testing::internal::CaptureStderr();
+    prepare_tree(*load_job_text(job_text("PathTracer {}", camera, 8, "Sphere { shader: " + shader + " }\n" + sky), "sum.etd"));
+    return testing::internal::GetCapturedStderr();
+  };
+  for (const char* shader : {"PhongShader { color: 0.8, specular: 0.5 }", "WardShader { color: 0.8, specular: 0.5 }",
+                             "DiffuseTransmitter { reflectance: 0.8, transmittance: 0.5 }"})
+    EXPECT_NE(told(shader).find("together are 1.3"), std::string::npos) << shader;
+  EXPECT_EQ(told("PhongShader { color: 0.5, specular: 0.5 }"), "");
+}
+
+// After rendering.
+TEST(PictureWarnings, TooDarkOrTooBrightByHowMuch) {
+  const auto after = [](double radiance, const std::string& tone = "ExposureToneMap {}") {
+    const Ref<Job> job =
+        load_job_text(fmt::format("Job {{ renderer: PathTracer {{ samples: 1 }}\n camera: {}\n image: "
+                                  "ImageBuffer {{ width: 8, height: 8, filter: BoxFilter {{}} }}\n tone_map: {}\n "
+                                  "outputs: [ PngOutput {{}} ]\n scene: BruteForceScene {{ objects: [ "
+                                  "Environment {{ emission: EnvironmentEmission {{ "
+                                  "radiance: {} }} }} ] }} }}\n",
+                                  camera, tone, radiance),
+                      "tone.etd");
+    job->render();
+    return picture_warnings(*job);
+  };
+  EXPECT_TRUE(after(0.18).empty());
+  EXPECT_TRUE(after(0.9).empty());
+  EXPECT_TRUE(after(0.01).empty());
+  const auto bright = after(180);
+  ASSERT_EQ(bright.size(), 1u);
+  for (const char* word : {"100 %", "white", "1e+03 times", "stops: -10.0"})
+    EXPECT_NE(bright[0].text.find(word), std::string::npos) << word << " in: " << bright[0].text;
+  EXPECT_EQ(bright[0].at.line, 4);
+  const auto dark = after(0.18 / 4096);
+  ASSERT_EQ(dark.size(), 1u);
+  for (const char* word : {"black", "stops: 12.0"}) EXPECT_NE(dark[0].text.find(word), std::string::npos) << dark[0].text;
+  EXPECT_TRUE(after(180, "ExposureToneMap { stops: -10 }").empty());
+  const auto none = after(0);
+  ASSERT_EQ(none.size(), 1u);
+  EXPECT_EQ(none[0].kind, "black picture");
+}
+
+// No false alarms: all scenes that come with the program.
+TEST(SceneWarnings, OurOwnScenesAreSilent) {
+  namespace fs = std::filesystem;
+  int count = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(ETENDUE_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".etd") continue;
+    const std::string name = entry.path().string();
+    // These need files that a script makes, or are parts of others.
+    if (name.find("million_triangles") != name.npos || name.find("/forest/") != name.npos ||
+        name.find("/teapot/") != name.npos || name.ends_with("/forest.etd"))
+      continue;
+    SCOPED_TRACE(name);
+    Ref<Job> job;
+    testing::internal::CaptureStderr();
+    std::string told;
+    try {
+      job = load_job(name);
+      prepare_tree(*job);
+      told = testing::internal::GetCapturedStderr();
+    } catch (const std::runtime_error&) {
+      testing::internal::GetCapturedStderr();
+      continue;  // a part of another scene
+    }
+    ++count;
+    EXPECT_EQ(told, "");
+    for (const SceneWarning& w : scene_warnings(*job)) ADD_FAILURE() << show(Error(w.text, w.at));
+  }
+  EXPECT_GT(count, 20);
+}
+
+}  // namespace
+}  // namespace etendue::test

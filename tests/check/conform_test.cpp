@@ -1,0 +1,179 @@
+// The conformance kit: right parts pass, and each of the deliberately wrong ones in conform_faults/ is found by the check that
+// is there for it.
+
+#include "check/conform/conformance.h"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "check/conform/draw.h"
+#include "check/conform/sphere_cells.h"
+#include "check/conform/statistics.h"
+#include "etendue/core/warp.h"
+#include "etendue/language/language.h"
+#include "support/process.h"
+
+namespace etendue::conform {
+namespace {
+
+std::vector<Outcome> outcomes_of(const std::string& name, int drawn = 1, std::uint64_t seed = 1) {
+  return conform({{name}, Effort::quick, drawn, seed, 0, {}});
+}
+
+std::string failures(const std::vector<Outcome>& outcomes) {
+  std::string all;
+  for (const Outcome& o : outcomes)
+    if (o.result == Result::failed) all += "  " + o.class_name + ": " + o.check + ": " + o.detail + "\n    of " + o.part + "\n";
+  return all;
+}
+
+/// The built-in classes: those with checks of their interface, and all others.
+std::vector<std::string> built_in(bool with_checks) {
+  const Registry& registry = Registry::instance();
+  std::vector<std::string> names;
+  for (const ClassInfo* info : registry.all()) {
+    if (info->abstract() || !info->provider.empty()) continue;
+    // Not those that other tests register.
+    if (!std::filesystem::exists(ETENDUE_SOURCE_DIR "/docs/manual/" + info->name + ".md")) continue;
+    bool checked = false;
+    for (const std::string& interface : checked_interfaces()) checked = checked || info->is_a(*registry.find(interface));
+    if (checked == with_checks) names.push_back(info->name);
+  }
+  return names;
+}
+
+class BuiltIn : public ::testing::TestWithParam<std::string> {};
+TEST_P(BuiltIn, PartsConform) { EXPECT_EQ(failures(outcomes_of(GetParam())), ""); }
+INSTANTIATE_TEST_SUITE_P(Conform, BuiltIn, ::testing::ValuesIn(built_in(true)), [](const auto& each) { return each.param; });
+
+TEST(Conform, AllOtherClassesConformAsComponents) {
+  EXPECT_EQ(failures(conform({built_in(false), Effort::quick, 3, 1, 0, {}})), "");
+}
+
+/// A class of the plugin, the check that must find its fault.
+struct Fault {
+  const char *class_name, *check;
+};
+void PrintTo(const Fault& f, std::ostream* out) { *out << f.class_name; }
+
+class Faulty : public ::testing::TestWithParam<Fault> {};
+TEST_P(Faulty, PartsAreFound) {
+  Registry::instance().load_plugin(ETENDUE_CONFORM_FAULTS_LIBRARY);
+  const std::vector<Outcome> outcomes = outcomes_of(GetParam().class_name);
+  bool found = false;
+  for (const Outcome& o : outcomes) found = found || (o.check == GetParam().check && o.result == Result::failed);
+  EXPECT_TRUE(found) << "'" << GetParam().check << "' did not fail; these did:\n" << failures(outcomes);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Conform, Faulty,
+    ::testing::Values(Fault{"WrongDensityShader", "samples follow the density"},
+                      Fault{"GainingShader", "no more light leaves than arrives"}, Fault{"OneWayShader", "f is reciprocal"},
+                      Fault{"WrongWeightShader", "a sample's weight is value over density"},
+                      Fault{"MaskIgnoringShader", "samples follow the density"},
+                      Fault{"GrazingShader", "values and densities are finite and not negative, at grazing angles too"},
+                      Fault{"EndlessFilter", "weights are zero beyond the radius"},
+                      Fault{"WrongPhaseVolume", "the phase function integrates to 1"},
+                      Fault{"WrongPowerEmission", "power is the integral of radiance, on a Rectangle"},
+                      Fault{"WrongDirectionsEmission", "sampled directions follow the density"},
+                      Fault{"WrongAreaSquare", "the area is that which lines find"},
+                      Fault{"WrongVisibleSquare", "points sampled to be seen have densities of the solid angle seen"},
+                      Fault{"SecretLensCamera", "without a lens rays do not depend on the lens point"},
+                      Fault{"UnboundedMap", "reflectances are in [0, 1]"},
+                      Fault{"DimRenderer", "the value of a furnace is the known one"},
+                      Fault{"ForgetfulFilter", "preparing leaves the members as they were written"},
+                      Fault{"GlowingToneMap", "a black picture stays black"},
+                      Fault{"SolarizingToneMap", "what is brighter is not shown darker"},
+                      Fault{"HalfExposedToneMap", "an exposure of one stop less halves what goes in"},
+                      Fault{"PlaceToneMap", "equal pixels are shown equal by a map that is not local"},
+                      Fault{"UnclippedToneMap", "what is shown of a right picture is finite, and in [0, 1] if the map clips"}),
+    [](const auto& each) { return std::string(each.param.class_name); });
+
+TEST(Conform, OutcomesDependOnTheSeedAlone) {
+  const auto text = [](int threads, std::uint64_t seed) {
+    std::string all;
+    for (const Outcome& o : conform({{"PhongShader", "Filter"}, Effort::quick, 2, seed, threads, {}}))
+      all += o.check + o.part + o.detail + (o.result == Result::passed ? "+" : "-") + "\n";
+    return std::regex_replace(all, std::regex("etendue-conform-\\w{6}"), "folder");
+  };
+  EXPECT_EQ(text(1, 3), text(2, 3));
+  EXPECT_NE(text(1, 3), text(1, 4));  // other parts are drawn
+}
+
+TEST(Conform, DrawnPartsCanBeMadeAgain) {
+  const Fixtures fixtures;
+  std::mt19937_64 random(5);
+  for (const char* name : {"PhongShader", "PerspectiveCamera", "TriangleMesh", "HomogeneousVolume", "CheckerMap"}) {
+    int different = 0;
+    std::string last;
+    for (int i = 0; i < 10; ++i) {
+      const Drawn drawn = draw_part(*Registry::instance().find(name), fixtures, random);
+      ASSERT_TRUE(drawn.part) << name << ": " << drawn.refused;
+      const Ref<Component> again = parse_component(drawn.text);
+      EXPECT_EQ(write_description(*again), drawn.text);
+      EXPECT_TRUE(equal(Value(again), Value(drawn.part))) << drawn.text;
+      different += drawn.text != last;
+      last = drawn.text;
+    }
+    EXPECT_GT(different, 5) << name;
+  }
+}
+
+TEST(Conform, UnknownClassesAreNamed) {
+  try {
+    conform({{"PhongShadr"}, Effort::quick, 0, 1, 0, {}});
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("PhongShader"), std::string::npos) << error.what();
+  }
+}
+
+// The cells find a lobe of a thousandth of a radian, near the pole and near the horizon, and a smooth one alike.
+TEST(SphereCells, IntegrateSharpLobes) {
+  std::mt19937 random(2);
+  const auto uniform = [&] { return to_unit_float(std::uint32_t(random())); };
+  for (const float exponent : {1.0f, 100.0f, 1e4f, 1e6f})
+    for (const Vector3& peak :
+         {Vector3{0, 0, 1}, Vector3{0.3f, 0.1f, 0.9f}, Vector3{1, 0.2f, 0.3f}, Vector3{0.3f, -0.8f, -0.02f}}) {
+      const Frame around{Normal3(normalize(peak))};
+      std::vector<Vector3> samples;
+      for (int i = 0; i < 4000; ++i) {
+        const float x = uniform();
+        samples.push_back(around.to_world(warp::power_cosine({x, uniform()}, exponent)));
+      }
+      const SphereCells cells(samples, 96);
+      EXPECT_GT(cells.size(), 50u);
+      double sum = 0, solid_angle = 0;
+      for (const auto& [p] : cells.integrate<1>([&](const Vector3& v) -> std::array<double, 1> {
+             // cos(alpha) from the distance of the two unit vectors: exact for sharp lobes.
+             const float h = length_squared(v - Vector3(around.n)) / 2;
+             return {h < 1 ? double((exponent + 1) / (2 * pi) * std::exp(exponent * std::log1p(-h))) : 0};
+           }))
+        sum += p;
+      EXPECT_NEAR(sum, 1, 2e-3) << exponent << " around " << peak.x << ", " << peak.y << ", " << peak.z;
+      std::vector<double> counts(cells.size());
+      for (size_t i = 0; i < cells.size(); ++i) {
+        solid_angle += cells.solid_angle(i);
+        EXPECT_EQ(cells.cell_of(cells.middle(i)), i);
+      }
+      EXPECT_NEAR(solid_angle, 4 * M_PI, 1e-9);
+    }
+}
+
+TEST(Conform, TheCommandReportsFaults) {
+  const TemporaryFolder folder;
+  const std::string report = folder / "report.html";
+  Process wrong(ETENDUE_BINARY_DIR "/etendue",
+                {"conform", "WrongWeightShader", "--plugin", ETENDUE_CONFORM_FAULTS_LIBRARY, "--quick", "--report", report},
+                folder);
+  EXPECT_EQ(wrong.wait(), 1) << wrong.err();
+  EXPECT_NE(wrong.out().find("FAILED: a sample's weight"), std::string::npos) << wrong.out();
+  const std::string html = file_text(report);
+  EXPECT_NE(html.find("WrongWeightShader"), std::string::npos);
+  EXPECT_NE(html.find("FAILED"), std::string::npos);
+  Process right(ETENDUE_BINARY_DIR "/etendue", {"conform", "Lambertian", "--quick", "--drawn", "0"}, folder);
+  EXPECT_EQ(right.wait(), 0) << right.out() << right.err();
+}
+
+}  // namespace
+}  // namespace etendue::conform

@@ -1,0 +1,122 @@
+// Installs the package, builds a plugin against it out of tree with one CMake call, and renders with it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "etendue/describe/registry.h"
+#include "etendue/film/image_tools.h"
+
+namespace etendue {
+namespace {
+
+namespace fs = std::filesystem;
+
+int run(const std::string& command, std::string* output = nullptr) {
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::string text;
+  char buffer[4096];
+  for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) text.append(buffer, n);
+  const int status = pclose(pipe);
+  if (output) *output = text;
+  if (status != 0 && !output) ADD_FAILURE() << command << "\n" << text;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+class Plugin : public ::testing::Test {
+ protected:
+  fs::path folder = fs::temp_directory_path() / ("etendue-plugin-" + std::to_string(getpid()));
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+};
+
+TEST_F(Plugin, BuildsOutOfTreeAndRenders) {
+  const std::string f = folder.string(), source = ETENDUE_SOURCE_DIR "/tests/plugin";
+  ASSERT_EQ(run("cmake --install " ETENDUE_BINARY_DIR " --prefix " + f + "/installed"), 0);
+  ASSERT_EQ(run("cmake -G Ninja -S " + source + " -B " + f + "/build -DCMAKE_PREFIX_PATH=" + f +
+                "/installed && cmake --build " + f + "/build"),
+            0);
+  const std::string library = f + "/build/libgold.so";
+  ASSERT_TRUE(fs::exists(library));
+
+  // The file names the plugin by a path relative to itself.
+  std::ofstream(f + "/gold.etd") << R"(plugin "build/libgold.so"
+Job { camera: PerspectiveCamera { from: [0, 0, -4], to: [0, 0, 0] }, image: ImageBuffer { width: 16, height: 16 }
+      scene: BruteForceScene { objects: [ Sphere { shader: GoldShader { purity: 0.9 } }, Environment { emission: DiffuseEmission { sides: both } } ] } })";
+  const std::string program = f + "/installed/bin/etendue";
+  std::string output;
+  EXPECT_EQ(run(program + " render " + f + "/gold.etd --samples 16 --quiet -o " + f + "/gold.npy", &output), 0) << output;
+  EXPECT_TRUE(fs::exists(f + "/gold.npy"));
+  // Plugins appear everywhere built-in parts do.
+  EXPECT_EQ(run(program + " conform GoldShader --quick --plugin " + library, &output), 0) << output;
+  EXPECT_EQ(run(program + " classes GoldShader --plugin " + library, &output), 0) << output;
+  EXPECT_NE(output.find("purity"), std::string::npos) << output;
+  EXPECT_EQ(run(program + " render " + f + "/gold.etd --set 'scene.objects[0].shader.purity=2'", &output), 2);
+  EXPECT_NE(output.find("must be from 0 to 1"), std::string::npos) << output;
+
+  // The textured shader reads its maps where it is hit: under light from everywhere a surface seen at 60 degrees sends
+  // color cos^darkness back, here in squares of darkness 0 and 1.
+  const std::string minnaert = f + "/build/libminnaert.so";
+  EXPECT_EQ(run(program + " conform MinnaertShader --quick --plugin " + minnaert, &output), 0) << output;
+  std::ofstream(f + "/squares.etd") << R"(plugin "build/libminnaert.so"
+Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, image: ImageBuffer { width: 2, height: 1, filter: BoxFilter {} }
+      scene: BruteForceScene { objects: [
+          Rectangle { corner: [-1, -4, 0], edge_u: [2, 0, 0], edge_v: [0, 8, 0], transform: rotate(60 deg, "x")
+                      shader: MinnaertShader { color: 0.8, darkness: CheckerMap { first: 0, second: 1, repeat: [2, 1, 1] } } }
+          Environment { emission: DiffuseEmission { sides: both } } ] } })";
+  EXPECT_EQ(run(program + " render " + f + "/squares.etd --samples 1024 --quiet -o " + f + "/squares.npy", &output), 0)
+      << output;
+  const Image squares = read_image(f + "/squares.npy");
+  const double lighter = std::max(squares.at(0, 0, 1), squares.at(1, 0, 1)),
+               darker = std::min(squares.at(0, 0, 1), squares.at(1, 0, 1));
+  EXPECT_NEAR(lighter, 0.8, 0.01);
+  EXPECT_NEAR(darker, 0.4, 0.01);
+
+  // The renderer of the other page renders what the built-in one does.
+  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
+                    "/build/libstudent_tracer.so --renderers PathTracer,StudentTracer --samples 512 --size 48x48 --quiet",
+                &output),
+            0)
+      << output;
+}
+
+TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
+  const auto text = [](const char* path) {
+    std::ifstream file(path);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const auto check = [&](const char* source, const char* page, int lines) {
+    const std::string listing = text(source);
+    EXPECT_NE(text(page).find("```cpp\n" + listing + "```"), std::string::npos) << page;
+    EXPECT_LT(std::count(listing.begin(), listing.end(), '\n'), lines) << source;
+  };
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/gold.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-shader.md", 60);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/minnaert.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-textured-shader.md", 70);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/student_tracer.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 80);
+}
+
+TEST_F(Plugin, RefusesWhatIsNone) {
+  const std::string f = folder.string();
+  std::ofstream(f + "/text.so") << "no library";
+  EXPECT_THROW(Registry::instance().load_plugin(f + "/text.so"), Error);
+  EXPECT_THROW(Registry::instance().load_plugin(f + "/missing.so"), Error);
+  // A library built for other interfaces is refused before anything in it is adopted.
+  std::ofstream(f + "/old.cpp") << "extern \"C\" const char* etendue_plugin_abi() { return \"interfaces 0\"; }";
+  ASSERT_EQ(run("c++ -shared -fPIC " + f + "/old.cpp -o " + f + "/old.so"), 0);
+  try {
+    Registry::instance().load_plugin(f + "/old.so");
+    ADD_FAILURE() << "was adopted";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("build it again"), std::string::npos) << e.what();
+  }
+  std::ofstream(f + "/none.cpp") << "int x;";
+  ASSERT_EQ(run("c++ -shared -fPIC " + f + "/none.cpp -o " + f + "/none.so"), 0);
+  EXPECT_THROW(Registry::instance().load_plugin(f + "/none.so"), Error);
+}
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,172 @@
+// The sky and its sun in numbers: the sun's irradiance and its part in the choice of directions, against integrals done here.
+
+#include <gtest/gtest.h>
+
+#include "etendue/describe/color.h"
+#include "etendue/emission_shader.h"
+#include "support/component_test_support.h"
+
+namespace etendue {
+namespace {
+
+using test::create;
+using test::Setting;
+
+constexpr double degree = M_PI / 180;
+
+Vector3 towards_sun(double elevation) { return {float(std::cos(elevation * degree)), float(std::sin(elevation * degree)), 0}; }
+
+Ref<EmissionShader> sky(double elevation, bool sun, std::vector<Setting> settings = {}) {
+  settings.emplace_back("sun_direction", std::vector<double>{std::cos(elevation * degree), std::sin(elevation * degree), 0});
+  const Ref<EmissionShader> e = create<EmissionShader>("SkyEmission", settings);
+  set(*e, "sun", Value(sun));
+  prepare_tree(*e);
+  return e;
+}
+Spectrum seen(const EmissionShader& e, const Vector3& direction, const Wavelengths& w) {
+  SurfacePoint p;
+  p.object_position = Point3{} + direction;
+  return e.radiance(p, -direction, w);
+}
+Wavelengths one(float lambda) {
+  Wavelengths w;
+  for (int i = 0; i < spectrum_size; ++i) w.place(i, lambda, 1);
+  return w;
+}
+
+/// The integral over a disc around the sun of f, by rings.
+template <class F>
+double over_disc(double elevation, double radius, F&& f) {
+  const Frame frame{Normal3(towards_sun(elevation))};
+  double sum = 0;
+  constexpr int rings = 400, sectors = 16;
+  const double h_end = 1 - std::cos(radius * degree);
+  for (int i = 0; i < rings; ++i)
+    for (int k = 0; k < sectors; ++k) {
+      const double h = h_end * (i + 0.5) / rings, r = std::sqrt(h * (2 - h)), phi = 2 * M_PI * (k + 0.5) / sectors;
+      sum += f(frame.to_world({float(r * std::cos(phi)), float(r * std::sin(phi)), float(1 - h)})) * 2 * M_PI * h_end /
+             (rings * sectors);
+    }
+  return sum;
+}
+
+// The mean radiance of the disc [W m^-2 sr^-1 nm^-1], as the published model has it (see sky_projector_test), times the solid
+// angle of 959.63 arc seconds of radius: across the light, at each wavelength, whatever size the disc is drawn.
+TEST(SkyNumbers, IrradianceOfTheSun) {
+  const struct {
+    double elevation, turbidity, wavelength, radiance;
+  } rows[] = {{60, 3, 400, 12008.3},   {60, 3, 520, 22332.1},   {60, 3, 680, 19649.0},  {10, 6.5, 400, 891.398},
+              {10, 6.5, 520, 5567.06}, {10, 6.5, 680, 8642.97}, {35, 2.2, 520, 20461.1}};
+  const double solid_angle = M_PI * std::pow(959.63 / 3600 * degree, 2);
+  for (const auto& r : rows)
+    for (const double diameter : {0.53313, 1.0, 3.0}) {
+      const std::vector<Setting> settings = {{"turbidity", r.turbidity}, {"sun_diameter", diameter}};
+      const Ref<EmissionShader> with = sky(r.elevation, true, settings), without = sky(r.elevation, false, settings);
+      const Wavelengths w = one(float(r.wavelength));
+      const double irradiance = over_disc(r.elevation, diameter / 2 * 1.002, [&](const Vector3& d) {
+        return double(seen(*with, d, w)[0] - seen(*without, d, w)[0]);
+      });
+      const double expected = r.radiance * solid_angle;
+      EXPECT_NEAR(irradiance, expected, (diameter > 2 ? 0.01 : 0.003) * expected)
+          << r.elevation << " " << r.wavelength << " " << diameter;
+    }
+  EXPECT_NEAR(get(*sky(50, true), "sun_diameter").as<Number>()->value / degree, 2 * 959.63 / 3600, 2e-5);
+}
+
+/// Over the upper half: sums of f(direction), fine around the sun.
+template <class F>
+double over_sky(double elevation, F&& f) {
+  double sum = 0;
+  const Frame frame{Normal3(towards_sun(elevation))};
+  // In rings about the sun, finer near it.
+  constexpr int rings = 700, sectors = 180;
+  for (int i = 0; i < rings; ++i) {
+    const double a = M_PI * std::pow(double(i) / rings, 2), b = M_PI * std::pow(double(i + 1) / rings, 2), c = (a + b) / 2;
+    for (int k = 0; k < sectors; ++k) {
+      const double phi = 2 * M_PI * (k + 0.5) / sectors;
+      const Vector3 d =
+          frame.to_world({float(std::sin(c) * std::cos(phi)), float(std::sin(c) * std::sin(phi)), float(std::cos(c))});
+      if (d.y > 0) sum += f(d) * (std::cos(a) - std::cos(b)) * 2 * M_PI / sectors;
+    }
+  }
+  return sum;
+}
+
+double lux(const std::function<double(float)>& spectral) {
+  double sum = 0;
+  for (int l = 375; l <= 725; l += 10) sum += 10 * 683.002 * observer(float(l)).y * spectral(float(l));
+  return sum;
+}
+
+// What is asked for on level ground arrives there, from sky and sun by their own cosines.
+TEST(SkyNumbers, IlluminanceOnLevelGround) {
+  for (const bool sun : {true, false})
+    for (const double elevation : {20.0, 65.0}) {
+      const Ref<EmissionShader> e = sky(elevation, sun, {{"illuminance", 1000.0}, {"sun_diameter", 2.0}, {"turbidity", 4.5}});
+      // Channels of the model are 40 nm wide: sixteen wavelengths between them tell all.
+      const double level = lux([&](float l) {
+        static thread_local std::map<std::tuple<bool, double, int>, double> known;
+        const auto key = std::tuple(sun, elevation, int(l) / 20);
+        const auto found = known.find(key);
+        if (found != known.end()) return found->second;
+        const Wavelengths middle = one(float(int(l) / 20 * 20 + 10));
+        return known[key] = over_sky(elevation, [&](const Vector3& d) { return double(seen(*e, d, middle)[0] * d.y); });
+      });
+      EXPECT_NEAR(level, 1000, 25) << sun << " " << elevation;
+    }
+}
+
+// The probability of the sun's directions is its part of all light, weighted by xbar + ybar + zbar.
+TEST(SkyNumbers, ShareOfTheSun) {
+  for (const auto& [elevation, turbidity] : {std::pair{12.0, 6.0}, {6.0, 4.0}}) {
+    const Ref<EmissionShader> e = sky(elevation, true, {{"turbidity", turbidity}, {"sun_diameter", 1.0}}),
+                              dark = sky(elevation, false, {{"turbidity", turbidity}});
+    double sun_light = 0, sky_light = 0;
+    for (int l = 360; l <= 720; l += 40) {  // the channels
+      const Wavelengths w = one(float(l));
+      const Xyz o = observer(float(l));
+      const double weight = o.x + o.y + o.z;
+      sky_light += weight * over_sky(elevation, [&](const Vector3& d) { return double(seen(*dark, d, w)[0]); });
+      sun_light += weight * over_disc(elevation, 0.501,
+                                      [&](const Vector3& d) { return double(seen(*e, d, w)[0] - seen(*dark, d, w)[0]); });
+    }
+    const double expected = sun_light / (sun_light + sky_light);
+    ASSERT_TRUE(expected > 0.1 && expected < 0.9) << expected;
+    const double inside = over_disc(elevation, 0.501, [&](const Vector3& d) { return double(e->incident_density(d)); });
+    const double around = over_disc(elevation, 0.501, [&](const Vector3& d) { return double(dark->incident_density(d)); });
+    EXPECT_NEAR((inside - around) / (1 - around), expected, 0.02 * expected) << elevation;
+    // As often as that, directions lie within the disc.
+    int count = 0;
+    test::Random random(5);
+    for (int i = 0; i < 20000; ++i)
+      count += dot(e->sample_incident(random.pair()).direction, towards_sun(elevation)) > std::cos(0.5005 * degree);
+    EXPECT_NEAR(count / 20000.0, inside, 0.012);
+  }
+}
+
+// Right ascension and declination at noon, from almanacs (USNO): solstices, equinox and perihelion of 2024.
+TEST(SkyNumbers, TheSunStandsWhereAlmanacsSay) {
+  const struct {
+    const char* time;
+    double latitude, longitude, elevation;
+  } rows[] = {{"2024-06-20T20:51:00Z", 23.44, -132.6, 89.2},  // solstice: the sun is above the tropic at noon there
+              {"2024-12-21T12:00:00Z", 0, -0.4, 66.56},       // 90 - 23.44
+              {"2024-03-20T03:06:00Z", 90, 0, 0.0},           // equinox: on the horizon of the pole
+              {"2024-01-03T12:00:00Z", 0, 1.1, 67.2}};        // declination -22.8
+  for (const auto& r : rows) {
+    const Ref<EmissionShader> e = create<EmissionShader>(
+        "SkyEmission", {{"time", r.time}, {"latitude", r.latitude}, {"longitude", r.longitude}, {"sun_diameter", 0.6}});
+    // Where its density is greatest.
+    double best = 0;
+    Vector3 sun{};
+    test::Random random(7);
+    for (int i = 0; i < 400; ++i) {
+      const DirectionSample s = e->sample_incident(random.pair());
+      if (double(s.density) > best) best = double(s.density), sun = s.direction;
+    }
+    EXPECT_NEAR(std::asin(double(sun.y)) / degree, r.elevation, 0.75) << r.time;
+  }
+}
+
+}  // namespace
+}  // namespace etendue

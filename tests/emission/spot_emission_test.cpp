@@ -1,0 +1,192 @@
+// SpotEmission. Statistical tests have fixed seeds and a significance of 1e-3 over all their cases together.
+
+#include <gtest/gtest.h>
+
+#include "etendue/describe/color.h"
+#include "etendue/object_map.h"
+#include "support/luminaire_test_support.h"
+
+namespace etendue::test {
+namespace {
+
+struct Cone {
+  double inner, outer;
+};
+constexpr Cone cones[] = {{20, 30}, {0, 45}, {40, 40}, {0.05, 0.1}, {60, 130}, {180, 180}, {0, 180}};
+
+std::string spot(const Cone& c, const std::string& more = "") {
+  return "SpotEmission { inner_angle: " + std::to_string(c.inner) + ", outer_angle: " + std::to_string(c.outer) + more + " }";
+}
+
+TEST(SpotEmission, FallsOffBetweenItsAngles) {
+  const Ref<SceneObject> lamp = prepared_as<SceneObject>(
+      "Point { transform: rotate(90 deg, [1, 0, 0]), emission: SpotEmission { radiance: 3, inner_angle: 20, outer_angle: 60 } "
+      "}");
+  const SurfacePoint p = lamp->sample_area({}, 0).point;
+  const Frame frame{Normal3(0, -1, 0)};  // where the transform turns +z
+  const auto at_cosine = [&](double c) {
+    return double(lamp->emission->radiance(p, frame.to_world({0, float(std::sqrt(1 - c * c)), float(c)}), wavelengths())[0]);
+  };
+  const double inner = std::cos(20 * M_PI / 180), outer = 0.5;
+  EXPECT_EQ(at_cosine(1), 3);
+  EXPECT_EQ(at_cosine(inner + 1e-5), 3);
+  EXPECT_NEAR(at_cosine(0.75 * inner + 0.25 * outer), 3 * 0.84375, 1e-5);
+  EXPECT_NEAR(at_cosine((inner + outer) / 2), 1.5, 1e-5);
+  EXPECT_NEAR(at_cosine(0.25 * inner + 0.75 * outer), 3 * 0.15625, 1e-5);
+  EXPECT_EQ(at_cosine(outer - 1e-5), 0);
+  EXPECT_EQ(at_cosine(-1), 0);
+}
+
+TEST(SpotEmission, PowerOfAPointIsItsIntensityOverAllDirections) {
+  const Wavelengths w = wavelengths();
+  // A stretched object's cone stays round around the stretched axis.
+  const Transform placement =
+      Transform::translate({1, 2, 3}) * Transform::rotate(1, {1, 2, 3}) * Transform::scale({1, 3, 0.5f});
+  for (const Cone& c : cones)
+    for (const double watts : {0.0, 60.0}) {
+      const Ref<SceneObject> lamp = prepared_as<SceneObject>(
+          "Point { emission: " + spot(c, ", axis: [1, -2, 0.5], radiance: 2, power: " + std::to_string(watts)) + " }");
+      lamp->transform = placement;
+      const SurfacePoint p = lamp->sample_area({}, 0).point;
+      const Vector3 axis = normalize(placement(Vector3{1, -2, 0.5f}));
+      const double emitted = integrate_around(axis, {0, one_minus_cosine(c.inner), one_minus_cosine(c.outer), 2},
+                                              [&](const Vector3& d) { return double(lamp->emission->radiance(p, d, w)[0]); });
+      const double power = double(lamp->emission->power(*lamp, w)[0]);
+      EXPECT_NEAR(power, emitted, 2e-3 * emitted) << c.inner << " " << c.outer << " " << watts;
+      const double omega = M_PI * (one_minus_cosine(c.inner) + one_minus_cosine(c.outer));
+      EXPECT_NEAR(power, watts > 0 ? watts / 470 : 2 * omega, 1e-5 * power);
+    }
+}
+
+TEST(SpotEmission, SamplesFollowDensity) {
+  constexpr int rows = 60, columns = 8, count = 40000;
+  std::uint32_t seed = 50;
+  for (const Cone& c : cones) {
+    const Ref<SceneObject> lamp = prepared_as<SceneObject>("Point { emission: " + spot(c, ", axis: [1, -2, 0.5]") + " }");
+    lamp->transform = Transform::rotate(1, {1, 2, 3});
+    const SurfacePoint p = lamp->sample_area({}, 0).point;
+    const Vector3 axis = normalize(lamp->transform.still()(Vector3{1, -2, 0.5f}));
+    const double reach = one_minus_cosine(c.outer);
+    const auto density = [&](const Vector3& d) { return double(lamp->emission->density(p, d)); };
+    EXPECT_NEAR(integrate_around(axis, {0, one_minus_cosine(c.inner), reach, 2}, density), 1, 2e-3) << c.inner;
+    // Rows of equal steps in 1 - cos to the edge of the cone; for the probability of each the density is integrated again.
+    std::vector<double> expected, counts(size_t(rows * columns));
+    for (int row = 0; row < rows; ++row) {
+      const double inner = one_minus_cosine(c.inner), low = reach * row / rows, high = reach * (row + 1) / rows;
+      const std::vector<double> borders =
+          inner > low && inner < high ? std::vector<double>{low, inner, high} : std::vector<double>{low, high};
+      const double chance = integrate_around(axis, borders, density, 100, 1);
+      for (int k = 0; k < columns; ++k) expected.push_back(chance / columns * count);
+    }
+    const Frame frame{Normal3(axis)};
+    Random random(seed++);
+    for (int i = 0; i < count; ++i) {
+      const DirectionSample s = lamp->emission->sample(p, random.pair());
+      ASSERT_NEAR(length(s.direction), 1, 1e-5f);
+      EXPECT_NEAR(double(s.density), density(s.direction), 2e-3 * double(s.density) + 2e-3 / reach);
+      const Vector3 v = frame.to_local(s.direction);
+      const double h = double(length_squared(s.direction - axis)) / 2;
+      const int row = std::min(int(h / reach * rows), rows - 1);
+      const int column = std::min(int((std::atan2(double(v.y), double(v.x)) / (2 * M_PI) + 0.5) * columns), columns - 1);
+      ++counts[size_t(row * columns + column)];
+    }
+    EXPECT_GT(chi_square(counts, expected), each_of(int(std::size(cones)))) << c.inner << " " << c.outer;
+  }
+}
+
+TEST(SpotEmission, PowerOfASurface) {
+  const Wavelengths w = wavelengths();
+  for (const char* sides : {"front", "back", "both"})
+    for (const Vector3 axis : {Vector3{0, 0, 1}, Vector3{1, 0, 1}, Vector3{1, 2, 0.3f}, Vector3{0.2f, 0, -1}})
+      for (const Cone& c : {Cone{20, 30}, Cone{30, 80}, Cone{40, 130}}) {
+        TestSquare square(2);
+        square.reference();
+        const auto emission = [&](double watts) {
+          return create<EmissionShader>("SpotEmission",
+                                        {{"sides", sides},
+                                         {"axis", std::vector<double>{double(axis.x), double(axis.y), double(axis.z)}},
+                                         {"inner_angle", c.inner},
+                                         {"outer_angle", c.outer},
+                                         {"radiance", 3.0},
+                                         {"power", watts}});
+        };
+        const SurfacePoint p = square.sample_area({0.5f, 0.5f}, 0).point;
+        const auto emitted = [&](const EmissionShader& e) {
+          return 4 * integrate_around(
+                         normalize(axis), {0, one_minus_cosine(c.inner), one_minus_cosine(c.outer), 2},
+                         [&](const Vector3& d) { return double(e.radiance(p, d, w)[0]) * std::abs(double(d.z)); }, 200, 64);
+        };
+        const Ref<EmissionShader> plain = emission(0), strong = emission(20);
+        const double wanted = emitted(*plain), power = double(plain->power(square, w)[0]);
+        EXPECT_NEAR(power, wanted, 2e-3 * wanted + 1e-3) << sides << axis.z << " " << c.outer;
+        if (wanted > 0) {
+          EXPECT_NEAR(emitted(*strong), 20.0 / 470, 3e-3 * 20 / 470) << sides << axis.z << " " << c.outer;
+          EXPECT_NEAR(double(strong->power(square, w)[0]), 20.0 / 470, 1e-6);
+        } else {
+          EXPECT_THROW(strong->power(square, w), Error);
+        }
+      }
+}
+
+TEST(SpotEmission, ASphereIsAsStrongAsAPointOfItsCrossSection) {
+  const Wavelengths w = wavelengths();
+  const Ref<SceneObject> sphere = prepared_as<SceneObject>("Sphere { radius: 1.5, emission: SpotEmission { radiance: 2 } }");
+  const double omega = M_PI * (one_minus_cosine(20) + one_minus_cosine(30));
+  EXPECT_NEAR(double(sphere->emission->power(*sphere, w)[0]), 2 * M_PI * 2.25 * omega, 1e-3 * 2 * M_PI * 2.25 * omega);
+}
+
+TEST(SpotEmission, EachObjectHasThePower) {
+  const Wavelengths w = wavelengths();
+  const Ref<ObjectMap> checker = create<ObjectMap>("CheckerMap", {{"first", 1.0}, {"second", 3.0}});
+  const Ref<EmissionShader> plain = create<EmissionShader>("SpotEmission", {{"power", 5.0}}),
+                            varied = create<EmissionShader>("SpotEmission", {{"power", 5.0}, {"radiance", checker}});
+  std::vector<std::unique_ptr<TestSquare>> squares;  // more than are remembered
+  for (int i = 0; i < 1100; ++i) {
+    squares.push_back(std::make_unique<TestSquare>(0.5f + 0.01f * float(i)));
+    squares.back()->reference();
+  }
+  double first = 0;
+  for (const auto& square : squares) {
+    const SurfacePoint p = square->sample_area({0.5f, 0.5f}, 0).point;
+    const double flux = double(plain->radiance(p, {0, 0, 1}, w)[0] * square->area(0));
+    if (first == 0) first = flux;
+    EXPECT_NEAR(flux, first, 1e-5 * first);
+  }
+  EXPECT_NEAR(double(varied->power(*squares[0], w)[0]), 5.0 / 470, 1e-6);
+  EXPECT_NEAR(double(varied->power(*squares[99], w)[0]), 5.0 / 470, 1e-6);
+}
+
+TEST(SpotEmission, OnAnEnvironmentIsASun) {
+  const Wavelengths w = wavelengths();
+  const Ref<SceneObject> sky = prepared_as<SceneObject>(
+      "Environment { transform: rotate(90 deg, [1, 0, 0]), emission: SpotEmission { radiance: 7, inner_angle: 0.2, "
+      "outer_angle: "
+      "0.3 } }");
+  sky->enclose({0, 0, 0}, 2);
+  const double omega = M_PI * (one_minus_cosine(0.2) + one_minus_cosine(0.3));
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const SurfaceSample s = sky->sample_visible({0.1f, 0.2f, 0.3f}, random.pair(), 0);
+    ASSERT_GT(s.density, 0);
+    EXPECT_GT(s.direction.y, 0.9999f);  // light travels along what was +z and is now -y
+    const double light = double(sky->emission->radiance(s.point, -s.direction, w)[0]);
+    if (light > 0.7) {  // nearer to the edge rounding of the direction shows
+      EXPECT_NEAR(light / double(s.density), 7 * omega, 1e-2 * 7 * omega);
+      EXPECT_NEAR(double(sky->visible_density({}, s.direction, s.point)), double(s.density), 1e-2 * double(s.density));
+    }
+  }
+  EXPECT_EQ(sky->visible_density({}, {0, 0, 1}, sky->sample_visible({}, {0.5f, 0.5f}, 0).point), 0);
+  EXPECT_NEAR(double(sky->emission->power(*sky, w)[0]), 7 * omega * M_PI * 4, 1e-4 * 7 * omega * M_PI * 4);
+}
+
+TEST(SpotEmission, RefusesWhatMakesNoCone) {
+  expect_refused("SpotEmission { axis: [0, 0, 0] }", "axis", "not zero");
+  expect_refused("SpotEmission { outer_angle: 10 deg }", "outer_angle", "no less than inner_angle");
+  expect_refused("SpotEmission { radiance: -1 }", "radiance", "negative");
+  expect_refused("SpotEmission { radiance: 0, power: 3 W }", "radiance", "black");
+  EXPECT_THROW(parse_component("SpotEmission { outer_angle: 0 }"), Errors);
+  EXPECT_THROW(parse_component("SpotEmission { outer_angle: 181 }"), Errors);
+}
+
+}  // namespace
+}  // namespace etendue::test

@@ -1,0 +1,216 @@
+// Lamps of every round and flat shape under transforms that stretch, shear, mirror and move them: light that arrives by points
+// chosen to be seen and by points chosen by area, against rays in all directions that meet the lamp or do not; areas against
+// closed forms; directions against what a transform does to them.
+
+#include <gtest/gtest.h>
+
+#include "support/luminaire_test_support.h"
+#include "support/render_support.h"
+
+namespace etendue::test {
+namespace {
+
+struct Place {
+  const char* name;
+  const char* transform;
+};
+const std::vector<Place> places = {{"as it is", "scale(1)"},
+                                   {"grown", "translate(0.2, -0.1, 0.3) * rotate(40, [1, 2, 0.5]) * scale(1.6)"},
+                                   {"stretched", "rotate(70, [0.3, -1, 1]) * scale(1.7, 0.6, 1.2)"},
+                                   {"mirrored", "translate(0.1, 0, 0) * rotate(25, \"x\") * scale(-0.9, 1.3, 0.7)"},
+                                   {"sheared", "matrix(1, 0.6, 0, 0, 0, 1.2, 0.4, 0, -0.3, 0, 0.8, 0)"}};
+
+const std::vector<const char*> shapes = {"Sphere { radius: 0.8, center: [0.1, 0.2, 0]",
+                                         "Disc { radius: 0.9",
+                                         "Annulus { radius: 1, inner_radius: 0.4, sweep: 250",
+                                         "Cone { radius: 0.9, top_radius: 0.3, height: 1.1",
+                                         "Cone { radius: 0.9, top_radius: 0.5, height: 0.7, caps: false, sweep: 200",
+                                         "Cylinder { radius: 0.6, height: 1.2",
+                                         "Torus { radius: 0.7, tube_radius: 0.3",
+                                         "Box { size: [1.2, 0.7, 0.9]",
+                                         "Rectangle { corner: [-0.6, -0.4, 0], edge_u: [1.2, 0, 0], edge_v: [0, 0.9, 0]",
+                                         "Rectangle { corner: [-0.6, -0.4, 0], edge_u: [1.2, 0.2, 0], edge_v: [0.5, 0.9, 0.3]",
+                                         "TriangleMesh { positions: [[0, 0, 0], [1, 0, 0.2], [0, 1.1, 0], [-0.3, -0.2, 0.8]], "
+                                         "triangles: [[0, 1, 2], [0, 3, 1], [0, 2, 3]]"};
+
+Ref<SceneObject> lamp(const std::string& shape, const std::string& transform) {
+  return prepared_as<SceneObject>(shape + ", transform: " + transform +
+                                  ", emission: DiffuseEmission { radiance: 1, sides: both } }");
+}
+
+/// Whether nothing of the lamp itself lies before its point.
+bool seen(const SceneObject& object, const Point3& from, const Vector3& direction, float distance) {
+  Ray ray;
+  ray.origin = from;
+  ray.direction = direction;
+  ray.maximum = distance * 0.9995f;
+  Hit hit;
+  return !object.intersect(ray, hit);
+}
+
+TEST(TransformedLamps, ArriveByPointsAsByRays) {
+  for (const char* shape : shapes)
+    for (const Place& place : places) {
+      const Ref<SceneObject> object = lamp(shape, place.transform);
+      const Bounds3 box = object->bounds();
+      const Point3 middle = box.centre();
+      const float radius = 0.5f * length(box.diagonal());
+      for (const Vector3& way : {Vector3{0.4f, 0.7f, 1.1f}, {-1.6f, 0.3f, -0.4f}, {1.5f, -4.f, 2}}) {
+        const Point3 from = middle + (1 + radius / 2) * way;
+        const std::string where = std::string(shape) + ", " + place.name + " from " + std::to_string(way.z);
+        const Vector3 normal = normalize(middle - from + Vector3{0.3f, 0.2f, -0.1f});
+        const double d = double(length(middle - from));
+        if (d < double(radius) * 1.02) continue;
+        // Rays within the cone around its bounds, on a spiral (Swinbank & Purser 2006).
+        const Frame frame{Normal3(normalize(middle - from))};
+        const double h_end = 1 - std::sqrt(1 - std::pow(double(radius) / d, 2));
+        constexpr int rays = 60000;
+        double expected = 0;
+        Hit hit;
+        for (int i = 0; i < rays; ++i) {
+          const double h = h_end * (i + 0.5) / rays, r = std::sqrt(h * (2 - h)), phi = i * 2.399963229728653;
+          Ray ray;
+          ray.origin = from;
+          ray.direction = frame.to_world({float(r * std::cos(phi)), float(r * std::sin(phi)), float(1 - h)});
+          ray.maximum = infinity;
+          if (!object->intersect(ray, hit)) continue;
+          expected += std::max(double(dot(ray.direction, normal)), 0.0) * 2 * M_PI * h_end / rays;
+        }
+        constexpr int side = 72;
+        double visible = 0, by_area = 0, area = 0;
+        for (int i = 0; i < side * side; ++i) {
+          const Point2 u{(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side};
+          const SurfaceSample s = object->sample_visible(from, u, 0);
+          if (s.density > 0) {
+            EXPECT_NEAR(length(s.point.position - (from + s.distance * s.direction)), 0, 1e-3f) << where;
+            EXPECT_NEAR(object->visible_density(from, s.direction, s.point), s.density, 5e-3f * s.density) << where;
+            const double part = std::max(double(dot(s.direction, normal)), 0.0) / double(s.density) *
+                                seen(*object, from, s.direction, s.distance) / (side * side);
+            visible += part;
+          }
+          const SurfaceSample a = object->sample_area(u, 0);
+          ASSERT_GT(a.density, 0);
+          EXPECT_NEAR(object->area_density(a.point), a.density, 1e-3f * a.density) << where;
+          area += 1 / double(a.density) / (side * side);
+          const Vector3 to = a.point.position - from, direction = normalize(to);
+          by_area += std::max(double(dot(direction, normal)), 0.0) * std::abs(double(dot(direction, a.point.normal))) /
+                     double(length_squared(to)) / double(a.density) * seen(*object, from, direction, length(to)) /
+                     (side * side);
+        }
+        EXPECT_NEAR(visible, expected, 0.012 * expected + 1e-4) << where;
+        EXPECT_NEAR(by_area, expected, 0.02 * expected + 2e-4) << where;
+        EXPECT_NEAR(area, double(object->area(0)), 4e-3 * area) << where;
+        if (HasFailure()) return;
+      }
+    }
+}
+
+// What no formula gives is found by quadrature, to about the bound that the object states.
+TEST(TransformedLamps, AreasOfClosedForms) {
+  const auto expect_area = [](const std::string& shape, const std::string& transform, double expected) {
+    const Ref<SceneObject> object = lamp(shape, transform);
+    EXPECT_NEAR(double(object->area(0)), expected, (6e-4 + double(object->area_error(0))) * expected) << shape << transform;
+    EXPECT_LT(object->area_error(0), 1e-2f) << shape << transform;
+  };
+  // A spheroid, prolate and oblate.
+  const double e = std::sqrt(1 - 1 / 9.0);
+  expect_area("Sphere { radius: 1", "rotate(33, [1, 1, 0]) * scale(1, 1, 3)", 2 * M_PI * (1 + 3 / e * std::asin(e)));
+  expect_area("Sphere { radius: 1", "scale(3, -3, 1)", 2 * M_PI * (9 + std::atanh(e) / e));
+  // A disc of axes (1, 0.5, 0) and (0.3, 1, 0.7): pi times their cross product.
+  const double cross = std::sqrt(std::pow(0.5 * 0.7, 2) + std::pow(-0.7, 2) + std::pow(1 - 0.15, 2));
+  expect_area("Disc { radius: 1", "matrix(1, 0.3, 0, 0, 0.5, 1, 0, 0, 0, 0.7, 1, 0)", M_PI * cross);
+  // A cone stretched along its axis is another cone; so are a cylinder and a box.
+  expect_area("Cone { radius: 1, top_radius: 0.4, height: 0.5", "scale(1, 1, 2.4)",
+              M_PI * (1 + 0.16 + 1.4 * std::hypot(1.2, 0.6)));
+  expect_area("Cone { radius: 1, top_radius: 0.4, height: 0.5", "scale(2)", 4 * M_PI * (1 + 0.16 + 1.4 * std::hypot(0.5, 0.6)));
+  expect_area("Cylinder { radius: 1, height: 0.5", "scale(2, 2, 3)", 2 * M_PI * 4 + 4 * M_PI * 1.5);
+  expect_area("Box { size: [1, 2, 3]", "scale(3, 2, 1)", 2 * (3 * 4 + 4 * 3 + 3 * 3));
+  expect_area("Torus { radius: 1, tube_radius: 0.3", "rotate(20, \"y\") * scale(2)", 4 * M_PI * M_PI * 0.3 * 4);
+  expect_area("Annulus { radius: 2, inner_radius: 1, sweep: 90", "scale(1, -3, 1)", M_PI * 3 / 4 * 3);
+  expect_area("Rectangle { edge_u: [1, 0, 0], edge_v: [0.5, 1, 0]", "scale(2, 3, 5)", 6);
+}
+
+// A mirror keeps the front where it was: the side a normal is carried to.
+TEST(TransformedLamps, FrontsOfMirroredLamps) {
+  for (const char* shape : {"Disc { radius: 1", "Annulus { radius: 1", "Rectangle { corner: [-0.5, -0.5, 0]",
+                            "TriangleMesh { positions: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], triangles: [[0, 1, 2]]"})
+    for (const auto& [transform, front] : {std::pair("scale(1)", 1.0f),
+                                           {"scale(-1, 1, 1)", 1.0f},
+                                           {"scale(1, -2, 1)", 1.0f},
+                                           {"scale(1, 1, -1)", -1.0f},
+                                           {"scale(-1, -1, -1)", -1.0f},
+                                           {"rotate(180, \"x\")", -1.0f}}) {
+      const SurfaceSample s = lamp(shape, transform)->sample_area({0.3f, 0.4f}, 0);
+      EXPECT_NEAR(s.point.normal.z, front, 1e-6f) << shape << " " << transform;
+    }
+}
+
+TEST(TransformedLamps, DirectionsFromInfinityTurn) {
+  const Ref<SceneObject> distant = prepared_as<SceneObject>(
+      "Distant { direction: [1, 0, 0], transform: rotate(90, \"z\") * rotate(30, \"y\"), emission: DiffuseEmission {} }");
+  const SurfaceSample s = distant->sample_visible({}, {0.5f, 0.5f}, 0);
+  // (1, 0, 0) by 30 degrees about y: (cos, 0, -sin); then by 90 about z: (0, cos, -sin).
+  expect_near(-s.direction, {0, float(std::cos(M_PI / 6)), -0.5f});
+
+  const Ref<SceneObject> environment = prepared_as<SceneObject>(
+      "Environment { transform: rotate(90, \"z\") * rotate(30, \"y\"), emission: SpotEmission { axis: [1, 0, 0], inner_angle: "
+      "5, "
+      "outer_angle: 8 } }");
+  const Wavelengths w = wavelengths();
+  for (const auto& [direction, light] : {std::pair(Vector3{0, float(std::cos(M_PI / 6)), -0.5f}, 1.0f),
+                                         {Vector3{1, 0, 0}, 0.0f},
+                                         {Vector3{0, float(std::cos(M_PI / 6)), 0.5f}, 0.0f}}) {
+    Ray ray;
+    ray.direction = -direction;
+    SurfacePoint p;
+    environment->surface_point(ray, {}, p);
+    EXPECT_NEAR(environment->emission->radiance(p, direction, w)[0], light, 1e-5f);
+    const float density = environment->visible_density({}, -direction, p);
+    EXPECT_EQ(density > 0, light > 0);
+  }
+  for (int i = 0; i < 20; ++i) {
+    const SurfaceSample e = environment->sample_visible({}, {float(i) / 20, 0.7f}, 0);
+    EXPECT_GT(dot(-e.direction, Vector3{0, float(std::cos(M_PI / 6)), -0.5f}), std::cos(radians(8.001f)));
+    EXPECT_NEAR(environment->visible_density({}, e.direction, e.point), e.density, 1e-3f * e.density);
+  }
+}
+
+// A ball that grows while it moves is sampled as it is at each time.
+TEST(TransformedLamps, MovingAndGrowing) {
+  const Ref<SceneObject> ball = lamp("Sphere { radius: 0.5", "keyframes(0, scale(1), 1, translate(0, 0, 2) * scale(2))");
+  for (const double time : {0.0, 0.25, 0.5, 1.0}) {
+    const double r = 0.5 * (1 + time), z = 2 * time, d = 6 - z;
+    EXPECT_NEAR(double(ball->area(float(time))), 4 * M_PI * r * r, 1e-4);
+    const double solid_angle = 2 * M_PI * (1 - std::sqrt(1 - r * r / (d * d)));
+    const SurfaceSample s = ball->sample_visible({0, 0, 6}, {0.4f, 0.3f}, float(time));
+    EXPECT_NEAR(1 / double(s.density), solid_angle, 1e-3 * solid_angle) << time;
+    EXPECT_NEAR(double(length(s.point.position - Point3{0, 0, float(z)})), r, 1e-5) << time;
+  }
+}
+
+// Lamps in stretched, mirrored and nested scenes light a floor as the same shapes do that are written down in place.
+TEST(TransformedLamps, InNestedScenes) {
+  const std::string floor =
+      "Rectangle { corner: [-9, -9, -1.5], edge_u: [18, 0, 0], edge_v: [0, 18, 0], shader: Lambertian { color: 1 } }\n";
+  const std::string camera = "OrthographicCamera { from: [0.3, 0, -1.2], to: [0.3, 0, -1.5], up: [0, 1, 0], width: 0.01 }";
+  const std::string outer = "rotate(-20, \"y\") * scale(-1.2, 1, 0.8)",
+                    inner = "translate(0.1, 0, 0.1) * rotate(30, [1, 1, 0]) * scale(0.7, 1.1, 0.6)";
+  for (const char* shape : {"Sphere { radius: 0.8", "Cone { radius: 0.9, top_radius: 0.3, height: 0.9",
+                            "Rectangle { corner: [-0.6, -0.4, 0], edge_u: [1.2, 0.2, 0], edge_v: [0.5, 0.9, 0.3]",
+                            "Torus { radius: 0.7, tube_radius: 0.3"}) {
+    const std::string emission = ", emission: DiffuseEmission { radiance: 1, sides: both } }";
+    const std::string nested = floor + "BruteForceScene { transform: " + outer + ", objects: [ " + shape +
+                               ", transform: " + inner + emission + " ] }",
+                      flat = floor + shape + ", transform: " + outer + " * " + inner + emission;
+    for (const char* renderer :
+         {"PathTracer { max_depth: 2, samples: 4096 }", "PathTracer { max_depth: 2, samples: 16384, next_event: false }"}) {
+      const Measured a = measure(job_text(renderer, camera, 4, nested)),
+                     b = measure(job_text("PathTracer { max_depth: 2, samples: 4096 }", camera, 4, flat));
+      EXPECT_NEAR(a.mean.y, b.mean.y, 4.5 * std::hypot(a.error, b.error) + 1e-3 * b.mean.y) << shape << " " << renderer;
+      EXPECT_LT(a.error + b.error, 0.012 * b.mean.y) << shape;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace etendue::test

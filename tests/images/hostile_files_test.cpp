@@ -1,0 +1,199 @@
+// Files that are none, that lie about their size, and that change while they are read.
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "support/process.h"
+
+namespace etendue {
+namespace {
+
+/// What reads a file of one kind: a scene with %s for its name, or a command with it.
+struct Reader {
+  const char* name;
+  const char* object;  ///< of the scene; empty: the file is named by the command
+  std::vector<std::string> command;
+};
+
+const std::vector<Reader>& readers() {
+  static const std::vector<Reader> all = {
+      {"a.etd", "", {"check", "%s"}},
+      {"include.etd", "include", {}},
+      {"plugin.so", "plugin", {}},
+      {"a.png", "Sphere { shader: Lambertian { color: ImageMap { file: \"%s\" } } }", {}},
+      {"b.exr", "Sphere { shader: Lambertian { color: ImageMap { file: \"%s\", channel: \"R\" } } }", {}},
+      {"c.hdr", "Environment { emission: EnvironmentEmission { file: \"%s\" } }", {}},
+      {"d.png", "Point { emission: ProjectorEmission { file: \"%s\" } }", {}},
+      {"a.ply", "TriangleMesh { file: \"%s\" }", {}},
+      {"a.obj", "SubdivisionSurface { file: \"%s\" }", {}},
+      {"a.csv", "Sphere { shader: Lambertian { color: spectrum(\"%s\") } }", {}},
+      {"a.spd", "Sphere { shader: Lambertian { color: spectrum(\"%s\") } }", {}},
+      {"a.npy", "SignedDistanceGrid { file: \"%s\" }", {}},
+      {"a.ies", "Point { emission: IesEmission { file: \"%s\" } }", {}},
+      {"a.binary", "Sphere { shader: MerlShader { file: \"%s\" } }", {}},
+      {"a.bsdf", "Sphere { shader: RglShader { file: \"%s\" } }", {}},
+      {"e.exr", "", {"image", "info", "%s"}},
+      {"e.npy", "", {"image", "diff", "%s", "%s"}},
+      {"f.exr", "", {"image", "tonemap", "%s", "out.png"}},
+      {"a.part", "", {"image", "merge", "%s", "-o", "out.npy"}},
+      {"b.part", "", {"render", "good.etd", "--resume", "%s", "-o", "out.npy"}},
+      {"c.part", "", {"render", "good.etd", "--continue", "%s", "-o", "out.npy"}},
+      {"b.so", "", {"classes", "--plugin", "%s"}},
+  };
+  return all;
+}
+
+std::string filled(std::string text, const std::string& name) {
+  for (size_t at; (at = text.find("%s")) != std::string::npos;) text.replace(at, 2, name);
+  return text;
+}
+
+class HostileFiles : public testing::Test {
+ protected:
+  static std::string scene(const std::string& object) {
+    return "Job { camera: PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 0] }, image: ImageBuffer { width: 4, height: 4 }\n"
+           " renderer: PathTracer { samples: 2 }\n scene: BruteForceScene { objects: [\n" +
+           object + "\n ] } }";
+  }
+  void SetUp() override { folder.write("good.etd", scene("Sphere {}")); }
+
+  /// Runs the program within 4 GB and 10 s (124: it took longer).
+  int run(const std::vector<std::string>& arguments, const std::string& kilobytes = "4194304") {
+    std::vector<std::string> all = {"-c", "ulimit -v " + kilobytes + "; exec timeout 10 \"$0\" \"$@\"",
+                                    ETENDUE_BINARY_DIR "/etendue"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    Process process("/bin/sh", all, folder);
+    const int status = process.wait();
+    err = process.err();
+    return status;
+  }
+  /// Lets a reader read a file of this name, within the folder.
+  int read(const Reader& reader, const std::string& name, const std::string& kilobytes = "4194304") {
+    if (reader.command.empty()) {
+      std::string text = filled(scene(reader.object), name);
+      const std::string word = reader.object;
+      if (word == "include" || word == "plugin") text = word + " \"" + name + "\"\n" + scene("Sphere {}");
+      folder.write("scene.etd", text);
+      return run({"check", "scene.etd"}, kilobytes);
+    }
+    std::vector<std::string> command;
+    for (const std::string& word : reader.command) command.push_back(filled(word, name));
+    return run(command, kilobytes);
+  }
+  bool said(const std::string& part) const { return err.find(part) != std::string::npos; }
+
+  TemporaryFolder folder;
+  std::string err;
+};
+
+TEST_F(HostileFiles, what_is_no_file_is_refused_at_once_by_every_reader) {
+  for (const Reader& reader : readers()) {
+    ASSERT_EQ(::mkfifo((folder / reader.name).c_str(), 0600), 0);
+    EXPECT_EQ(read(reader, reader.name), 2) << reader.name << ": " << err;
+    EXPECT_TRUE(said(reader.name) && said("it is a pipe")) << reader.name << ": " << err;
+    std::filesystem::remove(folder / reader.name);
+
+    std::filesystem::create_symlink("/dev/zero", folder / reader.name);
+    EXPECT_EQ(read(reader, reader.name), 2) << reader.name << ": " << err;
+    EXPECT_TRUE(said(reader.name) && said("it is a device")) << reader.name << ": " << err;
+    std::filesystem::remove(folder / reader.name);
+
+    std::filesystem::create_directory(folder / reader.name);
+    EXPECT_EQ(read(reader, reader.name), 2) << reader.name << ": " << err;
+    EXPECT_TRUE(said(reader.name) && said("it is a folder")) << reader.name << ": " << err;
+    std::filesystem::remove(folder / reader.name);
+  }
+}
+
+TEST_F(HostileFiles, sockets_are_refused) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, (folder / "a.ply").c_str(), sizeof address.sun_path - 1);
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(read({"a.ply", "TriangleMesh { file: \"%s\" }", {}}, "a.ply"), 2);
+  EXPECT_TRUE(said("a.ply") && said("it is a socket")) << err;
+  ::close(socket);
+}
+
+TEST_F(HostileFiles, a_description_may_come_from_a_file_that_is_standard_input) {
+  Process process("/bin/sh", {"-c", "exec \"$0\" check /dev/stdin < good.etd", ETENDUE_BINARY_DIR "/etendue"}, folder);
+  EXPECT_EQ(process.wait(), 0) << process.err();
+  Process piped("/bin/sh", {"-c", "cat good.etd | \"$0\" check /dev/stdin", ETENDUE_BINARY_DIR "/etendue"}, folder);
+  EXPECT_EQ(piped.wait(), 2);
+  EXPECT_NE(piped.err().find("it is a pipe"), std::string::npos) << piped.err();
+}
+
+// The file is far larger than what is read in the meantime; the old program died of SIGBUS at one of the delays.
+TEST_F(HostileFiles, a_mesh_that_shrinks_while_it_is_read_ends_nothing) {
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 20000000\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1000000\nproperty list uchar int vertex_indices\nend_header\n";
+  folder.write("scene.etd", scene("TriangleMesh { file: \"big.ply\" }"));
+  for (int delay = 10; delay <= 160; delay *= 2) {
+    folder.write("big.ply", header);
+    std::filesystem::resize_file(folder / "big.ply", 300u << 20);
+    Process process(ETENDUE_BINARY_DIR "/etendue", {"check", "scene.etd"}, folder);
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+    std::filesystem::resize_file(folder / "big.ply", 4096);
+    EXPECT_LT(process.wait(), 128) << "after " << delay << " ms: " << process.err();
+    EXPECT_NE(process.err().find("big.ply"), std::string::npos) << process.err();
+  }
+}
+
+TEST_F(HostileFiles, little_images_that_claim_much_are_refused_for_what_they_claim) {
+  for (const char* const name : {"bomb282.exr", "bomb568.exr", "oom355.exr"}) {
+    std::filesystem::copy_file(std::string(ETENDUE_SOURCE_DIR "/tests/hostile/") + name, folder / name);
+    for (const Reader& reader : {Reader{"", "", {"image", "info", "%s"}}, readers()[3], readers()[4], readers()[5]}) {
+      EXPECT_EQ(read(reader, name), 2) << err;
+      EXPECT_TRUE(said(name)) << err;
+      EXPECT_FALSE(said("memory") || said("bad_alloc")) << err;
+    }
+  }
+  // A PNG and a TGA of some hundred bytes that claim to be as large as the format allows.
+  const auto big_endian = [](std::uint32_t n) { return std::string{char(n >> 24), char(n >> 16), char(n >> 8), char(n)}; };
+  const std::string png = "\x89PNG\r\n\x1a\n" + big_endian(13) + "IHDR" + big_endian(60000) + big_endian(60000) +
+                          std::string("\x08\x02\0\0\0", 5) + big_endian(0) + big_endian(200) + "IDAT" + std::string(200, 'x');
+  std::string tga(18, '\0');
+  tga[2] = 10;
+  tga[12] = tga[13] = tga[14] = tga[15] = char(0xff);
+  tga[16] = 24;
+  folder.write("big.png", png);
+  folder.write("big.tga", tga + std::string(300, '\xff'));
+  for (const char* name : {"big.png", "big.tga"})
+    for (const Reader& reader : {Reader{"", "", {"image", "info", "%s"}}, readers()[3]}) {
+      EXPECT_EQ(read(reader, name), 2) << err;
+      EXPECT_TRUE(said(name)) << err;
+      EXPECT_FALSE(said("memory") || said("bad_alloc")) << err;
+    }
+}
+
+// Sparse files of 3 GB, where 2 GB of memory are allowed.
+TEST_F(HostileFiles, memory_that_runs_out_names_the_file_and_who_asked) {
+  for (const Reader& reader : readers()) {
+    const std::string name = reader.name, ending = name.substr(name.find('.') + 1);
+    std::string beginning;
+    if (ending == "ply")
+      beginning =
+          "ply\nformat binary_little_endian 1.0\nelement vertex 200000000\nproperty float x\nproperty float y\nproperty float "
+          "z\n"
+          "element face 10\nproperty list uchar int vertex_indices\nend_header\n";
+    if (ending == "npy")
+      beginning =
+          std::string("\x93NUMPY\x01\0\x76\0", 10) + "{'descr': '<f4', 'fortran_order': False, 'shape': (10, 10, 8000000), }";
+    folder.write(name, beginning);
+    std::filesystem::resize_file(folder / name, 3u << 30);
+    EXPECT_EQ(read(reader, name, "2000000"), 2) << name << ": " << err;
+    EXPECT_TRUE(said(name)) << name << ": " << err;
+    std::filesystem::remove(folder / name);
+  }
+}
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,328 @@
+// The film.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "etendue/film/image_buffer.h"
+#include "support/filter_support.h"
+
+namespace etendue::test {
+namespace {
+
+const Wavelengths wavelengths({450, 530, 600, 650}, {1 / 470.0f, 1 / 470.0f, 1 / 470.0f, 1 / 470.0f});
+
+Ref<ImageBuffer> make_buffer(int width, int height, const Ref<Filter>& filter = nullptr) {
+  auto buffer = make<ImageBuffer>();
+  buffer->width = width;
+  buffer->height = height;
+  if (filter) buffer->filter = filter;
+  buffer->prepare();
+  return buffer;
+}
+
+struct Sample {
+  Point2 film;
+  float value;
+};
+
+/// `count` samples in each pixel, by pixel.
+std::vector<std::vector<Sample>> random_samples(const PixelArea& area, int count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  std::vector<std::vector<Sample>> samples;
+  for (int y = area.y0; y < area.y1; ++y)
+    for (int x = area.x0; x < area.x1; ++x) {
+      auto& pixel = samples.emplace_back();
+      for (int i = 0; i < count; ++i) {
+        const Point2 film{float(x) + uniform(random), float(y) + uniform(random)};
+        pixel.push_back({film, uniform(random) * 3});
+      }
+    }
+  return samples;
+}
+
+/// Renders the samples in tiles of a size, merged in order.
+void render(ImageBuffer& buffer, const std::vector<std::vector<Sample>>& samples, int tile_size) {
+  const PixelArea& all = buffer.area();
+  ImageTile tile;
+  for (int y0 = all.y0; y0 < all.y1; y0 += tile_size)
+    for (int x0 = all.x0; x0 < all.x1; x0 += tile_size) {
+      const PixelArea area{x0, y0, std::min(x0 + tile_size, all.x1), std::min(y0 + tile_size, all.y1)};
+      tile.begin(buffer, area);
+      for (int y = area.y0; y < area.y1; ++y)
+        for (int x = area.x0; x < area.x1; ++x) {
+          std::uint32_t i = 0;
+          for (const Sample& s : samples[size_t(y - all.y0) * size_t(all.width()) + size_t(x - all.x0)]) {
+            tile.count_path();
+            tile.contribute(s.film, x, y, i++, Spectrum(s.value), wavelengths);
+          }
+        }
+      buffer.merge(tile);
+    }
+}
+
+TEST(ImageBuffer, ConstantStaysConstantUnderEveryFilter) {
+  // Samples on a lattice of which every cell of the filters' tables holds as many as it is large, so that sums are integrals:
+  // at the border as well.
+  const Xyz expected = to_xyz(Spectrum(0.7f), wavelengths);
+  for (const auto& f : all_filters()) {
+    const auto buffer = make_buffer(9, 7, f);
+    std::vector<std::vector<Sample>> samples;
+    constexpr int n = 128;
+    for (int pixel = 0; pixel < 9 * 7; ++pixel) {
+      auto& own = samples.emplace_back();
+      for (int i = 0; i < n * n; ++i)
+        own.push_back({{float(pixel % 9) + (float(i % n) + 0.5f) / n, float(pixel / 9) + (float(i / n) + 0.5f) / n}, 0.7f});
+    }
+    render(*buffer, samples, 4);
+    const Image image = buffer->develop();
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        EXPECT_NEAR(image.at(x, y, 0), expected.x, 1e-6 * expected.x) << name(*f);
+        EXPECT_NEAR(image.at(x, y, 1), expected.y, 1e-6 * expected.y) << name(*f);
+        EXPECT_NEAR(image.at(x, y, 2), expected.z, 1e-6 * expected.z) << name(*f);
+      }
+  }
+}
+
+TEST(ImageBuffer, TableGivesTheFiltersOwnWeights) {
+  // One sample near the centre of a pixel and one beside it, no others: their sum by the filter, over twice its integral over
+  // that pixel.
+  for (const auto& f : all_filters()) {
+    const auto buffer = make_buffer(7, 7, f);
+    ImageTile tile;
+    tile.begin(*buffer, buffer->area());
+    tile.contribute({3.4f, 3.7f}, 3, 3, 0, Spectrum(1.0f), wavelengths);
+    tile.contribute({3.9f, 3.2f}, 3, 3, 1, Spectrum(3.0f), wavelengths);
+    buffer->merge(tile);
+    // Of the filter at the middles of the 64 cells within its radius.
+    const float cell = f->radius() / 64;
+    const auto weight = [&](float dx, float dy) {
+      return double(
+          f->weight((std::floor(std::abs(dx) / cell) + 0.5f) * cell, (std::floor(std::abs(dy) / cell) + 0.5f) * cell));
+    };
+    constexpr int fine = 400;  // its integral over the pixel
+    double share = 0;
+    for (int i = 0; i < fine * fine; ++i)
+      share += weight((float(i % fine) + 0.5f) / fine - 0.5f, (float(i / fine) + 0.5f) / fine - 0.5f) / (fine * fine);
+    const double a = weight(-0.1f, 0.2f), b = weight(0.4f, -0.3f);
+    const double y = to_xyz(Spectrum(1.0f), wavelengths).y;
+    EXPECT_NEAR(buffer->develop().at(3, 3, 1), y * (a + 3 * b) / (2 * share), 4e-3 * y) << name(*f);
+    EXPECT_EQ(buffer->develop().at(0, 0, 1) != 0, f->radius() > 3) << name(*f);
+  }
+}
+
+TEST(ImageBuffer, TilesDoNotShow) {
+  for (const char* filter : {"BoxFilter", "GaussianFilter", "MitchellFilter"}) {
+    const auto one = make_buffer(16, 16, make_filter(filter)), many = make_buffer(16, 16, make_filter(filter)),
+               again = make_buffer(16, 16, make_filter(filter));
+    const auto samples = random_samples(one->area(), 8, 7);
+    render(*one, samples, 16);
+    render(*many, samples, 4);
+    render(*again, samples, 4);
+    const Image a = one->develop(), b = many->develop();
+    for (size_t i = 0; i < a.values.size(); ++i) EXPECT_NEAR(a.values[i], b.values[i], 1e-12 * std::abs(a.values[i]) + 1e-15);
+    EXPECT_EQ(many->save_state(), again->save_state()) << filter;
+    EXPECT_EQ(one->samples(), 16u * 16 * 8);
+  }
+}
+
+TEST(ImageBuffer, VarianceOfTheMean) {
+  // Uniform values in [0, 3): variance 9/12 each, so 0.75/n of the mean of n. Over 1024 pixels the relative deviation of
+  // the mean estimate is below sqrt(2/n/1024) < 1 %; 4 % is four of them.
+  const auto buffer = make_buffer(32, 32);
+  buffer->layers = {"variance", "samples"};
+  buffer->prepare();
+  render(*buffer, random_samples(buffer->area(), 16, 3), 8);
+  const Image image = buffer->develop();
+  ASSERT_EQ(image.channels, (std::vector<std::string>{"X", "Y", "Z", "variance.Y", "samples.N"}));
+  double mean = 0;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) {
+      mean += image.at(x, y, 3) / 1024;
+      EXPECT_EQ(image.at(x, y, 4), 16);
+    }
+  const double unit = to_xyz(Spectrum(1.0f), wavelengths).y;
+  EXPECT_NEAR(mean / (unit * unit * 0.75 / 16), 1, 0.04);
+  // standard error over mean: sqrt(0.75 / 16) / 1.5 = 0.144; the mean of the ratio is a little off by its curvature
+  EXPECT_NEAR(buffer->relative_error(), 0.144, 0.01);
+
+  const auto once = make_buffer(4, 4);
+  EXPECT_TRUE(std::isinf(once->relative_error()));
+  render(*once, random_samples(once->area(), 1, 3), 8);
+  EXPECT_TRUE(std::isinf(once->relative_error()));
+  render(*once, random_samples(once->area(), 1, 4), 8);
+  EXPECT_TRUE(std::isfinite(once->relative_error()));
+}
+
+TEST(ImageBuffer, BadSamplesAreCountedLocatedAndBlack) {
+  for (const char* filter : {"BoxFilter", "GaussianFilter"}) {
+    const auto buffer = make_buffer(8, 8, make_filter(filter));
+    ImageTile tile;
+    tile.begin(*buffer, buffer->area());
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    Spectrum partly(1.0f);
+    partly.set(2, nan);
+    tile.contribute({3.5f, 2.5f}, 3, 2, 5, partly, wavelengths);
+    tile.contribute({4.5f, 2.5f}, 4, 2, 6, Spectrum(infinity), wavelengths);
+    tile.contribute({5.5f, 2.5f}, 5, 2, 7, Spectrum(-1.0f), wavelengths);
+    tile.contribute({nan, 2.5f}, 6, 2, 8, Spectrum(1.0f), wavelengths);
+    tile.contribute({6.5f, 3.5f}, 6, 3, 9, Spectrum(1.0f), wavelengths, nan);
+    Spectrum rounding(1.0f);
+    rounding.set(1, -1e-7f);
+    tile.contribute({1.5f, 6.5f}, 1, 6, 9, rounding, wavelengths);  // not bad
+    Wavelengths single = wavelengths;
+    single.drop_secondary();
+    tile.contribute({5.5f, 6.5f}, 5, 6, 9, partly, single);  // nor this: the value is of a dropped wavelength
+    tile.splat({2.5f, 3.5f}, 4, 5, 11, Spectrum(nan), wavelengths, 2);
+    buffer->merge(tile);
+    EXPECT_EQ(buffer->bad_samples(), 6u);
+    const auto& bad = buffer->first_bad_samples();
+    ASSERT_EQ(bad.size(), 6u);
+    EXPECT_EQ(bad[0].kind, BadSample::Kind::not_a_number);
+    EXPECT_EQ(bad[0].x, 3);
+    EXPECT_EQ(bad[0].y, 2);
+    EXPECT_EQ(bad[0].sample, 5u);
+    EXPECT_EQ(bad[1].kind, BadSample::Kind::infinite);
+    EXPECT_EQ(bad[2].kind, BadSample::Kind::negative);
+    EXPECT_EQ(bad[3].x, 6);
+    EXPECT_EQ(bad[5].sample, 11u);
+    EXPECT_EQ(bad[5].y, 5);
+    const Image image = buffer->develop();
+    for (const double v : image.values) EXPECT_TRUE(std::isfinite(v) && v >= 0);
+    EXPECT_EQ(image.at(4, 2, 1), 0);
+    EXPECT_GT(image.at(1, 6, 1), 0);
+    EXPECT_GT(image.at(5, 6, 1), 0);
+  }
+  const auto buffer = make_buffer(8, 8);
+  ImageTile tile;
+  tile.begin(*buffer, buffer->area());
+  for (unsigned i = 0; i < 100; ++i) tile.contribute({1, 1}, 1, 1, i, Spectrum(-1.0f), wavelengths);
+  buffer->merge(tile);
+  EXPECT_EQ(buffer->bad_samples(), 100u);
+  EXPECT_EQ(buffer->first_bad_samples().size(), 32u);
+}
+
+TEST(ImageBuffer, SplatsOfAnEvenFilmAreEvenUpToTheEdge) {
+  // 100 x 100 splats a pixel on a lattice, each of the light of one path: every filter must give back the value itself,
+  // at the edge too, where part of the filter lies outside.
+  for (const auto& f : all_filters()) {
+    const auto buffer = make_buffer(6, 5, f);
+    ImageTile tile;
+    tile.begin(*buffer, buffer->area());
+    constexpr int n = 100;
+    for (int j = 0; j < 5 * n; ++j)
+      for (int i = 0; i < 6 * n; ++i) {
+        tile.count_path();
+        tile.splat({(float(i) + 0.5f) / n, (float(j) + 0.5f) / n}, 0, 0, 0, Spectrum(2.0f), wavelengths, 1);
+      }
+    buffer->merge(tile);
+    const double expected = to_xyz(Spectrum(2.0f), wavelengths).y;
+    const Image image = buffer->develop();
+    for (int y = 0; y < 5; ++y)
+      for (int x = 0; x < 6; ++x) EXPECT_NEAR(image.at(x, y, 1), expected, 0.02 * expected) << name(*f) << x << ' ' << y;
+  }
+}
+
+TEST(ImageBuffer, StateRoundTrip) {
+  const auto a = make_buffer(9, 7), b = make_buffer(9, 7);
+  a->layers = b->layers = {"albedo", "object"};
+  a->prepare();
+  b->prepare();
+  const auto samples = random_samples(a->area(), 4, 5), more = random_samples(a->area(), 4, 6);
+  render(*a, samples, 4);
+  ImageTile tile;
+  tile.begin(*a, a->area());
+  tile.features(2, 3, {{0.1f, 0.2f, 0.3f}, {0, 0, 1}, 2, 7});
+  tile.splat({1.2f, 3.4f}, 1, 3, 0, Spectrum(1.0f), wavelengths, 2);
+  tile.contribute({1, 1}, 1, 1, 3, Spectrum(-1.0f), wavelengths);
+  a->merge(tile);
+  const std::vector<std::byte> state = a->save_state();
+  b->load_state(state);
+  EXPECT_EQ(b->save_state(), state);
+  EXPECT_EQ(a->develop().values, b->develop().values);
+  EXPECT_EQ(b->first_bad_samples().at(0).sample, 3u);
+  render(*a, more, 4);
+  render(*b, more, 4);
+  EXPECT_EQ(a->save_state(), b->save_state());
+
+  const std::vector<std::byte> before = b->save_state();
+  for (size_t length = 0; length < state.size(); length += length < 100 ? 1 : 97)
+    EXPECT_THROW(b->load_state(std::span(state).first(length)), Error) << length;
+  std::vector<std::byte> longer = state;
+  longer.push_back({});
+  EXPECT_THROW(b->load_state(longer), Error);
+  EXPECT_EQ(b->save_state(), before);
+  EXPECT_THROW(make_buffer(7, 9)->load_state(state), Error);
+  EXPECT_THROW(make_buffer(9, 7)->load_state(state), Error);  // other layers
+  const auto other = make_buffer(9, 7, make_filter("BoxFilter"));
+  EXPECT_THROW(other->load_state(state), Error);
+}
+
+TEST(ImageBuffer, CropIsThePartOfThePicture) {
+  const auto buffer = make_buffer(20, 10, make_filter("BoxFilter"));
+  const auto samples = random_samples(buffer->area(), 4, 9);
+  render(*buffer, samples, 8);
+  const auto part = make_buffer(20, 10, make_filter("BoxFilter"));
+  part->crop = {5, 2, 11, 9};
+  part->prepare();
+  std::vector<std::vector<Sample>> inner;
+  for (int y = 2; y < 9; ++y)
+    for (int x = 5; x < 11; ++x) inner.push_back(samples[size_t(y * 20 + x)]);
+  render(*part, inner, 4);
+  const Image whole = buffer->develop(), crop = part->develop();
+  ASSERT_EQ(crop.width, 6);
+  ASSERT_EQ(crop.height, 7);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 6; ++x) EXPECT_EQ(crop.at(x, y, 1), whole.at(x + 5, y + 2, 1));
+  EXPECT_EQ(crop.metadata.at("crop_x"), "5");
+  EXPECT_EQ(crop.metadata.at("full_height"), "10");
+  EXPECT_EQ(crop.metadata.at("color_space"), "xyz");
+
+  for (const std::vector<int>& wrong : {std::vector{1, 2, 3}, {5, 2, 5, 9}, {-1, 0, 4, 4}, {0, 0, 21, 4}}) {
+    part->crop = wrong;
+    EXPECT_THROW(part->prepare(), Error);
+  }
+}
+
+TEST(ImageBuffer, LayersAreMeansOfTheFirstHits) {
+  const auto buffer = make_buffer(4, 4);
+  buffer->layers = {"albedo", "normal", "depth", "object"};
+  buffer->prepare();
+  EXPECT_TRUE(buffer->wants_features());
+  ImageTile tile;
+  tile.begin(*buffer, buffer->area());
+  tile.features(1, 2, {{0.2f, 0.4f, 0.6f}, {0, 0, 1}, 3, 5});
+  tile.features(1, 2, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 5, 6});
+  tile.features(1, 2, {});  // met nothing
+  buffer->merge(tile);
+  tile.begin(*buffer, buffer->area());
+  tile.features(1, 2, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 7, 8});
+  buffer->merge(tile);
+  const Image image = buffer->develop();
+  ASSERT_EQ(image.channels.size(), 11u);
+  EXPECT_EQ(image.channels[3], "albedo.R");
+  EXPECT_NEAR(image.at(1, 2, 3), 1.0 / 4, 1e-6);
+  EXPECT_NEAR(image.at(1, 2, 7), 0.5, 1e-6);
+  EXPECT_NEAR(image.at(1, 2, 9), 5, 1e-6);  // the mean of 3, 5, 7: what met nothing has no depth
+  EXPECT_EQ(image.at(1, 2, 10), 5);
+  EXPECT_EQ(image.at(0, 0, 9), 0);
+  buffer->layers = {"albdo"};
+  EXPECT_THROW(buffer->prepare(), Error);
+}
+
+TEST(ImageBuffer, PreparingAgainKeepsThePictureUnlessTheFilmChanged) {
+  const auto buffer = make_buffer(6, 6);
+  render(*buffer, random_samples(buffer->area(), 2, 1), 6);
+  const Image before = buffer->develop();
+  buffer->prepare();
+  EXPECT_EQ(buffer->develop().values, before.values);
+  buffer->filter = make_filter("BoxFilter");
+  buffer->prepare();
+  EXPECT_EQ(buffer->samples(), 0u);
+  for (const double v : buffer->develop().values) EXPECT_EQ(v, 0);
+}
+
+}  // namespace
+}  // namespace etendue::test

@@ -1,0 +1,186 @@
+// Maps: constants, checkers, images with their encodings, orientation, wrapping, filtering and errors.
+
+#include "etendue/object_map.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "etendue/describe/color.h"
+#include "support/component_test_support.h"
+#include "support/image_file.h"
+
+namespace etendue {
+namespace {
+
+using test::create;
+using test::ImageFile;
+
+SurfacePoint at(float u, float v) {
+  SurfacePoint p = test::surface_point({0, 0, 1});
+  p.uv = {u, v};
+  return p;
+}
+
+TEST(ConstantMap, IsItsValueEverywhere) {
+  const Ref<ObjectMap> map = constant(0.25f);
+  EXPECT_EQ(map->color(at(0, 0), test::wavelengths(), ColorUse::radiance)[1], 0.25f);
+  EXPECT_EQ(map->scalar(at(0.3f, 0.2f)), 0.25f);
+  ASSERT_TRUE(map->constant());
+  EXPECT_EQ(map->constant()->at(500, ColorUse::radiance), 0.25f);
+  const Color ramp = table_spectrum({360, 830}, {0, 1});
+  const Ref<ObjectMap> varied = create<ObjectMap>("ConstantMap", {{"value", ramp}});
+  EXPECT_NEAR(varied->scalar(at(0, 0)), 0.5f, 1e-5f);
+  EXPECT_NEAR(varied->reflectance(at(0, 0), test::wavelengths(595))[0], 0.5f, 1e-5f);
+}
+
+TEST(CheckerMap, AlternatesOverUv) {
+  const Ref<ObjectMap> map =
+      create<ObjectMap>("CheckerMap", {{"first", 0.1}, {"second", 0.9}, {"repeat", std::vector<double>{2, 4, 1}}});
+  EXPECT_FALSE(map->constant());
+  for (int i = -3; i < 5; ++i)
+    for (int k = -3; k < 5; ++k)
+      EXPECT_NEAR(map->scalar(at((float(i) + 0.5f) / 2, (float(k) + 0.5f) / 4)), (i + k) % 2 == 0 ? 0.1f : 0.9f, 1e-6f)
+          << i << " " << k;
+}
+
+TEST(CheckerMap, FlatSurfacesBetweenCubesDoNotFlicker) {
+  const Ref<ObjectMap> map = create<ObjectMap>("CheckerMap", {{"space", "object"}, {"repeat", std::vector<double>{1, 1, 1}}});
+  SurfacePoint p = at(0, 0);
+  float first = -1;
+  for (const float z : {-1e-6f, 0.0f, 1e-6f}) {
+    p.object_position = {0.5f, 0.5f, z};
+    if (first < 0) first = map->scalar(p);
+    EXPECT_EQ(map->scalar(p), first);
+  }
+  p.object_position.x = 1.5f;
+  EXPECT_NE(map->scalar(p), first);
+}
+
+// A 2 x 2 image: grey values that tell the texels apart.
+const std::vector<float> four{0.1f, 0.2f, 0.3f, 0.4f};
+
+TEST(ImageMap, RowZeroIsAtTheTop) {
+  const ImageFile file("four.exr", {2, 2, 1, NumberType::single}, four);
+  const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", "nearest"}});
+  EXPECT_NEAR(map->scalar(at(0.25f, 0.75f)), 0.1f, 1e-6f);
+  EXPECT_NEAR(map->scalar(at(0.75f, 0.75f)), 0.2f, 1e-6f);
+  EXPECT_NEAR(map->scalar(at(0.25f, 0.25f)), 0.3f, 1e-6f);
+  EXPECT_NEAR(map->scalar(at(0.75f, 0.25f)), 0.4f, 1e-6f);
+}
+
+TEST(ImageMap, InterpolatesAndWraps) {
+  const ImageFile file("four.exr", {2, 2, 1, NumberType::single}, four);
+  const auto map = [&](const char* wrap, const char* interpolation = "bilinear") {
+    return create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", interpolation}, {"wrap", wrap}});
+  };
+  EXPECT_NEAR(map("clamp")->scalar(at(0.5f, 0.5f)), 0.25f, 1e-5f);
+  EXPECT_NEAR(map("clamp")->scalar(at(0.5f, 0.75f)), 0.15f, 1e-5f);
+  EXPECT_NEAR(map("clamp", "nearest")->scalar(at(1.25f, 0.75f)), 0.2f, 1e-6f);
+  EXPECT_NEAR(map("repeat", "nearest")->scalar(at(1.25f, 0.75f)), 0.1f, 1e-6f);
+  EXPECT_NEAR(map("repeat", "nearest")->scalar(at(-0.25f, 1.25f)), 0.4f, 1e-6f);
+  EXPECT_NEAR(map("mirror", "nearest")->scalar(at(1.25f, 0.75f)), 0.2f, 1e-6f);
+  EXPECT_NEAR(map("mirror", "nearest")->scalar(at(1.75f, 0.75f)), 0.1f, 1e-6f);
+  EXPECT_EQ(map("black", "nearest")->scalar(at(1.25f, 0.75f)), 0);
+}
+
+TEST(ImageMap, EightBitsAreSrgbAndDecodedBeforeFiltering) {
+  const ImageFile file("bits.png", {2, 1, 3, NumberType::uint8}, {0, 0, 0, 1, 1, 1});
+  const Ref<ObjectMap> map =
+      create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", "bilinear"}, {"wrap", "clamp"}});
+  EXPECT_NEAR(map->scalar(at(0.5f, 0.5f)), 0.5f, 1e-3f);  // encoded, the mean would have been 0.214
+  const ImageFile grey("grey.png", {1, 1, 3, NumberType::uint8}, {0.5f, 0.5f, 0.5f});
+  EXPECT_NEAR(create<ObjectMap>("ImageMap", {{"file", grey.path}})->scalar(at(0.5f, 0.5f)),
+              decode_transfer("srgb", 128 / 255.0), 1e-4);
+  EXPECT_NEAR(create<ObjectMap>("ImageMap", {{"file", grey.path}, {"transfer", "linear"}})->scalar(at(0.5f, 0.5f)), 128 / 255.0,
+              1e-4);
+  const ImageFile deep("deep.png", {1, 1, 4, NumberType::uint16}, {0.25f, 0.25f, 0.25f, 1});
+  EXPECT_NEAR(create<ObjectMap>("ImageMap", {{"file", deep.path}})->scalar(at(0.5f, 0.5f)), decode_transfer("srgb", 0.25),
+              1e-4);
+}
+
+TEST(ImageMap, ColoursBecomeSpectra) {
+  const ImageFile file("red.exr", {1, 1, 3, NumberType::single}, {0.8f, 0.1f, 0.05f});
+  const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}});
+  const Wavelengths w = test::wavelengths();
+  const RgbSpace& space = rgb_space("srgb");
+  for (const ColorUse use : {ColorUse::reflectance, ColorUse::radiance, ColorUse::coefficient}) {
+    const Spectrum got = map->color(at(0.5f, 0.5f), w, use), wanted = rgb_spectrum(space, 0.8f, 0.1f, 0.05f, use, w);
+    for (int i = 0; i < spectrum_size; ++i) EXPECT_NEAR(got[i], wanted[i], 1e-5f);
+  }
+  EXPECT_NEAR(map->scalar(at(0, 0)), 0.95f / 3, 1e-5f);
+}
+
+TEST(ImageMap, FiltersOverTheFootprint) {
+  // A fine checkerboard of 64 x 64 texels: what is smaller than the footprint averages to a half.
+  std::vector<float> values;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) values.push_back(float((x + y) % 2));
+  const ImageFile file("fine.exr", {64, 64, 1, NumberType::single}, values);
+  const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}}),
+                       squares = create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", "nearest"}});
+  test::TestSquare square(2);
+  square.reference();
+  SurfacePoint p = at((10 + 0.5f) / 64, (10 + 0.5f) / 64);
+  p.object = &square;
+  const float texel = map->scalar(p);  // no footprint: the texel itself
+  EXPECT_TRUE(texel == 0 || texel == 1);
+  p.footprint = 2.0f / 64 / 100;
+  EXPECT_NEAR(map->scalar(p), texel, 1e-3f);
+  EXPECT_EQ(squares->scalar(p), texel);
+  p.footprint = 2.0f / 64 * 4;
+  EXPECT_NEAR(map->scalar(p), 0.5f, 1e-3f);
+  EXPECT_NEAR(squares->scalar(p), 0.5f, 1e-3f);
+  p.footprint = 100;
+  EXPECT_NEAR(map->scalar(p), 0.5f, 1e-3f);
+}
+
+TEST(ImageMap, LargeTiledAndUntiledFiles) {
+  std::vector<float> values;
+  for (int y = 0; y < 150; ++y)
+    for (int x = 0; x < 200; ++x) values.push_back(float(x) / 200 + float(y));
+  for (const bool tiled : {false, true}) {
+    ImageHeader header(200, 150, 1, NumberType::single);
+    if (tiled) header.tile_side = 32;
+    const ImageFile file(tiled ? "tiled.exr" : "lines.exr", header, values);
+    const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", "nearest"}});
+    for (const auto& [x, y] : {std::pair(0, 0), {199, 149}, {63, 64}, {100, 31}, {31, 127}})
+      EXPECT_NEAR(map->scalar(at((float(x) + 0.5f) / 200, 1 - (float(y) + 0.5f) / 150)), float(x) / 200 + float(y), 1e-4f)
+          << tiled << x << " " << y;
+  }
+}
+
+std::string error_of(const std::vector<test::Setting>& settings) {
+  try {
+    create<ObjectMap>("ImageMap", settings);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(ImageMap, SaysWhatIsWrong) {
+  const std::string missing = error_of({{"file", "/nowhere/wood.png"}});
+  EXPECT_NE(missing.find("file"), std::string::npos) << missing;
+  EXPECT_NE(missing.find("/nowhere/wood.png"), std::string::npos) << missing;
+  EXPECT_EQ(missing.find('|'), std::string::npos) << missing;
+
+  const ImageFile nonsense("nonsense.png");
+  std::ofstream(nonsense.path) << "this is no picture";
+  EXPECT_NE(error_of({{"file", nonsense.path}}).find(nonsense.path), std::string::npos);
+
+  // A file that ends in the middle.
+  std::vector<float> values;
+  test::Random random(1);
+  for (int i = 0; i < 200 * 200 * 3; ++i) values.push_back(random());
+  const ImageFile whole("cut.exr", {200, 200, 3, NumberType::single}, values);
+  std::filesystem::resize_file(whole.path, std::filesystem::file_size(whole.path) / 2);
+  const std::string cut = error_of({{"file", whole.path}});
+  EXPECT_NE(cut.find(whole.path), std::string::npos) << cut;
+
+  const ImageFile good("good.exr", {2, 2, 1, NumberType::single}, four);
+  EXPECT_NE(error_of({{"file", good.path}, {"color_space", "srgbb"}}).find("srgb"), std::string::npos);
+  EXPECT_NE(error_of({{"file", good.path}, {"transfer", "gama2.2"}}).find("gamma2.2"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,239 @@
+// Renders that are stopped and continued.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "support/checkpoint_test_support.h"
+
+namespace etendue::checkpoint_test {
+namespace {
+
+// ---- ranges -------------------------------------------------------------------------------------------------------------
+
+TEST(CheckpointRanges, are_sorted_joined_and_subtracted) {
+  std::vector<IndexRange> ranges;
+  const auto expect = [&](const std::vector<IndexRange>& expected) { EXPECT_EQ(ranges, expected); };
+  insert(ranges, {8, 12});
+  insert(ranges, {0, 2});
+  insert(ranges, {5, 5});
+  expect({{0, 2}, {8, 12}});
+  insert(ranges, {12, 14});
+  expect({{0, 2}, {8, 14}});
+  EXPECT_EQ(count(ranges), 8u);
+  EXPECT_EQ(missing(ranges, {0, 20}), (std::vector<IndexRange>{{2, 8}, {14, 20}}));
+  EXPECT_EQ(missing(ranges, {3, 5}), (std::vector<IndexRange>{{3, 5}}));
+  EXPECT_EQ(missing(ranges, {9, 14}), std::vector<IndexRange>());
+  EXPECT_EQ(missing({}, {1, 2}), (std::vector<IndexRange>{{1, 2}}));
+  EXPECT_EQ(samples_text(ranges), "samples 0 to 1, 8 to 13");
+  EXPECT_EQ(samples_text({{3, 4}}), "sample 3");
+  drop_short_pass(ranges, 4);
+  expect({{0, 2}, {8, 12}});
+  insert(ranges, {1, 9});
+  expect({{0, 12}});
+  ranges = {{0, 3}};
+  drop_short_pass(ranges, 4);
+  expect({});
+}
+
+// ---- going on -----------------------------------------------------------------------------------------------------------
+
+TEST_F(CheckpointTest, a_render_that_was_stopped_and_continued_has_the_same_bits) {
+  const std::string text = ball_text("PathTracer { max_depth: 3 }",
+                                     "width: 2, layers: [\"albedo\", \"normal\", \"depth\", \"object\", \"variance\", "
+                                     "\"samples\"], path_lengths: 3");
+  const int samples = 3 * step + 100;
+  const Ref<Job> straight = job_of(text, samples);
+  EXPECT_EQ(straight->render(), Ended::samples);
+
+  const Ref<Job> first = job_of(text, samples);
+  first->checkpoint_file = folder / "state";
+  first->progress_interval = 0;
+  first->on_progress = [&](const Progress&) { first->finish(); };
+  EXPECT_EQ(first->render(), Ended::interrupted);
+  EXPECT_EQ(first->samples_done(), (std::vector<IndexRange>{{0, step}}));
+  EXPECT_NE(film(*first), film(*straight));
+
+  const Ref<Job> second = job_of(text, samples);
+  second->threads = 1;
+  second->checkpoint_file = folder / "state";
+  std::vector<double> fractions;
+  Progress last;
+  second->progress_interval = 0;
+  second->on_progress = [&](const Progress& p) {
+    fractions.push_back(p.fraction);
+    last = p;
+  };
+  EXPECT_EQ(second->resume(folder / "state"), Ended::samples);
+  EXPECT_TRUE(film(*second) == film(*straight));
+  EXPECT_EQ(second->picture().metadata.at("samples"), std::to_string(samples));
+  EXPECT_GE(fractions.front(), double(step) / samples);
+  EXPECT_TRUE(std::ranges::is_sorted(fractions));
+  EXPECT_EQ(last.samples, std::uint32_t(samples));
+  EXPECT_EQ(fractions.back(), 1);
+
+  // What is finished stays as it is, and the job can begin afresh.
+  EXPECT_EQ(second->resume(folder / "state"), Ended::samples);
+  EXPECT_TRUE(film(*second) == film(*straight));
+  second->seed = 5;
+  second->checkpoint_file.clear();
+  EXPECT_EQ(second->render(), Ended::samples);
+  EXPECT_FALSE(film(*second) == film(*straight));
+  second->seed = 0;
+  EXPECT_EQ(second->render(), Ended::samples);
+  EXPECT_TRUE(film(*second) == film(*straight));
+}
+
+TEST_F(CheckpointTest, every_renderer_continues_to_the_same_bits_and_merges) {
+  int tried = 0;
+  for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Renderer"))) {
+    SCOPED_TRACE(info->name);
+    const auto fresh = [&] { return job_of(ball_text(info->name + " {}"), 2 * step); };
+    const Ref<Job> straight = fresh();
+    if (const std::string reason = complaint([&] { straight->render(); }); !reason.empty()) continue;  // not for this scene
+    ++tried;
+    part(fresh(), "a", IndexRange{0, 1});
+    const Ref<Job> resumed = fresh();
+    resumed->resume(folder / "a");
+    EXPECT_TRUE(film(*resumed) == film(*straight));
+    EXPECT_TRUE(resumed->renderer->save_state() == straight->renderer->save_state());
+
+    if (!straight->renderer->save_state().empty()) {
+      const Ref<Job> late = fresh();
+      late->passes = IndexRange{1, 2};
+      EXPECT_TRUE(has(complaint([&] { late->render(); }), "learns from one pass to the next"));
+      continue;
+    }
+    part(fresh(), "b", IndexRange{1, 2});
+    const Ref<Job> merged = job_with_picture(merge_checkpoints({folder / "b", folder / "a"}));
+    EXPECT_EQ(merged->image->samples(), straight->image->samples());
+    EXPECT_LE(relative_difference(merged->picture(), straight->picture()), 1e-12);
+  }
+  EXPECT_GE(tried, 1);
+}
+
+/// Brightens what it sees with each pass.
+class LearningRenderer final : public Renderer {
+ public:
+  static void describe(Description<LearningRenderer>& d) { d.summary("For tests: learns from one pass to the next."); }
+  void begin(const RenderContext&) override { learned_ = 0; }
+  void pass(const RenderContext& context, Pass& pass) const override {
+    Renderer::pass(context, pass);
+    ++learned_;
+  }
+  Spectrum radiance(const RenderContext&, const Ray&, SampleContext&) const override { return Spectrum(float(1 + learned_)); }
+  bool unbiased() const override { return false; }
+  std::vector<Advice> misses(const SceneTraits&) const override { return {{"everything", ""}}; }
+  std::vector<std::byte> save_state() const override {
+    std::vector<std::byte> bytes(sizeof learned_);
+    std::memcpy(bytes.data(), &learned_, sizeof learned_);
+    return bytes;
+  }
+  void load_state(std::span<const std::byte> bytes) override {
+    ASSERT_EQ(bytes.size(), sizeof learned_);
+    std::memcpy(&learned_, bytes.data(), sizeof learned_);
+  }
+
+ private:
+  mutable int learned_ = 0;
+};
+
+TEST_F(CheckpointTest, what_a_renderer_learned_is_kept_and_not_torn_apart) {
+  static const Register<LearningRenderer> registered;  // only once this test runs: others go through all renderers
+  const auto fresh = [](int samples) { return job_of(ball_text("LearningRenderer {}"), samples); };
+  const Ref<Job> straight = fresh(3 * step);
+  straight->render();
+  part(fresh(3 * step), "a", IndexRange{0, 2});
+  const Ref<Job> resumed = fresh(3 * step);
+  resumed->resume(folder / "a");
+  EXPECT_TRUE(film(*resumed) == film(*straight));
+
+  // Also from before a short pass.
+  part(fresh(step + 7), "short");
+  const Ref<Job> longer = fresh(3 * step);
+  longer->resume(folder / "short");
+  EXPECT_TRUE(film(*longer) == film(*straight));
+
+  const Ref<Job> late = fresh(3 * step);
+  late->passes = IndexRange{2, 3};
+  EXPECT_TRUE(has(complaint([&] { late->render(); }), "learns from one pass to the next"));
+  Checkpoint c = read_checkpoint(folder / "a");
+  c.done = {{2 * step, 3 * step}};
+  write_checkpoint(c, folder / "b");
+  EXPECT_TRUE(has(complaint([&] { merge_checkpoints({folder / "a", folder / "b"}); }), "learns from one pass to the next"));
+}
+
+TEST_F(CheckpointTest, more_samples_continue_a_finished_render_to_the_same_bits) {
+  const int few = step + 1000, many = 2 * step + 500;
+  const Ref<Job> straight = ball(many);
+  straight->render();
+  part(ball(few), "state");
+  EXPECT_TRUE(read_checkpoint(folder / "state").before_short_pass.has_value());
+
+  const Ref<Job> again = ball(few);  // finished already: nothing is rendered, and what came before the short pass stays
+  again->checkpoint_file = folder / "copy";
+  EXPECT_EQ(again->resume(folder / "state"), Ended::samples);
+  EXPECT_TRUE(read_checkpoint(folder / "copy").before_short_pass.has_value());
+
+  const Ref<Job> longer = ball(many);
+  EXPECT_EQ(longer->resume(folder / "copy"), Ended::samples);
+  EXPECT_EQ(longer->samples_done(), (std::vector<IndexRange>{{0, std::uint32_t(many)}}));
+  EXPECT_TRUE(film(*longer) == film(*straight));
+
+  // Without that state the short pass is completed by another: the same samples in another order.
+  Checkpoint c = read_checkpoint(folder / "state");
+  c.before_short_pass.reset();
+  write_checkpoint(c, folder / "without");
+  const Ref<Job> completed = ball(many);
+  EXPECT_EQ(completed->resume(folder / "without"), Ended::samples);
+  EXPECT_EQ(completed->image->samples(), straight->image->samples());
+  EXPECT_LE(relative_difference(completed->picture(), straight->picture()), 1e-12);
+
+  EXPECT_TRUE(has(complaint([&] { ball(step)->resume(folder / "state"); }), "it holds samples 0 to 17383"));
+}
+
+TEST_F(CheckpointTest, seconds_add_up_and_limits_mean_the_whole) {
+  part(ball(step), "state");
+  Checkpoint c = read_checkpoint(folder / "state");
+  EXPECT_GT(c.seconds, 0);
+  c.seconds = 1000;
+  write_checkpoint(c, folder / "state");
+  const Ref<Job> job = ball(3 * step);
+  Progress last;
+  job->on_progress = [&](const Progress& p) { last = p; };
+  job->time_limit = 999;
+  EXPECT_EQ(job->resume(folder / "state"), Ended::time);
+  EXPECT_EQ(count(job->samples_done()), std::uint32_t(step));
+  job->time_limit = 0;
+  job->error_limit = 1e3;
+  EXPECT_EQ(job->resume(folder / "state"), Ended::error);
+  EXPECT_EQ(count(job->samples_done()), std::uint32_t(step));
+  job->error_limit = 0;
+  job->checkpoint_file = folder / "state";
+  EXPECT_EQ(job->resume(folder / "state"), Ended::samples);
+  EXPECT_GT(last.seconds, 1000);
+  EXPECT_LT(last.samples_per_second, 3 * step * 2 / 1000.0);
+  EXPECT_GT(read_checkpoint(folder / "state").seconds, 1000);
+}
+
+TEST_F(CheckpointTest, a_checkpoint_that_cannot_be_written_does_not_end_a_render) {
+  const Ref<Job> job = ball(2 * step);
+  job->checkpoint_file = folder / "no/such/folder";
+  job->checkpoint_interval = 0;
+  EXPECT_EQ(job->render(), Ended::samples);
+  EXPECT_EQ(count(job->samples_done()), 2u * step);
+  EXPECT_TRUE(has(job->checkpoint_failure(), "no/such")) << job->checkpoint_failure();
+}
+
+TEST_F(CheckpointTest, leftovers_of_killed_processes_are_removed) {
+  const std::string dead = folder.write(".state.part-4194305", "half");  // no process has an id above 2^22
+  const std::string other = folder.write(".else.part-4194305", "half"),
+                    own = folder.write(fmt::format(".state.part-{}", getppid()), "");
+  remove_leftovers(folder / "state");
+  EXPECT_FALSE(std::filesystem::exists(dead));
+  EXPECT_TRUE(std::filesystem::exists(other) && std::filesystem::exists(own));
+}
+
+}  // namespace
+}  // namespace etendue::checkpoint_test

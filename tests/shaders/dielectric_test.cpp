@@ -1,0 +1,144 @@
+// Dielectric: Fresnel's formulas, dispersion and media.
+
+#include "etendue/describe/color.h"
+#include "etendue/object_map.h"
+#include "etendue/shader.h"
+#include "etendue/transport/medium_stack.h"
+#include "support/component_test_support.h"
+#include "support/shader_test_support.h"
+
+namespace etendue::test {
+namespace {
+
+double reflectance(const Scatter& scatter, double angle) {
+  return double(scatter.albedo(at_angle(scatter.frame(), angle), reflection_lobes)[0]);
+}
+
+TEST(Dielectric, FresnelOfGlass) {
+  Arena arena;
+  const Scatter& scatter = *create<Shader>("Dielectric")->bind(test::surface_point(), test::wavelengths(), arena);
+  EXPECT_NEAR(reflectance(scatter, 0), 0.040000, 1e-6);
+  EXPECT_NEAR(reflectance(scatter, 45), 0.050240, 1e-6);
+  EXPECT_NEAR(reflectance(scatter, 60), 0.089187, 1e-6);
+  // At Brewster's angle only rs is left: F = ((n^2 - 1) / (n^2 + 1))^2 / 2.
+  const double brewster = 56.309932;
+  EXPECT_NEAR(reflectance(scatter, brewster), 0.5 * std::pow(1.25 / 3.25, 2), 1e-6);
+  // From inside, total reflection begins at 41.810 degrees.
+  EXPECT_LT(reflectance(scatter, 180 - 41.80), 1);
+  EXPECT_EQ(reflectance(scatter, 180 - 41.82), 1);
+  // The mean over diffuse illumination, integral of 2 F cos sin dtheta, from outside and inside.
+  double outside = 0, inside = 0;
+  constexpr int steps = 20000;
+  for (int i = 0; i < steps; ++i) {
+    const double c = std::sqrt((i + 0.5) / steps), angle = std::acos(c) * 180 / M_PI;
+    outside += reflectance(scatter, angle) / steps;
+    inside += reflectance(scatter, 180 - angle) / steps;
+  }
+  EXPECT_NEAR(outside, 0.091778, 1e-5);
+  EXPECT_NEAR(inside, 0.596346, 1e-5);
+}
+
+TEST(Dielectric, SamplesReflectAndRefract) {
+  Arena arena;
+  const Scatter& scatter = *create<Shader>("Dielectric")->bind(test::surface_point(), test::wavelengths(), arena);
+  const Vector3 n(scatter.frame().n);
+  for (const double angle : {0.0, 30.0, 70.0, 150.0, 170.0}) {
+    const Vector3 out = at_angle(scatter.frame(), angle);
+    const float f = float(reflectance(scatter, angle)), eta = angle < 90 ? 1.5f : 1 / 1.5f;
+    const auto mirrored = scatter.sample(out, f * 0.99f, {}), through = scatter.sample(out, f * 1.01f, {});
+    ASSERT_TRUE(mirrored && through);
+    EXPECT_EQ(mirrored->lobe, specular_reflection);
+    EXPECT_NEAR(mirrored->density, f, 1e-6f);
+    EXPECT_NEAR(mirrored->weight[0], 1, 1e-6f);
+    EXPECT_EQ(mirrored->eta, 1);
+    EXPECT_EQ(through->lobe, specular_transmission);
+    EXPECT_NEAR(through->density, 1 - f, 1e-6f);
+    EXPECT_FLOAT_EQ(through->eta, eta);
+    EXPECT_FALSE(through->dispersive);
+    // Snell: the tangential part of eta times the direction is continuous.
+    const Vector3 tangent_out = out - dot(n, out) * n, tangent_in = through->direction - dot(n, through->direction) * n;
+    EXPECT_LT(length(tangent_out + eta * tangent_in), 1e-5f);
+    EXPECT_LT(dot(n, out) * dot(n, through->direction), 0);
+    EXPECT_NEAR(length(through->direction), 1, 1e-6f);
+    // Radiance is compressed by the square of the index, power is not.
+    EXPECT_NEAR(through->weight[0], 1 / (eta * eta), 1e-5f);
+    EXPECT_NEAR(scatter.sample(out, f * 1.01f, {}, Transport::importance)->weight[0], 1, 1e-5f);
+    // Reflected and refracted parts together are everything.
+    EXPECT_NEAR(scatter.albedo(out, reflection_lobes)[0] + scatter.albedo(out, transmission_lobes)[0], 1, 1e-6f);
+    EXPECT_EQ(scatter.albedo(out)[0], 1);
+    // One lobe alone has its fraction as weight.
+    EXPECT_NEAR(scatter.sample(out, 0.99f, {}, Transport::importance, specular_reflection)->weight[0], f, 1e-6f);
+    EXPECT_NEAR(scatter.sample(out, 0, {}, Transport::importance, specular_transmission)->weight[0], 1 - f, 1e-6f);
+  }
+  // Under total reflection nothing is refracted.
+  const Vector3 out = at_angle(scatter.frame(), 120);
+  EXPECT_EQ(scatter.sample(out, one_minus_epsilon, {})->lobe, specular_reflection);
+  EXPECT_FALSE(scatter.sample(out, 0.5f, {}, Transport::radiance, specular_transmission));
+}
+
+TEST(Dielectric, Disperses) {
+  Arena arena;
+  const Color index = table_spectrum({360, 830}, {1.6f, 1.4f});
+  const Ref<Shader> shader = create<Shader>("Dielectric", {{"ior", index}});
+  Wavelengths w = test::wavelengths(500);
+  const SurfacePoint p = test::surface_point();
+  const Scatter& scatter = *shader->bind(p, w, arena);
+  const double n_hero = 1.6 - 0.2 * (500.0 - 360) / 470;
+  const double critical = std::asin(1 / n_hero) * 180 / M_PI;
+  // From inside, just below the hero's critical angle; shorter wavelengths have a higher index and are totally reflected.
+  const double angle = 180 - (critical - 0.05);
+  const Vector3 out = at_angle(scatter.frame(), angle);
+  const Spectrum reflected = scatter.albedo(out, reflection_lobes);
+  ASSERT_LT(reflected[0], 1);
+  const auto mirrored = scatter.sample(out, 0, {});
+  EXPECT_FALSE(mirrored->dispersive);
+  int total = 0;
+  for (int i = 0; i < spectrum_size; ++i) {
+    if (w[i] < 500) {
+      ++total;
+      EXPECT_EQ(reflected[i], 1);
+    }
+    EXPECT_NEAR(mirrored->weight[i], reflected[i] / reflected[0], 1e-5f);
+  }
+  EXPECT_GT(total, 0);
+  const auto through = scatter.sample(out, one_minus_epsilon, {});
+  EXPECT_EQ(through->lobe, specular_transmission);
+  EXPECT_TRUE(through->dispersive);
+  EXPECT_NEAR(through->eta, 1 / n_hero, 1e-5);
+  EXPECT_TRUE(through->weight.finite());
+  EXPECT_NEAR(through->weight[0], n_hero * n_hero, 1e-4);
+  // A path of one wavelength has nothing left to drop.
+  w.drop_secondary();
+  EXPECT_FALSE(shader->bind(p, w, arena)->sample(out, one_minus_epsilon, {})->dispersive);
+}
+
+TEST(Dielectric, TakesTheIndexOutsideFromTheMedia) {
+  test::TestSquare glass, water;
+  const Ref<Shader> glass_shader = create<Shader>("Dielectric", {{"ior", 1.5}}),
+                    water_shader = create<Shader>("Dielectric", {{"ior", 1.33}});
+  glass.reference();  // on the stack: never to be deleted through a Ref
+  water.reference();
+  glass.shader = glass_shader;
+  water.shader = water_shader;
+  MediumStack media;
+  media.enter(water);
+  SurfacePoint p = test::surface_point();
+  p.object = &glass;
+  p.media = &media;
+  Arena arena;
+  const double normal = std::pow((1.5 - 1.33) / (1.5 + 1.33), 2);
+  EXPECT_NEAR(reflectance(*glass_shader->bind(p, test::wavelengths(), arena), 0), normal, 1e-6);
+  // Seen from inside the glass, the stack holds the glass as well.
+  media.enter(glass);
+  const Scatter& scatter = *glass_shader->bind(p, test::wavelengths(), arena);
+  EXPECT_NEAR(reflectance(scatter, 180), normal, 1e-6);
+  EXPECT_NEAR(scatter.sample(at_angle(scatter.frame(), 180), 0.9f, {})->eta, 1.33 / 1.5, 1e-6);
+}
+
+TEST(Dielectric, RefusesWhatIsNoIndex) {
+  EXPECT_THROW(create<Shader>("Dielectric", {{"ior", 0.0}}), Error);
+  EXPECT_THROW(create<Shader>("Dielectric", {{"ior", complex_index(flat_spectrum(1), flat_spectrum(2))}}), Error);
+}
+
+}  // namespace
+}  // namespace etendue::test

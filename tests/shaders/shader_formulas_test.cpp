@@ -1,0 +1,552 @@
+// Every smooth model against its paper's formula, computed here in double precision and in another form where there is one, at
+// random pairs of directions, with all members away from their defaults: colours that differ between wavelengths, alphas that
+// differ along and across a tangent that is rotated, both sides of the surface.
+
+#include <complex>
+
+#include "components/shaders/microfacet/microfacet.h"
+#include "etendue/describe/color.h"
+#include "etendue/object_map.h"
+#include "support/component_test_support.h"
+
+namespace etendue {
+namespace {
+
+using test::create;
+using test::Setting;
+
+struct V {
+  double x, y, z;
+};
+double dot(const V& a, const V& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+V sum(const V& a, const V& b, double k = 1) { return {a.x + k * b.x, a.y + k * b.y, a.z + k * b.z}; }
+V scaled(const V& a, double k) { return {k * a.x, k * a.y, k * a.z}; }
+V unit(const V& a) { return scaled(a, 1 / std::sqrt(dot(a, a))); }
+double pow2(double x) { return x * x; }
+double pow5(double x) { return x * x * x * x * x; }
+
+/// A colour that is linear in the wavelength, and its value at one.
+struct Slope {
+  double at360, at830;
+  Color color() const { return table_spectrum({360, 830}, {float(at360), float(at830)}); }
+  double operator()(double lambda) const { return at360 + (at830 - at360) * (lambda - 360) / 470; }
+};
+
+/// On a square whose u is x and whose normal is z: directions are local ones.
+SurfacePoint flat_point() {
+  static test::TestSquare* const square = [] {
+    auto* made = new test::TestSquare;
+    made->reference();
+    return made;
+  }();
+  SurfacePoint p = test::surface_point({0, 0, 1});
+  p.object = square;
+  return p;
+}
+
+/// f of a pair of directions in the frame of the brush strokes, both above the surface, at a wavelength.
+using Formula = std::function<double(const V& out, const V& in, double lambda)>;
+
+V turned(const V& v, double turns) {  // into a frame that is turned counter-clockwise
+  const double c = std::cos(2 * M_PI * turns), s = std::sin(2 * M_PI * turns);
+  return {c * v.x + s * v.y, c * v.y - s * v.x, v.z};
+}
+
+/// Compares value, density by its own samples' weight, and the other side of the surface.
+void expect_formula(const std::string& name, const Ref<Shader>& shader, double rotation, const Formula& formula,
+                    double tolerance = 2e-4, Lobes which = smooth_lobes) {
+  const Wavelengths w = test::wavelengths(430);
+  Arena arena;
+  const Scatter* scatter = shader->bind(flat_point(), w, arena);
+  ASSERT_NE(scatter, nullptr) << name;
+  test::Random random(17);
+  int compared = 0;
+  for (int i = 0; i < 400; ++i) {
+    Vector3 out = random.direction(), in = random.direction();
+    in.z = std::copysign(in.z, out.z);
+    if (i % 3 == 0) {  // near the mirror direction, where lobes are
+      in = normalize(Vector3{-out.x, -out.y, out.z} + 0.1f * random.direction());
+      if (in.z * out.z < 0) in.z = -in.z;
+    }
+    if (std::abs(out.z) < 0.03f || std::abs(in.z) < 0.03f) continue;
+    const Spectrum f = scatter->evaluate(out, in, Transport::radiance, which) / scatter->cosine(in);
+    const V o = turned({double(out.x), double(out.y), std::abs(double(out.z))}, rotation),
+            t = turned({double(in.x), double(in.y), std::abs(double(in.z))}, rotation);
+    for (int k = 0; k < spectrum_size; ++k) {
+      const double expected = formula(o, t, double(w[k]));
+      // Narrow lobes amplify the rounding of directions by the square of their narrowness; far tails do not count.
+      EXPECT_NEAR(double(f[k]), expected, tolerance * std::abs(expected) + 4e-6) << name << " at " << w[k] << " nm, pair " << i;
+      ++compared;
+    }
+    if (testing::Test::HasFailure()) return;
+    // What is drawn has the weight that value and density say.
+    const float choice = random();
+    if (const auto s = scatter->sample(out, choice, random.pair(), Transport::radiance, which); s && !s->specular()) {
+      const ScatterValue both = scatter->value_and_density(out, s->direction, Transport::radiance, which);
+      for (int k = 0; k < spectrum_size; ++k)
+        EXPECT_NEAR(s->weight[k], both.value[k] / both.density, 3e-3f * s->weight[k] + 1e-5f) << name;
+    }
+  }
+  EXPECT_GT(compared, 1000) << name;
+}
+
+// ---- facets ----------------------------------------------------------------------------------------------------------------
+
+struct Facets {
+  bool ggx;
+  double ax, ay;
+  double D(const V& m) const {
+    const double t2 = (pow2(m.x / ax) + pow2(m.y / ay)) / pow2(m.z), c4 = pow2(pow2(m.z));
+    return (ggx ? 1 / pow2(1 + t2) : std::exp(-t2)) / (M_PI * ax * ay * c4);
+  }
+  double lambda(const V& v) const {
+    const double t2 = (pow2(ax * v.x) + pow2(ay * v.y)) / pow2(v.z);
+    if (t2 == 0) return 0;
+    if (ggx) return (std::sqrt(1 + t2) - 1) / 2;
+    const double a = 1 / std::sqrt(t2);
+    return (std::exp(-a * a) / (a * std::sqrt(M_PI)) - std::erfc(a)) / 2;
+  }
+  double reflection(const V& out, const V& in) const {  // f / F
+    const V m = unit(sum(out, in));
+    return D(m) / (1 + lambda(out) + lambda(in)) / (4 * out.z * in.z);
+  }
+};
+
+/// Of amplitudes, for any complex index: |r|^2 averaged over both polarisations.
+double fresnel(double cosine, std::complex<double> n) {
+  const std::complex<double> inside = std::sqrt(n * n - (1 - cosine * cosine));
+  const double s = std::norm((cosine - inside) / (cosine + inside)),
+               p = std::norm((n * n * cosine - inside) / (n * n * cosine + inside));
+  return (s + p) / 2;
+}
+
+/// The integral of 2 g(c) c dc over [0, 1].
+template <class G>
+double diffuse_mean(G&& g, int steps = 4000) {
+  double total = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double c = (i + 0.5) / steps;
+    total += 2 * c * g(c) / steps;
+  }
+  return total;
+}
+
+TEST(ShaderFormulas, RoughConductor) {
+  const Slope tint{0.9, 0.6}, n{0.3, 1.2}, k{2, 4};
+  for (const bool ggx : {true, false}) {
+    const Facets facets{ggx, 0.45, 0.2};
+    const auto f = [&](const V& out, const V& in, double l) {
+      return tint(l) * fresnel(dot(out, unit(sum(out, in))), {n(l), k(l)}) * facets.reflection(out, in);
+    };
+    const std::vector<Setting> settings = {{"ior", complex_index(n.color(), k.color())},
+                                           {"color", tint.color()},
+                                           {"roughness", 0.45},
+                                           {"roughness_y", 0.2},
+                                           {"rotation", 0.1},
+                                           {"distribution", ggx ? "ggx" : "beckmann"}};
+    const Ref<Shader> once = create<Shader>("Conductor", settings);
+    set(*once, "multiple_scattering", Value(false));
+    once->prepare();
+    expect_formula("once", once, 0.1, f);
+
+    // Light scattered more than once has a lobe of its own (Kulla & Conty 2017), whose colour is a series of the mean.
+    const MultipleReflection more({ggx ? MicrofacetDistribution::ggx : MicrofacetDistribution::beckmann, 0.45f, 0.2f});
+    expect_formula(
+        "all", create<Shader>("Conductor", settings), 0.1,
+        [&](const V& out, const V& in, double l) {
+          const double mean = diffuse_mean([&](double c) { return fresnel(c, {n(l), k(l)}); }, 400);
+          const double lost = double(more.mean_missing());
+          const auto missing = [&](const V& v) { return double(more.missing({float(v.x), float(v.y), float(v.z)})); };
+          return f(out, in, l) +
+                 tint(l) * mean * mean * (1 - lost) / (1 - mean * lost) * missing(out) * missing(in) / (M_PI * lost);
+        },
+        1.5e-3);
+  }
+}
+
+TEST(ShaderFormulas, RoughDielectric) {
+  const Slope n{1.7, 1.4};
+  for (const bool ggx : {true, false}) {
+    const Facets facets{ggx, 0.5, 0.25};
+    const Ref<Shader> shader = create<Shader>("Dielectric", {{"ior", n.color()},
+                                                             {"roughness", 0.5},
+                                                             {"roughness_y", 0.25},
+                                                             {"rotation", 0.3},
+                                                             {"distribution", ggx ? "ggx" : "beckmann"}});
+    const Wavelengths w = test::wavelengths(500);
+    Arena arena;
+    const Scatter& s = *shader->bind(flat_point(), w, arena);
+    test::Random random(3);
+    int through = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Vector3 out = random.direction(), in = random.direction();
+      if (std::abs(out.z) < 0.05f || std::abs(in.z) < 0.05f) continue;
+      const V o = turned({double(out.x), double(out.y), double(out.z)}, 0.3),
+              t = turned({double(in.x), double(in.y), double(in.z)}, 0.3);
+      const Spectrum radiance = s.evaluate(out, in) / s.cosine(in),
+                     importance = s.evaluate(out, in, Transport::importance) / s.cosine(in);
+      for (int k = 0; k < spectrum_size; ++k) {
+        const double above = 1, below = n(double(w[k])), no = out.z > 0 ? above : below, ni = in.z > 0 ? above : below;
+        double expected = 0;
+        if (out.z * in.z > 0) {
+          const V m = scaled(unit(sum(o, t)), out.z > 0 ? 1 : -1);
+          const V a{o.x, o.y, std::abs(o.z)}, b{t.x, t.y, std::abs(t.z)};
+          const double eta = out.z > 0 ? below : 1 / below;
+          expected =
+              fresnel(std::abs(dot(o, m)), eta) * facets.D(m) / (1 + facets.lambda(a) + facets.lambda(b)) / (4 * a.z * b.z);
+        } else {  // Walter et al. 2007, eq. 21, with h = -(n_o o + n_i i)
+          V m = unit(scaled(sum(scaled(o, no), t, ni), -1));
+          if (m.z < 0) m = scaled(m, -1);
+          const double om = dot(o, m), im = dot(t, m);
+          if (om * o.z > 0 && im * t.z > 0)
+            expected = std::abs(om * im / (o.z * t.z)) * ni * ni * (1 - fresnel(std::abs(om), ni / no)) * facets.D(m) /
+                       ((1 + facets.lambda(o)) * (1 + facets.lambda(t))) / pow2(no * om + ni * im);
+        }
+        // That is what a beam's power does. Radiance grows by the square of the index on the side it leaves on.
+        const double tolerance = 1e-3 * expected + 2e-6;
+        EXPECT_NEAR(double(importance[k]), expected, tolerance) << ggx << " " << i << " " << k;
+        EXPECT_NEAR(double(radiance[k]), expected * no * no / (ni * ni), tolerance * 3) << ggx << " " << i << " " << k;
+        through += out.z * in.z < 0 && expected > 0;
+      }
+      if (HasFailure()) return;
+    }
+    EXPECT_GT(through, 1000);
+  }
+}
+
+// Of light scattered more than once at an isotropic boundary: at each angle, whatever single scattering loses leaves, so that
+// both together reflect and let through all, and reciprocity holds between the sides.
+TEST(ShaderFormulas, RoughDielectricLosesNothing) {
+  for (const double alpha : {0.3, 0.8}) {
+    const Ref<Shader> shader = create<Shader>("Dielectric", {{"roughness", alpha}, {"ior", flat_spectrum(1.5f)}});
+    Arena arena;
+    const Scatter& s = *shader->bind(flat_point(), test::wavelengths(), arena);
+    for (const double angle : {15.0, 60.0, 120.0, 165.0}) {
+      const double t = angle * M_PI / 180;
+      const Vector3 out{float(std::sin(t)), 0, float(std::cos(t))};
+      double sums[2] = {};
+      constexpr int steps = 400;
+      for (int i = 0; i < steps; ++i)
+        for (int k = 0; k < steps; ++k) {
+          const double z = -1 + 2 * (i + 0.5) / steps, phi = M_PI * (k + 0.5) / steps, r = std::sqrt(1 - z * z);
+          const Vector3 in{float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)};
+          sums[z * double(out.z) < 0] += double(s.evaluate(out, in, Transport::importance)[0]) * 4 * M_PI / (steps * steps);
+        }
+      EXPECT_NEAR(sums[0] + sums[1], 1, 0.006) << alpha << " at " << angle;
+      EXPECT_NEAR(double(s.albedo(out, reflection_lobes)[0]), sums[0], 0.01) << alpha << " at " << angle;
+    }
+  }
+}
+
+TEST(ShaderFormulas, Plastic) {
+  const Slope rho{0.2, 0.85};
+  for (const bool nonlinear : {true, false})
+    for (const double eta : {1.3, 1.8})
+      for (const double roughness : {0.0, 0.3}) {
+        const Ref<Shader> shader = create<Shader>(
+            "Plastic", {{"color", rho.color()}, {"ior", eta}, {"roughness", roughness}, {"distribution", "beckmann"}});
+        set(*shader, "nonlinear", Value(nonlinear));
+        const Facets facets{false, roughness, roughness};
+        const CoatTransmittance coat({MicrofacetDistribution::beckmann, float(roughness)}, float(eta));
+        const auto passed = [&](const V& v) {
+          return roughness > 0 ? double(coat({float(v.x), float(v.y), float(v.z)})) : 1 - fresnel(v.z, eta);
+        };
+        const double mean =
+            roughness > 0 ? double(coat.mean()) : diffuse_mean([&](double c) { return 1 - fresnel(c, eta); }, 20000);
+        const double inside = 1 - mean / (eta * eta);
+        expect_formula(
+            "Plastic", shader, 0,
+            [&](const V& out, const V& in, double l) {
+              const double body = rho(l) / (1 - (nonlinear ? rho(l) : 1) * inside);
+              double f = passed(out) * passed(in) * body / (M_PI * eta * eta);
+              if (roughness > 0) f += fresnel(dot(out, unit(sum(out, in))), eta) * facets.reflection(out, in);
+              return f;
+            },
+            5e-4);
+      }
+}
+
+/// The mean over half vectors of what a coat reflects, in the test's own quadrature.
+TEST(ShaderFormulas, RoughCoatLetsThroughWhatItDoesNotReflect) {
+  for (const double alpha : {0.2, 0.6}) {
+    const Facets facets{true, alpha, alpha};
+    const CoatTransmittance coat({MicrofacetDistribution::ggx, float(alpha)}, 1.6f);
+    for (const double angle : {0.0, 50.0, 78.0}) {
+      const V out{std::sin(angle * M_PI / 180), 0, std::cos(angle * M_PI / 180)};
+      double reflected = 0;
+      constexpr int steps = 500;
+      for (int i = 0; i < steps; ++i)
+        for (int k = 0; k < steps; ++k) {
+          const double z = (i + 0.5) / steps, phi = M_PI * (k + 0.5) / steps, r = std::sqrt(1 - z * z);
+          const V in{r * std::cos(phi), r * std::sin(phi), z};
+          reflected += fresnel(dot(out, unit(sum(out, in))), 1.6) * facets.reflection(out, in) * z * 2 * M_PI / (steps * steps);
+        }
+      EXPECT_NEAR(1 - double(coat({float(out.x), 0, float(out.z)})), reflected, 0.0035) << alpha << " at " << angle;
+    }
+  }
+}
+
+// ---- matt ------------------------------------------------------------------------------------------------------------------
+
+// Portsmouth, Kutz & Hill 2025. Its albedo E by quadrature of the single-scattering part.
+TEST(ShaderFormulas, OrenNayar) {
+  const Slope rho{0.3, 0.95};
+  for (const double r : {0.35, 1.0}) {
+    const double A = 1 / (1 + (0.5 - 2 / (3 * M_PI)) * r);
+    const auto once = [&](const V& out, const V& in) {
+      const double s = out.x * in.x + out.y * in.y;
+      return A / M_PI * (1 + r * (s > 0 ? s / std::max(out.z, in.z) : s));
+    };
+    std::vector<double> table(401);
+    for (size_t i = 0; i < table.size(); ++i) {
+      const double c = std::max(pow2(double(i) / double(table.size() - 1)), 1e-6);  // finer near the horizon
+      const V out{std::sqrt(1 - c * c), 0, c};
+      constexpr int steps = 160;
+      for (int a = 0; a < steps; ++a)
+        for (int b = 0; b < steps; ++b) {
+          const double theta = M_PI / 2 * (a + 0.5) / steps, z = std::cos(theta), q = std::sin(theta);
+          const double phi = M_PI * (b + 0.5) / steps, weight = 2 * z * q * (M_PI / 2 / steps) * M_PI / steps;
+          table[i] += once(out, {q * std::cos(phi), q * std::sin(phi), z}) * weight;
+        }
+    }
+    const auto E = [&](double c) {
+      const double x = std::sqrt(c) * double(table.size() - 1);
+      const size_t i = std::min(size_t(x), table.size() - 2);
+      return std::lerp(table[i], table[i + 1], x - double(i));
+    };
+    const double Em = diffuse_mean(E);
+    expect_formula(
+        "EON", create<Shader>("OrenNayar", {{"color", rho.color()}, {"roughness", r}}), 0,
+        [&](const V& out, const V& in, double l) {
+          const double more = rho(l) * rho(l) * Em / (1 - rho(l) * (1 - Em));
+          return rho(l) * once(out, in) + more / M_PI * (1 - E(out.z)) * (1 - E(in.z)) / (1 - Em);
+        },
+        1.5e-3);
+  }
+}
+
+TEST(ShaderFormulas, LambertianAndTransmitter) {
+  const Slope back{0.5, 0.1}, through{0.1, 0.45};
+  expect_formula("Lambertian", create<Shader>("Lambertian", {{"color", back.color()}}), 0,
+                 [&](const V&, const V&, double l) { return back(l) / M_PI; });
+  const Ref<Shader> sheet =
+      create<Shader>("DiffuseTransmitter", {{"reflectance", back.color()}, {"transmittance", through.color()}});
+  expect_formula("sheet", sheet, 0, [&](const V&, const V&, double l) { return back(l) / M_PI; });
+  const Wavelengths w = test::wavelengths(430);
+  Arena arena;
+  const Scatter& s = *sheet->bind(flat_point(), w, arena);
+  test::Random random(4);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 out = random.direction(), in = random.direction();
+    const bool crosses = out.z * in.z < 0;
+    const Spectrum f = s.evaluate(out, in) / s.cosine(in);
+    for (int k = 0; k < spectrum_size; ++k)
+      EXPECT_NEAR(double(f[k]) * M_PI, crosses ? through(double(w[k])) : back(double(w[k])), 1e-5);
+    double r = 0, t = 0;
+    for (int k = 0; k < spectrum_size; ++k) r += back(double(w[k])), t += through(double(w[k]));
+    EXPECT_NEAR(double(s.density(out, in)), std::abs(double(in.z)) / M_PI * (crosses ? t : r) / (r + t), 1e-5);
+    const auto sample = s.sample(out, random(), random.pair());
+    ASSERT_TRUE(sample);
+    const bool sample_crosses = sample->direction.z * out.z < 0;
+    EXPECT_NEAR(double(sample->density), std::abs(double(sample->direction.z)) / M_PI * (sample_crosses ? t : r) / (r + t),
+                1e-5);
+    EXPECT_NEAR(double(sample->weight[0]), (sample_crosses ? through(double(w[0])) / t : back(double(w[0])) / r) * (r + t),
+                1e-4);
+  }
+}
+
+// ---- classic models ---------------------------------------------------------------------------------------------------------
+
+TEST(ShaderFormulas, Ward) {
+  const Slope kd{0.3, 0.1}, ks{0.2, 0.6};
+  const double ax = 0.35, ay = 0.15;
+  expect_formula(
+      "Ward",
+      create<Shader>(
+          "WardShader",
+          {{"color", kd.color()}, {"specular", ks.color()}, {"roughness_u", ax}, {"roughness_v", ay}, {"rotation", 0.15}}),
+      0.15, [&](const V& out, const V& in, double l) {
+        const V H = sum(out, in);
+        return kd(l) / M_PI + ks(l) * std::exp(-(pow2(H.x / ax) + pow2(H.y / ay)) / pow2(H.z)) * dot(H, H) /
+                                  (M_PI * ax * ay * pow2(pow2(H.z)));
+      });
+}
+
+TEST(ShaderFormulas, AshikhminShirley) {
+  const Slope rd{0.7, 0.4}, rs{0.05, 0.3};
+  const double nu = 30, nv = 8;
+  expect_formula(
+      "Ashikhmin & Shirley",
+      create<Shader>(
+          "AshikhminShirley",
+          {{"color", rd.color()}, {"specular", rs.color()}, {"exponent_u", nu}, {"exponent_v", nv}, {"rotation", -0.2}}),
+      -0.2, [&](const V& out, const V& in, double l) {
+        const V h = unit(sum(out, in));
+        const double u = dot(out, h), phi = std::atan2(h.y, h.x);
+        const double n = nu * pow2(std::cos(phi)) + nv * pow2(std::sin(phi));
+        const double F = rs(l) + (1 - rs(l)) * pow5(1 - u);
+        return std::sqrt((nu + 1) * (nv + 1)) / (8 * M_PI) * std::pow(h.z, n) * F / (u * std::max(out.z, in.z)) +
+               28 * rd(l) / (23 * M_PI) * (1 - rs(l)) * (1 - pow5(1 - out.z / 2)) * (1 - pow5(1 - in.z / 2));
+      });
+}
+
+TEST(ShaderFormulas, Phong) {
+  const Slope kd{0.3, 0.5}, ks{0.6, 0.1};
+  expect_formula("Phong", create<Shader>("PhongShader", {{"color", kd.color()}, {"specular", ks.color()}, {"exponent", 17.0}}),
+                 0, [&](const V& out, const V& in, double l) {
+                   const double alpha = -out.x * in.x - out.y * in.y + out.z * in.z;
+                   return kd(l) / M_PI + ks(l) * 19 / (2 * M_PI) * std::pow(std::max(alpha, 0.0), 17);
+                 });
+}
+
+TEST(ShaderFormulas, Lafortune) {
+  const Slope kd{0.2, 0.1}, first{0.5, 0.3}, second{0.1, 0.25};
+  const Ref<Shader> shader =
+      create<Shader>("LafortuneShader", {{"color", kd.color()},
+                                         {"coefficients", std::vector<double>{-0.9, -0.7, 0.8, 0.5, 0.6, 0.6}},
+                                         {"exponents", std::vector<double>{9, 3}},
+                                         {"rotation", 0.2}});
+  Value::List colors;
+  for (const Slope* s : {&first, &second}) {
+    const Ref<ObjectMap> map = create<ObjectMap>("ConstantMap", {{"value", s->color()}});
+    colors.emplace_back(Ref<Component>(map));
+  }
+  set(*shader, "lobe_colors", Value(colors));
+  shader->prepare();
+  expect_formula("Lafortune", shader, 0.2, [&](const V& out, const V& in, double l) {
+    const auto lobe = [&](double x, double y, double z, double n) {
+      return std::pow(std::max(x * out.x * in.x + y * out.y * in.y + z * out.z * in.z, 0.0), n);
+    };
+    return kd(l) / M_PI + first(l) * lobe(-0.9, -0.7, 0.8, 9) + second(l) * lobe(0.5, 0.6, 0.6, 3);
+  });
+  // Where all together would reflect more than arrives, all are scaled down alike: the base keeps its part.
+  const Ref<Shader> strong =
+      create<Shader>("LafortuneShader",
+                     {{"color", 0.6}, {"coefficients", std::vector<double>{-1, -1, 1}}, {"exponents", std::vector<double>{4}}});
+  Arena arena;
+  const Scatter& s = *strong->bind(flat_point(), test::wavelengths(), arena);
+  const Vector3 up{0, 0, 1};
+  const double lobe = 2 * M_PI / 6;  // of f = cos^4 at normal incidence, where it is greatest
+  EXPECT_NEAR(double(s.albedo(up, diffuse_lobes)[0]), 0.6 / (0.6 + lobe), 2e-3);
+  EXPECT_NEAR(double(s.evaluate(up, up)[0]), (0.6 / M_PI + 1) / (0.6 + lobe), 2e-3);
+}
+
+// Shirley, Hu, Smits & Lafortune 1997.
+TEST(ShaderFormulas, CoupledMatteSpecular) {
+  const Slope rm{0.9, 0.5}, r0{0.05, 0.2};
+  const Ref<Shader> shader = create<Shader>("CoupledMatteSpecular", {{"color", rm.color()}, {"specular", r0.color()}});
+  const auto R = [&](double c, double l) { return r0(l) + (1 - r0(l)) * pow5(1 - c); };
+  expect_formula("coupled", shader, 0, [&](const V& out, const V& in, double l) {
+    return 21 / (20 * M_PI * (1 - r0(l))) * rm(l) * (1 - R(out.z, l)) * (1 - R(in.z, l));
+  });
+  const Wavelengths w = test::wavelengths(430);
+  Arena arena;
+  const Scatter& s = *shader->bind(flat_point(), w, arena);
+  for (const double c : {1.0, 0.6, 0.15}) {
+    const Vector3 out{0, float(-std::sqrt(1 - c * c)), float(c)};
+    const auto mirrored = s.sample(out, 0, {}, Transport::radiance, specular_reflection);
+    ASSERT_TRUE(mirrored);
+    for (int k = 0; k < spectrum_size; ++k) {
+      EXPECT_NEAR(double(mirrored->weight[k]), R(c, double(w[k])), 1e-5);
+      EXPECT_NEAR(double(s.albedo(out, diffuse_lobes)[k]), rm(double(w[k])) * (1 - R(c, double(w[k]))), 1e-5);
+    }
+    // Both lobes asked: samples of the base weigh value times cosine over density.
+    test::Random random(8);
+    for (int i = 0; i < 40; ++i) {
+      const auto sample = s.sample(out, random(), random.pair());
+      ASSERT_TRUE(sample);
+      if (sample->specular()) continue;
+      const ScatterValue v = s.value_and_density(out, sample->direction);
+      for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(sample->weight[k], v.value[k] / v.density, 1e-4f * sample->weight[k]);
+    }
+  }
+}
+
+TEST(ShaderFormulas, Schlick) {
+  const Slope top{0.05, 0.4}, base{0.9, 0.3};
+  const double r = 0.3, p = 0.4, q = 0.7;  // the base layer: between gloss and matt, isotropic
+  const Ref<Shader> shader = create<Shader>("SchlickShader", {{"color", top.color()},
+                                                              {"roughness", r},
+                                                              {"isotropy", p},
+                                                              {"base_color", base.color()},
+                                                              {"base_roughness", q},
+                                                              {"rotation", 0.05}});
+  // Directions where the bound of albedos does not bite: r is above 1/4 and q as well, so that D is the paper's own.
+  const auto S = [](double c, double u) { return c + (1 - c) * pow5(1 - u); };
+  const auto D = [](double rough, double iso, const V& out, const V& in) {
+    const V h = unit(sum(out, in));
+    const auto G = [&](double v) { return v / (rough - rough * v + v); };
+    const double w2 = pow2(h.x) / (pow2(h.x) + pow2(h.y));
+    // The azimuth is measured so that scratches along x spread light across x.
+    const double A = std::sqrt(iso / (iso * iso * (1 - w2) + w2));
+    return G(out.z) * G(in.z) * rough / pow2(1 + rough * h.z * h.z - h.z * h.z) * A / (4 * M_PI * out.z * in.z);
+  };
+  const auto T = [](double c, double v) {
+    const double m = (std::sqrt(1 + v) - std::sqrt(1 - v)) / 2;
+    return (1 - c) * (1 - pow5(1 - m));
+  };
+  const auto bound = [&](double v) {  // of the top layer's lobe: see the shader; here by the mean over azimuths
+    double mean = 0;
+    constexpr int steps = 4000;
+    for (int i = 0; i < steps; ++i) {
+      const double w2 = pow2(std::cos(2 * M_PI * (i + 0.5) / steps));
+      mean += std::sqrt(p / (p * p * (1 - w2) + w2)) / steps;
+    }
+    const double s = std::sqrt(1 - v * v), x = std::sqrt(r) * s;
+    const double isotropic = 0.5 * (v + std::sqrt(r + (1 - r) * v * v)) / std::sqrt(p);
+    return std::min(isotropic, mean * (v + 0.5 * x * std::atan2(x, v))) / (v * (1 - r) + r);
+  };
+  expect_formula(
+      "Schlick", shader, 0.05,
+      [&](const V& out, const V& in, double l) {
+        const double u = dot(out, unit(sum(out, in)));
+        const double g = 4 * r * (1 - r), h = 4 * q * (1 - q);
+        const double excess = std::max({1.0, bound(out.z), bound(in.z)});
+        return S(top(l), u) * g * D(r, p, out, in) / excess +
+               std::min(T(top(l), out.z), T(top(l), in.z)) * S(base(l), u) * ((1 - h) / M_PI + h * D(q, 1, out, in));
+      },
+      1e-3);
+}
+
+// Estevez & Kulla 2017, with the paper's table of fitted coefficients at r = 0 and 1. The base is black.
+TEST(ShaderFormulas, Sheen) {
+  const Slope color{0.9, 0.5};
+  constexpr double at1[] = {21.5473, 3.82987, 0.19823, -1.97760, -4.32054},
+                   at0[] = {25.3245, 3.32435, 0.16801, -1.27393, -4.85967};
+  for (const double r : {0.2, 0.6, 1.0}) {
+    const auto lambda = [&](double c) {
+      double k[5];
+      for (int i = 0; i < 5; ++i) k[i] = (1 - r) * (1 - r) * at0[i] + (1 - (1 - r) * (1 - r)) * at1[i];
+      const auto L = [&](double x) { return k[0] / (1 + k[1] * std::pow(x, k[2])) + k[3] * x + k[4]; };
+      return std::exp(c < 0.5 ? L(c) : 2 * L(0.5) - L(1 - c));
+    };
+    const Ref<Shader> black = create<Shader>("Lambertian", {{"color", 1e-7}});
+    expect_formula(
+        "sheen", create<Shader>("SheenShader", {{"base", black}, {"color", color.color()}, {"roughness", r}}), 0,
+        [&](const V& out, const V& in, double l) {
+          const V h = unit(sum(out, in));
+          const double sine = std::sqrt(std::max(1 - h.z * h.z, 0.0));
+          return color(l) * (2 + 1 / r) * std::pow(sine, 1 / r) / (2 * M_PI) /
+                 ((1 + lambda(out.z) + lambda(in.z)) * 4 * out.z * in.z);
+        },
+        2e-3);
+  }
+}
+
+// ---- mixtures ---------------------------------------------------------------------------------------------------------------
+
+TEST(ShaderFormulas, Mixtures) {
+  const Slope kd{0.3, 0.5}, other{0.8, 0.2};
+  const Ref<Shader> first = create<Shader>("PhongShader", {{"color", 0.0}, {"specular", kd.color()}, {"exponent", 6.0}}),
+                    second = create<Shader>("Lambertian", {{"color", other.color()}});
+  const auto phong = [&](const V& out, const V& in, double l) {
+    return kd(l) * 8 / (2 * M_PI) * std::pow(std::max(-out.x * in.x - out.y * in.y + out.z * in.z, 0.0), 6);
+  };
+  expect_formula("mix", create<Shader>("MixShader", {{"first", first}, {"second", second}, {"amount", 0.3}}), 0,
+                 [&](const V& out, const V& in, double l) { return 0.7 * phong(out, in, l) + 0.3 * other(l) / M_PI; });
+  expect_formula("mask", create<Shader>("MaskShader", {{"shader", first}, {"opacity", 0.35}}), 0,
+                 [&](const V& out, const V& in, double l) { return 0.35 * phong(out, in, l); });
+}
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,86 @@
+#pragma once
+// What tests of replayed samples and of advice share: scenes with caustics, and a renderer that brings what is hard to tell.
+
+#include <regex>
+
+#include "etendue/language/language.h"
+#include "etendue/render/job.h"
+#include "render_support.h"
+
+namespace etendue::replay_test {
+
+inline const char* const camera = "PerspectiveCamera { from: [0, 2, -6] m, to: [0, 0, 0] m, fov: 45 deg }";
+inline const char* const floor_disc =
+    R"(Disc { radius: 5 m, transform: translate(0, -1 m, 0) * rotate(-90, "x"), shader: Lambertian { color: 0.6 } })";
+inline const char* const glass_ball = R"(Sphere { radius: 1 m, shader: Dielectric { ior: glass("N-SF11") } })";
+inline const char* const round_lamp =
+    "Sphere { center: [1, 3, 0] m, radius: 0.3 m, emission: DiffuseEmission { radiance: 50 } }";
+
+inline std::string objects(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += part + "\n";
+  return text;
+}
+
+inline Ref<Job> prepared(const std::string& text) {
+  Ref<Job> job = load_job_text(text, "test.etd");
+  prepare_tree(*job);
+  return job;
+}
+
+/// A lamp that dispersing glass gathers on a floor: dim paths, and a few bright ones.
+inline std::string glass_text(int samples) {
+  return test::job_text(
+      "PathTracer { samples: " + std::to_string(samples) + " }", camera, 16,
+      objects({floor_disc, glass_ball, round_lamp, "Environment { emission: DiffuseEmission { radiance: 0.1 } }"}));
+}
+
+inline constexpr int px = 6, py = 10;  // on the floor, where the glass gathers light
+
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+inline const char* const lamp_and_ball = R"(lamp = Point { position: [1, 3, 0] m, emission: DiffuseEmission { radiance: 20 } }
+ball = Sphere { radius: 1 m, shader: Dielectric { ior: 1.5 } }
+)";
+
+inline std::string point_scene(const std::string& renderer, const std::vector<std::string>& parts) {
+  return lamp_and_ball + test::job_text(renderer, camera, 4, objects(parts));
+}
+
+/// Brings a little to its own pixel and much to two places, of which one lies beside the picture. Some samples are no
+/// numbers, some negative in part.
+class Sprinkler final : public Renderer {
+ public:
+  Spectrum radiance(const RenderContext&, const Ray&, SampleContext& sample) const override {
+    const float u = sample.random.next();
+    Spectrum own(0.001f * u);
+    if (u < 0.12f)
+      own.set(1, std::numeric_limits<float>::quiet_NaN());
+    else if (u < 0.25f)
+      own.set(1, -0.0001f);  // the colour of the whole is positive all the same
+    for (const Point2 film : {Point2(2.5f, 3.25f), Point2(-4.0f, 3.0f)}) {
+      sample.splat(film, Spectrum(u), sample.wavelengths, 3);
+      if (sample.record) sample.record->contributions.push_back({"1 from the luminaire", 3, 1, Spectrum(u), film, true});
+    }
+    if (sample.record) sample.record->contributions.push_back({"met", 1, 1, own, {}, false});
+    return own;
+  }
+};
+
+struct Listed {
+  int x = 0, y = 0;
+  std::uint32_t sample = 0;
+  double luminance = 0, ratio = 0;
+};
+
+/// The samples that `fireflies_text` lists.
+inline std::vector<Listed> listed_in(const std::string& text) {
+  std::vector<Listed> list;
+  const std::regex line(R"(--pixel (\d+),(\d+) --sample (\d+)    # Y ([0-9.e+-]+)[^\n]*, ([0-9.e+-]+) times its pixel's)");
+  for (std::sregex_iterator at(text.begin(), text.end(), line), end; at != end; ++at)
+    list.push_back({std::stoi((*at)[1]), std::stoi((*at)[2]), std::uint32_t(std::stoul((*at)[3])), std::stod((*at)[4]),
+                    std::stod((*at)[5])});
+  return list;
+}
+
+}  // namespace etendue::replay_test

@@ -1,0 +1,37 @@
+// scenes/cornell_box.etd against the same box in Mitsuba 3 (llvm_ad_spectral): means of 32 x 32 pixel tiles.
+
+#include <gtest/gtest.h>
+
+#include "etendue/render/job.h"
+#include "support/cornell_reference.h"
+#include "support/render_support.h"
+
+namespace etendue::test {
+namespace {
+
+TEST(CornellBox, AgreesWithMitsuba) {
+  const Ref<Job> job = load_job(ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd");
+  job->renderer->samples = 128;
+  job->render();
+  EXPECT_EQ(job->image->bad_samples(), 0u);
+  const Image image = job->picture();
+  ASSERT_EQ(image.width, 256);
+  ASSERT_EQ(image.height, 256);
+  double whole[3] = {}, reference[3] = {};
+  for (int row = 0; row < 8; ++row)
+    for (int column = 0; column < 8; ++column)
+      for (size_t c = 0; c < 3; ++c) {
+        double sum = 0;
+        for (int y = 0; y < 32; ++y)
+          for (int x = 0; x < 32; ++x) sum += image.at(32 * column + x, 32 * row + y, c);
+        const double expected = cornell_reference[row][column][c];
+        whole[c] += sum / (64 * 1024);
+        reference[c] += expected / 64;
+        // Corner tiles hold a few lit pixels only; 128 samples leave up to 1 % of noise in Z, the reference half of it.
+        EXPECT_NEAR(sum / 1024 / expected, 1, 0.025) << "tile " << column << ", " << row << ", channel " << c;
+      }
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(whole[c] / reference[c], 1, 0.003) << "channel " << c;
+}
+
+}  // namespace
+}  // namespace etendue::test
