@@ -25,7 +25,7 @@ struct Box {
     prepare_tree(*job);
     const Ref<Sampler> random = ref_cast<Sampler>(Registry::instance().create("IndependentSampler"));
     for (int i = 0; i < 4096; ++i) {
-      SampleStream s(*random, SampleKey(1, i, 0, 0));
+      Numbers s(*random, SampleKey(1, i, 0, 0));
       Ray ray;
       ray.origin = {0.01f + 0.53f * s.next(), 0.01f + 0.53f * s.next(), 0.01f + 0.53f * s.next()};
       ray.direction = warp::sphere(s.next_pair());
@@ -59,7 +59,7 @@ BENCHMARK_CAPTURE(any, brute_force, "BruteForceScene");
 
 void pair(benchmark::State& state, const char* name) {
   const Ref<Sampler> sampler = ref_cast<Sampler>(Registry::instance().create(name));
-  SampleStream stream(*sampler, SampleKey(1, 2, 3, 4));
+  NumberStream stream(*sampler, SampleKey(1, 2, 3, 4));
   for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(stream.next_pair());
 }
 BENCHMARK_CAPTURE(pair, independent, "IndependentSampler");
@@ -96,12 +96,11 @@ BENCHMARK_CAPTURE(evaluate, glass, glass_index("N-BK7"));
 
 void path(benchmark::State& state, const char* structure) {
   const Box box(structure);
-  box.job->renderer->begin({*box.job->scene, *box.job->camera, *box.job->image, *box.job->wavelengths, 0});
-  const RenderContext context{*box.job->scene, *box.job->camera, *box.job->image, *box.job->wavelengths, 0};
+  const std::unique_ptr<RenderProcess> process = box.job->start_at(0);
   Arena arena;
   std::uint32_t n = 0;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(box.job->renderer->camera_sample(context, int(n * 37 % 256), int(n * 101 % 256), n, arena));
+    benchmark::DoNotOptimize(process->sample(int(n * 37 % 256), int(n * 101 % 256), n, arena));
     ++n;
   }
 }

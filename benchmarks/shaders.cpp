@@ -63,7 +63,7 @@ struct Bench {
     const Ref<Sampler> random = make<Sampler>("IndependentSampler");
     const Frame frame(point.normal);
     for (size_t i = 0; i < count; ++i) {
-      SampleStream s(*random, SampleKey(1, int(i), 0, 0));
+      Numbers s(*random, SampleKey(1, int(i), 0, 0));
       Query& q = queries[i];
       q.out = frame.to_world(warp::cosine_hemisphere(s.next_pair()));
       q.in = through ? warp::sphere(s.next_pair()) : frame.to_world(warp::cosine_hemisphere(s.next_pair()));

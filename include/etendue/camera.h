@@ -57,6 +57,8 @@ class Camera : public Component {
   virtual Ray ray(Point2 film, Point2 lens, float time) const = 0;
   /// Whether `ray` looks at its lens point; cameras that do not may say so, which saves drawing two numbers.
   virtual bool has_lens() const { return true; }
+  /// Whether all its rays are parallel: directions are then given by places.
+  virtual bool parallel() const { return false; }
   /// The film point a ray from the scene ends at, if it meets lens and film; the ray is given as one the camera could
   /// have sent (from the lens outward).
   virtual std::optional<Point2> film_point(const Ray&) const = 0;

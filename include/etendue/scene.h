@@ -27,6 +27,17 @@ class Scene : public SceneObject {
   /// Whether anything lies on the ray.
   virtual bool any(const Ray&) const = 0;
 
+  /// Whether anything lies on a shadow ray (null: there is none), and what the nearest hit of another one is. The two need
+  /// nothing of each other, and asked one right after the other the processor works on both at once
+  /// (docs/decisions/008-numbers-at-once.md).
+  struct AnyAndNearest {
+    bool any, nearest;
+  };
+  AnyAndNearest any_and_nearest(const Ray* shadow, const Ray& ray, Hit& hit) const {
+    const bool blocked = shadow && any(*shadow);
+    return {blocked, nearest(ray, hit)};
+  }
+
   /// Every hit on a short ray, in no order; a scene that cannot tell gives the nearest.
   virtual void all(const Ray& ray, HitList& list) const {
     Hit hit;

@@ -13,7 +13,7 @@
 
 namespace etendue {
 
-class SampleStream;
+class NumberStream;
 class Scene;
 
 /// Kinds of scattering, as bits.
@@ -233,7 +233,7 @@ class Shader : public Component {
   /// it elsewhere: renderers then ask `sample_exit` instead of following it inside.
   virtual bool moves_exit() const { return false; }
   /// Where light that enters at a point leaves. `random` gives as many numbers as are needed.
-  virtual std::optional<SubsurfaceExit> sample_exit(const SurfacePoint&, const Scene&, const Wavelengths&, SampleStream&,
+  virtual std::optional<SubsurfaceExit> sample_exit(const SurfacePoint&, const Scene&, const Wavelengths&, NumberStream&,
                                                     Arena&) const {
     return std::nullopt;
   }

@@ -1,6 +1,6 @@
 #pragma once
-// VolumeShader: a participating medium. Distance sampling and transmittance are not here but in the transport library,
-// once for all media.
+// VolumeShader: a participating medium. Distance sampling and transmittance are not here but in the transport library
+// (transport/medium.h), once for all media.
 
 #include "etendue/core/ray.h"
 #include "etendue/core/spectrum.h"
@@ -9,7 +9,7 @@
 
 namespace etendue {
 
-/// Coefficients at a point [1/m], and emitted radiance per distance [W m^-3 sr^-1 nm^-1].
+/// Coefficients at a point [1/m of the scene], and emitted radiance per distance [W m^-3 sr^-1 nm^-1].
 struct VolumeCoefficients {
   Spectrum absorption, scattering, emission;
   Spectrum extinction() const { return absorption + scattering; }
@@ -21,12 +21,15 @@ class VolumeShader : public Component {
   using Parent = Component;
   static void describe(Description<VolumeShader>&);
 
+  // Points are in the own coordinates of the object whose inside the medium fills; directions are those of the scene.
+
   virtual VolumeCoefficients coefficients(const Point3&, float time, const Wavelengths&) const = 0;
   /// Coefficients are the same everywhere: free paths then have a closed form.
   virtual bool homogeneous() const = 0;
   /// Whether it sends out light of its own.
   virtual bool emits() const { return false; }
-  /// A bound of the extinction [1/m] over the medium, per wavelength.
+  /// A bound of the extinction [1/m] over the medium, per wavelength: the closer, the faster. A medium that exceeds it
+  /// somewhere is rendered wrongly, so `conform` looks for such places.
   virtual Spectrum majorant(const Wavelengths&) const = 0;
   /// Phase function [1/sr] for light that turns from travelling along -out to travelling along in; integrates to 1.
   virtual float phase(const Point3&, const Vector3& out, const Vector3& in) const = 0;

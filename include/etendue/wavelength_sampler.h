@@ -16,7 +16,7 @@ class WavelengthSampler : public Component {
 
   /// Wavelengths for one sample; `u` is uniform in [0, 1). Densities are per nanometre, such that `to_xyz` estimates
   /// without bias.
-  virtual Wavelengths sample(const SampleKey&, float u) const = 0;
+  virtual Wavelengths sample(SampleKey, float u) const = 0;
 };
 
 }  // namespace etendue

@@ -14,23 +14,6 @@ namespace etendue {
 
 namespace {
 
-/// The names in "PathTracer, LightTracer"; empty when the text is something else, such as advice to change a part.
-std::vector<std::string> class_names(const std::string& text) {
-  std::vector<std::string> names;
-  size_t at = 0;
-  while (at < text.size()) {
-    size_t end = text.find_first_of(", ", at);
-    if (end == std::string::npos) end = text.size();
-    const std::string word = text.substr(at, end - at);
-    at = end + 1;
-    if (word.empty() || word == "and" || word == "or") continue;
-    const auto part_of_name = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
-    if (!std::isupper(static_cast<unsigned char>(word[0])) || !std::ranges::all_of(word, part_of_name)) return {};
-    names.push_back(word);
-  }
-  return names;
-}
-
 /// "a, b and c"
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
@@ -38,22 +21,14 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-bool known_renderer(const std::string& name) {
-  const ClassInfo* renderer = Registry::instance().find("Renderer");
-  const ClassInfo* info = Registry::instance().find(name);
-  return info && renderer && info->is_a(*renderer) && !info->abstract();
-}
-
 }  // namespace
 
 std::string advice_text(const std::string& renderer, const Advice& advice) {
-  const std::string text = renderer + " cannot find " + advice.lost;
-  if (advice.instead.empty()) return text + "; no known renderer can";
-  std::vector<std::string> names = class_names(advice.instead);
-  if (names.empty()) return text + "; " + advice.instead + (advice.instead.ends_with("}") ? " can" : "");
-  // Renderers may come from plugins that are not loaded: those that cannot be had are not named.
-  std::erase_if(names, [](const std::string& name) { return !known_renderer(name); });
-  return text + "; " + (names.empty() ? "no known renderer" : listed(names)) + " can";
+  const std::string text = renderer + " cannot find " + advice.lost + "; ";
+  // Whether it would, were it not for what its members are set to.
+  if (std::ranges::find(advice.instead, renderer) != advice.instead.end()) return text + "with its members' defaults it can";
+  if (advice.instead.empty()) return text + "no known renderer can";
+  return text + listed(advice.instead) + " can";
 }
 
 std::vector<std::string> advice_lines(const Job& job) {

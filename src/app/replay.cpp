@@ -22,8 +22,6 @@ double splat_weight(const ImageBuffer& image) {
 
 namespace {
 
-RenderContext context_of(const Job& job) { return {*job.scene, *job.camera, *job.image, *job.wavelengths, job.seed}; }
-
 /// Y of a value as the film counts it: 0, with false, for what is not a finite non-negative spectrum.
 bool luminance_of(Spectrum value, const Wavelengths& wavelengths, double& luminance) {
   luminance = 0;
@@ -69,25 +67,24 @@ void keep_brightest(std::vector<Bright>& all, size_t most) {
   all.resize(kept);
 }
 
-ReplayedPath replay(const RenderContext& context, const Renderer& renderer, int x, int y, std::uint32_t sample) {
+ReplayedPath replay(const RenderProcess& process, int x, int y, std::uint32_t sample) {
   ReplayedPath path;
   path.sample = sample;
   Arena arena;
   std::vector<Splat> splats;
-  Renderer::Request request;
-  request.record = &path.record;
+  PathRequest request;
+  request.observe.record = &path.record;
   request.splats = &splats;
-  const Renderer::CameraSample s = renderer.camera_sample(context, x, y, sample, arena, request);
-  path.record.count_from_world(context.camera.world_centre);
+  const CameraSample s = process.sample(x, y, sample, arena, request);
+  path.record.count_from_world(process.context.camera.world_centre);
   path.film = s.film;
   path.bad = !luminance_of(s.value, s.wavelengths, path.luminance);
-  path.splatted = splatted_luminance(context.image, splats);
+  path.splatted = splatted_luminance(process.context.image, splats);
   return path;
 }
 
 PixelReplay begin(Job& job, int x, int y) {
   if (!job.image->sampled_area().contains(x, y)) throw Error(fmt::format("there is no pixel {},{} in the picture", x, y));
-  job.renderer->begin(context_of(job));
   PixelReplay result;
   result.x = x;
   result.y = y;
@@ -99,17 +96,16 @@ PixelReplay begin(Job& job, int x, int y) {
 
 PixelReplay replay_sample(Job& job, int x, int y, std::uint32_t sample) {
   PixelReplay result = begin(job, x, y);
-  result.paths.push_back(replay(context_of(job), *job.renderer, x, y, sample));
+  result.paths.push_back(replay(*job.start_at(sample), x, y, sample));
   return result;
 }
 
 PixelReplay replay_pixel(Job& job, int x, int y, size_t most) {
   PixelReplay result = begin(job, x, y);
-  const RenderContext context = context_of(job);
-  const Renderer& renderer = *job.renderer;
 
-  // In parts of a fixed size, put together in their order: sums are the same on any number of threads.
-  constexpr std::uint32_t part_size = 1024;
+  // In parts of a fixed size, put together in their order: sums are the same on any number of threads. What a renderer makes
+  // for a step serves the samples of that step alone.
+  const std::uint32_t step = job.samples_per_pass(), part_size = std::min(step, 1024u);
   struct Part {
     double sum = 0;
     std::vector<Bright> brightest;
@@ -120,26 +116,32 @@ PixelReplay replay_pixel(Job& job, int x, int y, size_t most) {
     std::vector<Splat> splats;
   };
   tbb::enumerable_thread_specific<Memory> memories;
+  std::unique_ptr<RenderProcess> process;
   const auto compute = [&](size_t index) {
     Part& part = parts[index];
     Memory& memory = memories.local();
-    Renderer::Request request;
+    PathRequest request;
     request.splats = &memory.splats;
     const auto first = std::uint32_t(index) * part_size, last = std::min(first + part_size, result.samples);
     for (std::uint32_t n = first; n < last; ++n) {
       memory.splats.clear();
-      const Renderer::CameraSample s = renderer.camera_sample(context, x, y, n, memory.arena, request);
+      const CameraSample s = process->sample(x, y, n, memory.arena, request);
       double luminance = 0;
       luminance_of(s.value, s.wavelengths, luminance);
       part.sum += luminance;
-      part.brightest.push_back({luminance + splatted_luminance(context.image, memory.splats), n});
+      part.brightest.push_back({luminance + splatted_luminance(*job.image, memory.splats), n});
     }
     keep_brightest(part.brightest, most);
   };
   const int threads = job.threads > 0 ? job.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
   tbb::task_arena tasks(threads);
-  tasks.execute([&] { tbb::parallel_for(size_t(0), parts.size(), compute); });
+  const auto parts_before = [&](std::uint32_t sample) { return size_t((sample + part_size - 1) / part_size); };
+  for (std::uint32_t begin = 0; begin < result.samples; begin += step) {
+    process = job.start_at(begin);
+    const std::uint32_t end = std::min(begin + step, result.samples);
+    tasks.execute([&] { tbb::parallel_for(parts_before(begin), parts_before(end), compute); });
+  }
 
   double sum = 0;
   std::vector<Bright> brightest;
@@ -150,7 +152,7 @@ PixelReplay replay_pixel(Job& job, int x, int y, size_t most) {
   keep_brightest(brightest, most);
   result.luminance = sum / result.samples;
   for (const Bright& bright : brightest) {
-    ReplayedPath path = replay(context, renderer, x, y, bright.sample);
+    ReplayedPath path = replay(*job.start_at(bright.sample), x, y, bright.sample);
     if (sum > 0) path.share = path.luminance / sum;
     result.paths.push_back(std::move(path));
   }

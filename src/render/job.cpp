@@ -7,7 +7,7 @@
 #include "checkpoint.h"
 #include "describe/guard.h"
 #include "geometry/rendering_space.h"
-#include "pass_runner.h"
+#include "parallel_schedule.h"
 
 namespace etendue {
 
@@ -63,6 +63,22 @@ void Job::before_prepare() {
   count_from(place && is_finite(*place) ? *place : DoublePoint3{});
 }
 
+namespace {
+
+/// Media that differ from place to place count in the coordinates of their object; within another scene those are not known to
+/// a path that is in the medium.
+void refuse_uneven_media_within(const Scene& scene, bool nested) {
+  for (const Ref<SceneObject>& object : scene.objects) {
+    if (nested && object->interior && !object->interior->homogeneous())
+      object->fail("interior",
+                   "a medium that differs from place to place cannot stand in a scene within a scene; put the object "
+                   "into the outer scene");
+    if (const Scene* inner = scene_within(*object)) refuse_uneven_media_within(*inner, true);
+  }
+}
+
+}  // namespace
+
 void Job::prepare() {
   if (!renderer) fail("renderer", "a job needs a renderer, such as PathTracer {}");
   if (!camera) fail("camera", "a job needs a camera, such as PerspectiveCamera { from: [0, 0, -5] m, to: [0, 0, 0] m }");
@@ -88,13 +104,17 @@ void Job::prepare() {
     // begin around it. That is to be the world's origin, unless floats were too coarse for the camera then.
     count_anew_from({});
   }
+  refuse_uneven_media_within(*scene, false);
   camera->set_film(image->width, image->height);
   prepared_ = true;
 }
 
 RenderContext Job::context() const { return {*scene, *camera, *image, *wavelengths, seed}; }
 
-std::uint32_t Job::samples_per_pass() const { return etendue::samples_per_pass(image->area()); }
+std::uint32_t Job::samples_per_pass() const {
+  const std::uint32_t usual = samples_per_step(image->area());
+  return renderer ? std::max(renderer->samples_per_step(usual), 1u) : usual;
+}
 
 IndexRange Job::wanted_samples() const {
   const auto samples = std::uint32_t(renderer->samples);
@@ -118,7 +138,7 @@ Ended Job::resume(const std::string& checkpoint) {
 
 void Job::restore(const Checkpoint& c) {
   image->load_state(c.state.image);
-  if (renderer) renderer->load_state(c.state.renderer);
+  if (process_) process_->load_state(c.state.renderer);
   done_ = c.done;
   seconds_ = c.seconds;
 }
@@ -163,7 +183,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   } const forgotten{finish_, abort_};
 
   image->clear();
-  rendering(*this, [&] { renderer->begin(context); });
+  rendering(*this, [&] { process_ = renderer->start(context); });
   done_.clear();
   seconds_ = 0;
   if (from) {
@@ -171,7 +191,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     kept.before_short_pass = from->before_short_pass;
     if (from->before_short_pass && part.end > done_.back().end) {
       image->load_state(from->before_short_pass->image);
-      renderer->load_state(from->before_short_pass->renderer);
+      process_->load_state(from->before_short_pass->renderer);
       drop_short_pass(done_, step);
     }
   }
@@ -209,7 +229,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   const auto keep = [&] {
     kept.done = done_;
     kept.seconds = seconds_;
-    kept.state = {image->save_state(), renderer->save_state()};
+    kept.state = {image->save_state(), process_->save_state()};
     try {
       write_checkpoint(kept, checkpoint_file);
       checkpoint_failure_.clear();
@@ -223,7 +243,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   };
   /// What is learned from one pass to the next cannot be had from a part of them.
   const auto require_independent_passes = [&] {
-    if (missing(done_, {0, pass.begin}).empty() || renderer->save_state().empty()) return;
+    if (missing(done_, {0, pass.begin}).empty() || !renderer->steps_depend()) return;
     renderer->fail({}, "learns from one pass to the next, so passes cannot be rendered without those before them");
   };
   /// Whether a rule other than the number of samples says stop.
@@ -236,8 +256,8 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     return {};
   };
 
-  PassRunner runner(*image, threads, abort_,
-                    [&](std::uint64_t done, std::uint64_t count) { report(double(done) / double(count), false); });
+  ParallelSchedule schedule(*image, threads, abort_,
+                            [&](std::uint64_t done, std::uint64_t count) { report(double(done) / double(count), false); });
   std::optional<Ended> ended;
   if (from) ended = stopped();
   while (!ended) {
@@ -246,12 +266,12 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     require_independent_passes();
     kept.before_short_pass.reset();
     if (keeps && pass.end % step != 0 && pass.end == part.end)
-      kept.before_short_pass = Checkpoint::State{image->save_state(), renderer->save_state()};
-    runner.begin = pass.begin;
-    runner.end = pass.end;
-    rendering(*this, [&] { renderer->pass(context, runner); });
+      kept.before_short_pass = Checkpoint::State{image->save_state(), process_->save_state()};
+    rendering(*this, [&] {
+      process_->prepare_step(schedule, pass);
+      process_->step(schedule, pass);
+    });
     if (abort_.load()) return Ended::aborted;
-    require_independent_passes();
     insert(done_, pass);
     seconds_ = now() - begun;
     written = false;
@@ -289,16 +309,32 @@ std::vector<std::string> Job::write_outputs(const std::string& default_stem) con
   return written;
 }
 
+std::unique_ptr<RenderProcess> Job::start_at(std::uint32_t sample) {
+  if (!prepared_) prepare_tree(*this);
+  const std::uint32_t step = samples_per_pass(), begin = sample / step * step;
+  const Ref<ImageBuffer> film = ref_cast<ImageBuffer>(copy(*image));  // what steps before leave there is not looked at
+  prepare_tree(*film);
+  const std::atomic<bool> never{false};
+  ParallelSchedule schedule(*film, threads, never);
+  return rendering(*this, [&] {
+    std::unique_ptr<RenderProcess> process = renderer->start(context());
+    for (std::uint32_t first = renderer->steps_depend() ? 0 : begin;; first += step) {
+      process->prepare_step(schedule, {first, first + step});
+      if (first == begin) return process;
+      process->step(schedule, {first, first + step});
+    }
+  });
+}
+
 Point2 Job::replay(int x, int y, std::uint32_t sample, PathRecord& record) {
   if (!prepared_) prepare_tree(*this);
   if (!image->sampled_area().contains(x, y))
     throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
-  const RenderContext context = this->context();
-  rendering(*this, [&] { renderer->begin(context); });
+  const std::unique_ptr<RenderProcess> process = start_at(sample);
   Arena arena;
-  Renderer::Request request;
-  request.record = &record;
-  const Point2 film = rendering(*this, [&] { return renderer->camera_sample(context, x, y, sample, arena, request); }).film;
+  PathRequest request;
+  request.observe.record = &record;
+  const Point2 film = rendering(*this, [&] { return process->sample(x, y, sample, arena, request); }).film;
   record.count_from_world(centre_);
   return film;
 }

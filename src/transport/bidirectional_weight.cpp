@@ -1,13 +1,11 @@
-#include "bidirectional_weight.h"
-
-#include "seeded_bug.h"
+#include "etendue/transport/bidirectional_weight.h"
 
 namespace etendue {
 
 float bidirectional_weight(const ConnectedPath& path, Heuristic heuristic) {
   const int s = path.s, t = path.t, last = s + t - 1;
   // Vertex i of the whole path, its densities, and whether it can stand at a connection: those at this one can.
-  const auto vertex = [&](int i) -> const Vertex& { return i < s ? path.light[i] : path.camera[last - i]; };
+  const auto vertex = [&](int i) -> const KeptVertex& { return i < s ? path.light[i] : path.camera[last - i]; };
   const auto connectable = [&](int i) { return i == 0 || i == s - 1 || i == s || !vertex(i).specular; };
   const auto from_light = [&](int i) -> double {
     if (i == 0) return path.begun;
@@ -28,10 +26,7 @@ float bidirectional_weight(const ConnectedPath& path, Heuristic heuristic) {
     if (j == last && last == 1) return false;  // a luminaire seen by the lens is met, never connected
     return connectable(j - 1) && connectable(j);
   };
-  const auto raised = [&](double ratio) {
-    if (seeded(SeededBug::wrong_mis_weight)) return std::sqrt(ratio);
-    return heuristic == Heuristic::balance ? ratio : ratio * ratio;
-  };
+  const auto raised = [&](double ratio) { return heuristic == Heuristic::balance ? ratio : ratio * ratio; };
 
   double sum = 1, ratio = 1 / first(s);
   for (int j = s; j < last; ++j) {

@@ -42,6 +42,7 @@ class Look {
       if (lobes & (specular_reflection | specular_transmission)) note(t.specular);
       if (lobes & specular_transmission) note(t.refracting);
       if (lobes & smooth_lobes) note(t.smooth);
+      if (lobes & diffuse_lobes) note(t.diffuse);
       if (lobes & glossy_lobes) note(t.glossy);
       if (lobes & pass_through) note(t.pass_through);
       if (shader->moves_exit()) note(t.moved_exits);
@@ -49,6 +50,7 @@ class Look {
     if (object.interior) {
       note(t.media);
       if (object.interior->emits()) note(t.emissive_media);
+      if (!object.interior->homogeneous()) note(t.uneven_media);
     }
     if (object.luminaire()) {
       if (object.delta())

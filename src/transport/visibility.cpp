@@ -1,13 +1,14 @@
-#include "visibility.h"
+#include "etendue/transport/visibility.h"
 
-#include "bound.h"
-#include "media.h"
-#include "medium_tracking.h"
+#include "etendue/transport/boundaries.h"
+#include "etendue/transport/medium.h"
+#include "etendue/transport/scattering.h"
 
 namespace etendue {
 
 Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const MediumStack* around,
-                                 const Wavelengths& wavelengths, Arena& arena, Transport transport) {
+                                 const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena, Transport transport,
+                                 Spectrum* likely) {
   MediumStack media;
   if (around) media = *around;
   Ray ray = shadow;
@@ -19,8 +20,10 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
     Hit hit;
     const bool found = scene.nearest(ray, hit);
     if (around)
-      if (const VolumeShader* volume = volume_of(media)) {
-        fraction *= transmittance(*volume, ray, found ? hit.distance : ray.maximum, wavelengths);
+      if (const Medium medium = medium_in(media)) {
+        const float reach = found ? hit.distance : ray.maximum;
+        fraction *= transmittance(medium, ray, reach, wavelengths, numbers);
+        if (likely) *likely *= likely_transmittance(medium, ray, reach, wavelengths);
         if (fraction.black()) return fraction;
       }
     if (!found) return fraction;
@@ -42,6 +45,7 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
       if (!straight) return {};
       // Asked alone, the lobe is certain, and its weight the fraction that gets through.
       fraction *= straight->weight;
+      if (likely) *likely *= straight->weight;
     }
     if (around) cross_boundary(media, object, point.normal, ray.direction);
     ray.origin = point.exit(ray.direction);

@@ -1,5 +1,5 @@
-// Ten faults of the kind that give plausible pictures, switched on one at a time in copies of the renderers: `verify` must
-// find each, and nothing when none is on.
+// Ten faults of the kind that give plausible pictures, one at a time in renderers made of the same parts as the program's
+// (faulty_renderers): `verify` must find each, and nothing when none is on.
 
 #include <gtest/gtest.h>
 
@@ -25,9 +25,7 @@ const char* const lamp_in_glass = R"(Job {
 })";
 
 struct Case {
-  const char* name;
-  int bug;
-  const char *scene, *renderer, *reference;
+  const char *name, *scene, *renderer, *reference;
   int samples;
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
@@ -35,16 +33,15 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 /// The exit status of verify: 0 agreement, 1 disagreement.
 int verify(const Case& c, bool with_bug) {
   TemporaryFolder folder;
-  setenv("ETENDUE_SEEDED_BUG", with_bug ? std::to_string(c.bug).c_str() : "0", 1);
   const std::string scene = std::string(c.scene) == "lamp_in_glass" ? folder.write("lamp.etd", lamp_in_glass)
                                                                     : verify_scenes + std::string(c.scene) + ".etd";
   Process process(
       ETENDUE_BINARY_DIR "/etendue",
-      {"verify", scene, "--plugin", ETENDUE_SEEDED_BUGS_LIBRARY, "--renderers", std::string(c.reference) + "," + c.renderer,
+      {"verify", scene, "--plugin", ETENDUE_FAULTY_RENDERERS, "--renderers",
+       std::string(c.reference) + "," + c.renderer + (with_bug ? std::string(" { fault: \"") + c.name + "\" }" : ""),
        "--samples", std::to_string(c.samples), "--size", "48x36", "--tile", "12"},
       folder);
   const int status = process.wait();
-  unsetenv("ETENDUE_SEEDED_BUG");
   if (status != int(with_bug)) ADD_FAILURE() << process.out() << process.err();
   return status;
 }
@@ -58,16 +55,16 @@ TEST_P(SeededBugs, AreFound) {
 
 INSTANTIATE_TEST_SUITE_P(
     Verify, SeededBugs,
-    ::testing::Values(Case{"wrong_mis_weight", 1, "cornell_box", "SeededPathTracer", "PathTracer", 256},
-                      Case{"no_squared_index", 2, "lamp_in_glass", "SeededPathTracer", "BidirectionalPathTracer", 128},
-                      Case{"lost_cosine", 3, "cornell_box", "SeededBidirectionalPathTracer", "PathTracer", 128},
-                      Case{"wrong_measure", 4, "cornell_box", "SeededBidirectionalPathTracer", "PathTracer", 128},
-                      Case{"roulette_undivided", 5, "cornell_box", "SeededPathTracer", "LightTracer", 512},
-                      Case{"luminaire_twice", 6, "cornell_box", "SeededPathTracer", "PathTracer", 256},
-                      Case{"lens_importance", 7, "cornell_box", "SeededLightTracer", "BidirectionalPathTracer", 1024},
-                      Case{"phase_density", 8, "fog_with_spot", "SeededPathTracer", "BidirectionalPathTracer", 256},
-                      Case{"transmittance_squared", 9, "fog_with_spot", "SeededPathTracer", "BidirectionalPathTracer", 128},
-                      Case{"skipped_length", 10, "cornell_box", "SeededBidirectionalPathTracer", "PathTracer", 256}),
+    ::testing::Values(Case{"wrong_mis_weight", "cornell_box", "FaultyPathTracer", "PathTracer", 256},
+                      Case{"no_squared_index", "lamp_in_glass", "FaultyPathTracer", "BidirectionalPathTracer", 128},
+                      Case{"lost_cosine", "cornell_box", "FaultyPathTracer", "PathTracer", 128},
+                      Case{"wrong_measure", "cornell_box", "FaultyPathTracer", "PathTracer", 128},
+                      Case{"roulette_undivided", "cornell_box", "FaultyPathTracer", "LightTracer", 512},
+                      Case{"luminaire_twice", "cornell_box", "FaultyPathTracer", "PathTracer", 256},
+                      Case{"lens_importance", "cornell_box", "FaultyLightTracer", "BidirectionalPathTracer", 1024},
+                      Case{"phase_density", "fog_with_spot", "FaultyPathTracer", "BidirectionalPathTracer", 256},
+                      Case{"transmittance_squared", "fog_with_spot", "FaultyPathTracer", "BidirectionalPathTracer", 128},
+                      Case{"skipped_length", "cornell_box", "FaultyPathTracer", "PathTracer", 256}),
     [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace

@@ -32,7 +32,7 @@ class DimRenderer final : public Renderer {
       const Scatter* scatter =
           point.object->shader ? point.object->shader->bind(point, sample.wavelengths, sample.arena) : nullptr;
       if (!scatter) break;
-      const auto next = scatter->sample(-ray.direction, sample.random.next(), sample.random.next_pair());
+      const auto next = scatter->sample(-ray.direction, sample.numbers.next(), sample.numbers.next_pair());
       if (!next) break;
       throughput *= next->weight * 0.97f;
       ray = point.leave(next->direction);

@@ -1,7 +1,7 @@
 // A path tracer with next event estimation, in one file, out of tree.
-#include "etendue/describe/description.h"
 #include "etendue/render/renderer.h"
-#include "etendue/shader.h"
+#include "etendue/transport/camera_walk.h"
+#include "etendue/transport/renderer_members.h"
 
 using namespace etendue;
 
@@ -10,69 +10,28 @@ class StudentTracer final : public Renderer {
 
  public:
   static void describe(Description<StudentTracer>& d) {
-    d.summary("Path tracing with next event estimation, as in a first course.", "Kajiya 1986")
-        .member<&StudentTracer::max_depth>("max_depth", "1", "longest path, in segments", at_least(1));
+    d.summary("Path tracing with next event estimation, as in a first course.", "Kajiya 1986");
+    describe_max_depth<&StudentTracer::max_depth>(d);
   }
 
-  std::vector<Advice> misses(const SceneTraits& scene) const override {
-    if (scene.media.empty() && scene.pass_through.empty()) return {};
-    return {{"what media and boundaries without refraction do", "PathTracer"}};
-  }
+  PathClasses finds() const override { return all_paths & ~(delta_caustics | delta_caustics_in_mirrors); }
 
-  Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
-    Spectrum light, throughput(1.0f);
-    Ray ray = camera_ray;
-    bool sampled = false;  // whether luminaires were already asked for the light that comes along the ray
-    for (int length = 1; length <= max_depth && !sample.aborted(); ++length) {
-      const ArenaScope memory(sample.arena);  // the next vertex needs nothing of this one
-      const auto gather = [&](const Spectrum& value) {
-        light += value;
-        sample.note_length(length, value);
-      };
-      Hit hit;
-      SurfacePoint point;
-      if (!context.scene.nearest(ray, hit)) {
-        for (const SceneObject* far : context.scene.infinite_luminaires()) {
-          if (sampled) break;
-          far->surface_point(ray, hit, point);
-          gather(throughput * far->emission->radiance(point, -ray.direction, sample.wavelengths));
-        }
-        break;
-      }
-      context.scene.locate(ray, hit, point);
-      const Vector3 out = -ray.direction;
-      if (point.object->luminaire() && !(sampled && point.object->luminaire_index >= 0))
-        gather(throughput * point.object->emission->radiance(point, out, sample.wavelengths));
-
-      // Black surfaces scatter nothing.
-      if (!point.object->shader || length == max_depth) break;
-      const Scatter* scatter = point.object->shader->bind(point, sample.wavelengths, sample.arena);
-      if (!scatter) break;
-
-      const LightChoice choice = light_sampler->choose(point.position, point.normal, sample.random.next());
-      const Point2 on_luminaire = sample.random.next_pair();
-      if (choice.luminaire) {
-        const SurfaceSample lamp = choice.luminaire->sample_visible(point.position, on_luminaire, ray.time);
-        if (lamp.density > 0) {
-          const Spectrum f = scatter->evaluate(out, lamp.direction);
-          const Ray shadow = lamp.infinite ? point.leave(lamp.direction) : point.towards(lamp.point);
-          if (!f.black() && !context.scene.any(shadow)) {
-            const Spectrum emitted = choice.luminaire->emission->radiance(lamp.point, -lamp.direction, sample.wavelengths);
-            const Spectrum direct = throughput * f * emitted / (choice.probability * lamp.density);
-            light += direct;
-            sample.note_length(length + 1, direct);
-          }
-        }
-      }
-
-      const auto next = scatter->sample(out, sample.random.next(), sample.random.next_pair());
-      if (!next) break;
-      throughput *= next->weight;
-      if (next->dispersive) throughput *= sample.wavelengths.drop_secondary();
-      sampled = !next->specular();
-      ray = point.leave(next->direction);
+  // L = sum over the vertices x_k of a random walk of T_k (L_e(x_k) + light straight from luminaires, scattered at x_k).
+  Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
+    CameraWalk walk(context.scene, sample, ray, max_depth);
+    // Light that the walk meets by itself. Behind a mirror nobody has sampled it; elsewhere it is found in two ways, and the
+    // balance heuristic says how much of it this one counts for.
+    const auto weight = [&](const SurfacePoint& luminaire) {
+      if (walk.specular) return 1.0f;
+      const float sampled = direct_light_density(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire);
+      return walk.direction_density / (walk.direction_density + sampled);
+    };
+    while (walk.next_vertex(weight) && !walk.at_end()) {
+      const NumberStream::Bounce u = walk.next_bounce();
+      walk.add_direct(*light_sampler, u, Heuristic::balance);
+      walk.scatter(u);
     }
-    return light;
+    return walk.radiance;
   }
 };
 

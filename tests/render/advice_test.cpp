@@ -10,19 +10,34 @@ namespace etendue::replay_test {
 namespace {
 
 TEST(AdviceText, names_what_can) {
-  EXPECT_EQ(advice_text("A", {"x", "PathTracer"}), "A cannot find x; PathTracer can");
-  EXPECT_EQ(advice_text("A", {"x", "PathTracer, NoSuchRenderer"}), "A cannot find x; PathTracer can");
-  EXPECT_EQ(advice_text("A", {"x", "PathTracer or PathTracer"}), "A cannot find x; PathTracer and PathTracer can");
-  EXPECT_EQ(advice_text("A", {"x", "NoSuchRenderer, Sphere"}), "A cannot find x; no known renderer can");
-  EXPECT_EQ(advice_text("A", {"x", "set next_event: true"}), "A cannot find x; set next_event: true");
-  EXPECT_EQ(advice_text("A", {"x", "PathTracer { next_event: true }"}), "A cannot find x; PathTracer { next_event: true } can");
-  EXPECT_EQ(advice_text("A", {"x", ""}), "A cannot find x; no known renderer can");
+  EXPECT_EQ(advice_text("A", {delta_light, "x", {"B"}}), "A cannot find x; B can");
+  EXPECT_EQ(advice_text("A", {delta_light, "x", {"B", "C", "D"}}), "A cannot find x; B, C and D can");
+  EXPECT_EQ(advice_text("A", {delta_light, "x", {"A", "B"}}), "A cannot find x; with its members' defaults it can");
+  EXPECT_EQ(advice_text("A", {delta_light, "x", {}}), "A cannot find x; no known renderer can");
+}
+
+// What a class is called, what it is for people, and what it is in a scene that has everything.
+TEST(AdviceText, every_kind_of_light_has_its_words) {
+  SceneTraits all;
+  for (std::vector<std::string>* list :
+       {&all.specular, &all.refracting, &all.smooth, &all.diffuse, &all.glossy, &all.points, &all.distant, &all.areas,
+        &all.environments, &all.media, &all.emissive_media, &all.uneven_media, &all.moved_exits, &all.pass_through})
+    list->push_back("'it'");
+  EXPECT_EQ(paths_in(all), all_paths);
+  EXPECT_EQ(paths_in({}), no_paths);
+  PathClasses bits = no_paths;
+  for (const PathClassInfo& c : path_classes()) {
+    EXPECT_EQ(bits & c.bit, 0u) << c.name;
+    bits |= c.bit;
+    EXPECT_FALSE(std::string(c.name).empty() || std::string(c.what).empty());
+  }
+  EXPECT_EQ(bits, all_paths);
 }
 
 TEST(AdviceText, a_path_tracer_loses_caustics_of_a_point_light_through_glass) {
   const Ref<Job> job = prepared(point_scene("PathTracer {}", {floor_disc, "lamp", "ball"}));
   const std::vector<std::string> lines = advice_lines(*job);
-  ASSERT_EQ(lines.size(), 1u);
+  ASSERT_EQ(lines.size(), 2u);  // caustics, and what mirrors show of them
   EXPECT_TRUE(lines[0].starts_with("PathTracer cannot find ")) << lines[0];
   for (const char* part : {"caustics", "'lamp'", "'ball'"}) EXPECT_TRUE(has(lines[0], part)) << lines[0];
   EXPECT_TRUE(has(lines[0], "; BidirectionalPathTracer") && lines[0].ends_with(" can")) << lines[0];
@@ -38,7 +53,7 @@ TEST(AdviceText, without_next_event_a_path_tracer_loses_lights_without_extent) {
   const Ref<Job> job = prepared(point_scene("PathTracer { next_event: false }", {floor_disc, "lamp", "ball"}));
   const std::vector<std::string> lines = advice_lines(*job);
   ASSERT_FALSE(lines.empty());
-  EXPECT_TRUE(has(lines[0], "'lamp'") && has(lines[0], "next_event")) << lines[0];
+  EXPECT_TRUE(has(lines[0], "'lamp'") && has(lines[0], "with its members' defaults it can")) << lines[0];
 }
 
 TEST(AdviceText, a_path_tracer_finds_the_light_of_other_scenes) {

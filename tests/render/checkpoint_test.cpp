@@ -97,9 +97,7 @@ TEST_F(CheckpointTest, every_renderer_continues_to_the_same_bits_and_merges) {
     const Ref<Job> resumed = fresh();
     resumed->resume(folder / "a");
     EXPECT_TRUE(film(*resumed) == film(*straight));
-    EXPECT_TRUE(resumed->renderer->save_state() == straight->renderer->save_state());
-
-    if (!straight->renderer->save_state().empty()) {
+    if (straight->renderer->steps_depend()) {
       const Ref<Job> late = fresh();
       late->passes = IndexRange{1, 2};
       EXPECT_TRUE(has(complaint([&] { late->render(); }), "learns from one pass to the next"));
@@ -113,18 +111,15 @@ TEST_F(CheckpointTest, every_renderer_continues_to_the_same_bits_and_merges) {
   EXPECT_GE(tried, 1);
 }
 
-/// Brightens what it sees with each pass.
-class LearningRenderer final : public Renderer {
+/// Brightens what it sees with each step.
+class LearningProcess final : public RenderProcess {
  public:
-  static void describe(Description<LearningRenderer>& d) { d.summary("For tests: learns from one pass to the next."); }
-  void begin(const RenderContext&) override { learned_ = 0; }
-  void pass(const RenderContext& context, Pass& pass) const override {
-    Renderer::pass(context, pass);
+  using RenderProcess::RenderProcess;
+  void step(Schedule& schedule, IndexRange samples) override {
+    RenderProcess::step(schedule, samples);
     ++learned_;
   }
-  Spectrum radiance(const RenderContext&, const Ray&, SampleContext&) const override { return Spectrum(float(1 + learned_)); }
-  bool unbiased() const override { return false; }
-  std::vector<Advice> misses(const SceneTraits&) const override { return {{"everything", ""}}; }
+  Spectrum radiance(const Ray&, SampleContext&) const override { return Spectrum(float(1 + learned_)); }
   std::vector<std::byte> save_state() const override {
     std::vector<std::byte> bytes(sizeof learned_);
     std::memcpy(bytes.data(), &learned_, sizeof learned_);
@@ -136,7 +131,20 @@ class LearningRenderer final : public Renderer {
   }
 
  private:
-  mutable int learned_ = 0;
+  std::uint32_t learned_ = 0;
+};
+
+class LearningRenderer final : public Renderer {
+ public:
+  static void describe(Description<LearningRenderer>& d) { d.summary("For tests: learns from one step to the next."); }
+  Expectation expectation() const override { return Expectation::biased; }
+  bool steps_depend() const override { return true; }
+  PathClasses finds() const override { return no_paths; }
+
+ private:
+  std::unique_ptr<RenderProcess> begin(const RenderContext& context) const override {
+    return std::make_unique<LearningProcess>(*this, context);
+  }
 };
 
 TEST_F(CheckpointTest, what_a_renderer_learned_is_kept_and_not_torn_apart) {

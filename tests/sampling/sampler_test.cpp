@@ -105,13 +105,19 @@ TEST(Sampler, SameArgumentsGiveSameNumbers) {
       different.insert(one->number(key, 4));
     }
     EXPECT_GT(different.size(), 95u) << name;
-    SampleStream stream(*one, SampleKey(3, 10, 20, 5));
+    NumberStream stream(*one, SampleKey(3, 10, 20, 5));
+    NumberStream again = stream;
     const Point2 first = stream.next_pair();
     const float second = stream.next();
-    stream.jump(0);
-    EXPECT_EQ(stream.next_pair(), first);
-    EXPECT_EQ(stream.next(), second);
-    EXPECT_EQ(stream.dimension(), 3u);
+    EXPECT_EQ(again.next_pair(), first);
+    EXPECT_EQ(again.next(), second);
+    EXPECT_EQ(again.count(), 3u);
+    // Walks of other names have numbers of their own, whatever was taken before.
+    NumberStream other = stream.fork("other"), same = NumberStream(*one, SampleKey(3, 10, 20, 5)).fork("other");
+    const Point2 others = other.next_pair();
+    EXPECT_EQ(same.next_pair(), others);
+    EXPECT_NE(others, first);
+    EXPECT_NE(stream.fork("other", 1).next_pair(), others);
   }
 }
 
@@ -121,17 +127,17 @@ TEST(Sampler, NumbersOfABounceAreThoseAskedForOneByOne) {
     for (const bool lights : {false, true})
       for (const bool lobes : {false, true})
         for (std::uint32_t i = 0; i < 100; ++i) {
-          SampleStream at_once(*sampler, SampleKey(3, 10, 20, i)), single = at_once;
-          at_once.jump(i * 7);
-          single.jump(i * 7);
-          const SampleStream::Bounce bounce = at_once.next_bounce(lights, lobes);
+          NumberStream at_once(*sampler, SampleKey(3, 10, 20, i)), single = at_once;
+          at_once.skip(i * 7);
+          single.skip(i * 7);
+          const NumberStream::Bounce bounce = at_once.next_bounce(lights, lobes);
           const float light_choice = single.next();
           EXPECT_EQ(bounce.light_choice, lights ? light_choice : 0) << name;
           EXPECT_EQ(bounce.light_point, single.next_pair()) << name;
           const float lobe_choice = single.next();
           EXPECT_EQ(bounce.lobe_choice, lobes ? lobe_choice : 0) << name;
           EXPECT_EQ(bounce.direction, single.next_pair()) << name;
-          EXPECT_EQ(at_once.dimension(), single.dimension());
+          EXPECT_EQ(at_once.count(), single.count());
         }
   }
 }

@@ -6,10 +6,10 @@
 #include <fstream>
 
 #include "etendue/render/job.h"
+#include "etendue/transport/boundaries.h"
 #include "images/numpy_array.h"
 #include "support/geometry_support.h"
 #include "support/render_support.h"
-#include "transport/medium_tracking.h"
 
 namespace etendue {
 namespace {

@@ -33,7 +33,7 @@ class Body {
   }
 
   std::optional<SubsurfaceExit> exit(std::uint32_t sample, const Wavelengths& w = test::wavelengths()) {
-    SampleStream stream(*sampler_, SampleKey(1, 0, 0, sample));
+    NumberStream stream(*sampler_, SampleKey(1, 0, 0, sample));
     arena.reset();
     return entry.object->shader->sample_exit(entry, *job_->scene, w, stream, arena);
   }

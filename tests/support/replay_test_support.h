@@ -52,7 +52,7 @@ inline std::string point_scene(const std::string& renderer, const std::vector<st
 class Sprinkler final : public Renderer {
  public:
   Spectrum radiance(const RenderContext&, const Ray&, SampleContext& sample) const override {
-    const float u = sample.random.next();
+    const float u = sample.numbers.next();
     Spectrum own(0.001f * u);
     if (u < 0.12f)
       own.set(1, std::numeric_limits<float>::quiet_NaN());
@@ -60,9 +60,10 @@ class Sprinkler final : public Renderer {
       own.set(1, -0.0001f);  // the colour of the whole is positive all the same
     for (const Point2 film : {Point2(2.5f, 3.25f), Point2(-4.0f, 3.0f)}) {
       sample.splat(film, Spectrum(u), sample.wavelengths, 3);
-      if (sample.record) sample.record->contributions.push_back({"1 from the luminaire", 3, 1, Spectrum(u), film, true});
+      if (sample.observe.record)
+        sample.observe.record->contributions.push_back({"1 from the luminaire", 3, 1, Spectrum(u), film, true});
     }
-    if (sample.record) sample.record->contributions.push_back({"met", 1, 1, own, {}, false});
+    if (sample.observe.record) sample.observe.record->contributions.push_back({"met", 1, 1, own, {}, false});
     return own;
   }
 };

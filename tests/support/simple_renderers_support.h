@@ -23,13 +23,12 @@ class Ready {
  public:
   explicit Ready(const std::string& text) : job_(load_job_text(text, "test.etd")) {
     prepare_tree(*job_);
-    job_->renderer->begin(context());
+    process_ = job_->start_at(0);
   }
-  RenderContext context() const { return {*job_->scene, *job_->camera, *job_->image, *job_->wavelengths, job_->seed}; }
-  Renderer::CameraSample sample(int x, int y, std::uint32_t n, std::span<Spectrum> lengths = {}) {
-    Renderer::Request request;
-    request.lengths = lengths;
-    return job_->renderer->camera_sample(context(), x, y, n, arena_, request);
+  CameraSample sample(int x, int y, std::uint32_t n, std::span<Spectrum> lengths = {}) {
+    PathRequest request;
+    request.observe.lengths = lengths;
+    return process_->sample(x, y, n, arena_, request);
   }
   /// The components of linear sRGB of a sample.
   Vector3 rgb(int x, int y, std::uint32_t n = 0) {
@@ -43,6 +42,7 @@ class Ready {
 
  private:
   Ref<Job> job_;
+  std::unique_ptr<RenderProcess> process_;
   Arena arena_;
 };
 

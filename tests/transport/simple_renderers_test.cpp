@@ -115,7 +115,7 @@ TEST(SimpleRenderers, SayWhatTheyMiss) {
     return text;
   };
   SceneTraits matt_room;
-  matt_room.smooth = {"'wall'"};
+  matt_room.smooth = matt_room.diffuse = {"'wall'"};
   matt_room.areas = {"'lamp'"};
   EXPECT_NE(lost("WhittedRenderer", {}, matt_room).find("light of 'lamp' on 'wall'"), std::string::npos);
   EXPECT_NE(lost("DirectRenderer", {}, matt_room), "");

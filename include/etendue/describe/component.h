@@ -61,4 +61,10 @@ void prepare_tree(Component&);
 /// Reports something the user should know but that stops nothing (shown once per distinct text).
 void warn(const std::string& message, Location = {});
 
+/// In a catch block: throws on what came out while something was done with a component, such as "preparing". An Error gets the
+/// component's place when it has none, and is told with the component's plugin. Anything else becomes an Error at the
+/// component's place that names the classes of plugins which may have thrown it: the component's own, else those of all parts
+/// it refers to.
+[[noreturn]] void blame(const Component&, std::string_view doing);
+
 }  // namespace etendue

@@ -27,12 +27,6 @@ struct Progress {
   bool finished = false;
 };
 
-/// [begin, end) of passes or samples.
-struct IndexRange {
-  std::uint32_t begin = 0, end = 0;
-  bool operator==(const IndexRange&) const = default;
-};
-
 /// The state of a render at a pass boundary; see render/checkpoint.h.
 struct Checkpoint;
 
@@ -97,6 +91,8 @@ class Job final : public Component {
   /// Writes all outputs; the file name of one without a name comes from `default_stem`. Returns the paths written.
   std::vector<std::string> write_outputs(const std::string& default_stem) const;
 
+  /// A process of the renderer at the step a sample is in, ready to be asked for it.
+  std::unique_ptr<RenderProcess> start_at(std::uint32_t sample);
   /// Replays one sample alone; returns its film point.
   Point2 replay(int x, int y, std::uint32_t sample, PathRecord&);
 
@@ -109,6 +105,7 @@ class Job final : public Component {
   IndexRange wanted_samples() const;
   Ended run(const Checkpoint* from, const std::string& from_file);
 
+  std::unique_ptr<RenderProcess> process_;
   std::atomic<bool> finish_{false}, abort_{false};
   std::vector<IndexRange> done_;
   double seconds_ = 0;

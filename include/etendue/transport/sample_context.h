@@ -1,22 +1,20 @@
 #pragma once
 // What is at hand where paths are made.
 
-#include <algorithm>
 #include <atomic>
-#include <span>
 #include <vector>
 
 #include "etendue/camera.h"
 #include "etendue/core/arena.h"
 #include "etendue/film/image_buffer.h"
-#include "etendue/sampler.h"
+#include "etendue/numbers.h"
 #include "etendue/scene.h"
-#include "etendue/transport/path_record.h"
+#include "etendue/transport/observer.h"
 #include "etendue/wavelength_sampler.h"
 
 namespace etendue {
 
-/// What a render works on. All of it is prepared and does not change while a pass runs.
+/// What a render works on. All of it is prepared and does not change while a step runs.
 struct RenderContext {
   const Scene& scene;
   const Camera& camera;
@@ -36,11 +34,9 @@ struct Splat {
 /// What one sample of a camera-path renderer has at hand.
 struct SampleContext {
   Wavelengths& wavelengths;  ///< may lose its secondary ones along the path
-  SampleStream& random;
-  Arena& arena;                      ///< emptied after the sample
-  Features* features = nullptr;      ///< to be filled at the first surface when not null
-  PathRecord* record = nullptr;      ///< to be filled when not null: someone replays this sample
-  std::span<Spectrum> lengths = {};  ///< radiance by path length, when someone wants it; see `note_length`
+  NumberStream numbers;
+  Arena& arena;  ///< emptied after the sample
+  PathObserver observe = {};
   std::vector<Splat>* splats = nullptr;
   const std::atomic<bool>* abort = nullptr;  ///< whether nobody waits for the sample any more; null: somebody does
 
@@ -48,12 +44,6 @@ struct SampleContext {
   /// (between white walls, with a large `max_depth`), so whatever goes round in one asks now and then.
   bool aborted() const { return abort && abort->load(std::memory_order_relaxed); }
 
-  /// Says that `value`, a part of the radiance returned, came by a path of so many segments (1: a luminaire seen by the
-  /// camera). Renderers that call this for all they return can be compared length by length.
-  void note_length(int length, const Spectrum& value) {
-    if (!lengths.empty()) [[unlikely]]
-      lengths[std::min(size_t(length), lengths.size()) - 1] += value;
-  }
   /// Brings light to a point of the film (beside the value `radiance` returns).
   void splat(Point2 film, const Spectrum& value, const Wavelengths& w, int length) {
     if (splats) splats->push_back({film, value, w, length});

@@ -78,7 +78,7 @@ std::string check_scene(Trial& trial, const KnownScene& known) {
     trial.not_tried(what, fmt::format("all is noise: {:.5f} ± {:.5f}", means.mean(), means.error()));
     return {};
   }
-  const double rounding = 3e-4 + (renderer->unbiased() ? 0 : 0.02);
+  const double rounding = 3e-4 + (renderer->expectation() == Expectation::unbiased ? 0 : 0.02);
   trial.expect(std::abs(means.mean() - known.expected) < errors * means.error() + rounding * known.expected, what,
                [&] { return fmt::format("{:.5f} ± {:.5f}, known to be {}", means.mean(), means.error(), known.expected); });
   return {};

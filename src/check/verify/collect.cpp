@@ -16,11 +16,17 @@ bool written(const Component& component, const std::string& member) {
   return std::any_of(members.begin(), members.end(), [&](const auto& m) { return m.first == member; });
 }
 
-/// What all algorithms take from the job, so that they compute the same thing with the same kind of numbers.
+/// What all algorithms take from the job, so that they compute the same thing with the same kind of numbers; one that holds
+/// another renderer inside, for that as well.
 void take_over(Renderer& to, const Renderer& from) {
   for (const char* member : {"sampler", "light_sampler", "max_depth"})
     if (!written(to, member) && to.class_info().find(member) && from.class_info().find(member))
       set(to, member, get(from, member));
+  for (const Member& member : to.class_info().members) {
+    const Value value = get(to, member.name);
+    if (const auto* part = value.as<Ref<Component>>())
+      if (const Ref<Renderer> inner = ref_cast<Renderer>(*part)) take_over(*inner, from);
+  }
 }
 
 Ref<Renderer> parse_renderer(const std::string& expression) {

@@ -45,6 +45,7 @@ class OrthographicCamera final : public Camera {
 
   bool has_lens() const override { return false; }
 
+  bool parallel() const override { return true; }
   std::optional<Point2> film_point(const Ray& r) const override {
     const Pose pose = placement_.at(r.time);
     // Only the camera's own rays have exactly its direction.

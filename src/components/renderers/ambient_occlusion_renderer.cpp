@@ -8,9 +8,8 @@
 #include "display_colors.h"
 #include "etendue/core/warp.h"
 #include "etendue/render/renderer.h"
-#include "transport/ray_steps.h"
-#include "transport/record.h"
-#include "transport/visibility.h"
+#include "etendue/transport/ray_tree.h"
+#include "etendue/transport/visibility.h"
 
 namespace etendue {
 namespace {
@@ -31,10 +30,7 @@ class AmbientOcclusionRenderer final : public Renderer {
         .member<&AmbientOcclusionRenderer::rays>("rays", "1", "rays for each sample of a pixel", range(1, 65536));
   }
 
-  std::string limits() const override { return "all light: it shows how open surfaces are"; }
-  std::vector<Advice> misses(const SceneTraits&) const override {
-    return {{"any light, as it shows how open surfaces are", "PathTracer, BidirectionalPathTracer"}};
-  }
+  PathClasses finds() const override { return no_paths; }  // it shows how open surfaces are
 
   Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
     const Scene& scene = context.scene;
@@ -46,10 +42,10 @@ class AmbientOcclusionRenderer final : public Renderer {
       return grey(1, 1, sample);
     }
     const Vector3 out = -ray.direction;
-    record_surface(sample.record, point, Spectrum(1.0f));
-    if (sample.features) {
+    sample.observe.surface(point, Spectrum(1.0f));
+    if (sample.observe.features) {
       const Scatter* scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
-      note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths);
+      sample.observe.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
     }
 
     // The side that is seen; directions under the true surface, which shading normals may lead to, are blocked.
@@ -58,14 +54,14 @@ class AmbientOcclusionRenderer final : public Renderer {
     float open = 0;
     Ray shadow;
     for (int i = 0; i < rays && !sample.aborted(); ++i) {
-      const Vector3 direction = frame.to_world(warp::cosine_hemisphere(sample.random.next_pair()));
+      const Vector3 direction = frame.to_world(warp::cosine_hemisphere(sample.numbers.next_pair()));
       if (!(dot(point.normal, direction) * side > 0)) continue;
       point.leave(direction, shadow);
       if (distance > 0) shadow.maximum = distance;
-      open += visible_fraction(scene, shadow, nullptr, sample.wavelengths, sample.arena).average();
+      open += visible_fraction(scene, shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena).average();
     }
     const Spectrum value = grey(open / float(rays), 2, sample);
-    record_direct(sample.record, value, 2, 1);
+    sample.observe.sampled(value, 2, 1);
     return value;
   }
 
@@ -73,7 +69,7 @@ class AmbientOcclusionRenderer final : public Renderer {
   static Spectrum grey(float value, int length, SampleContext& sample) {
     const Spectrum spectrum = display_colors()({value, value, value});
     sample.wavelengths = display_colors().wavelengths;
-    sample.note_length(length, spectrum);
+    sample.observe.light(length, spectrum);
     return spectrum;
   }
 };

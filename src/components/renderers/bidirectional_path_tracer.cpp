@@ -10,12 +10,10 @@
 //   s = 0: the camera walk meets a luminaire.        s = 1: a luminaire is sampled as seen from z_{t-1}.
 //   t = 1: a light walk goes to the lens, and the light falls on the film where it does.
 
-#include "transport/bidirectional_weight.h"
-#include "transport/ray_steps.h"
-#include "transport/record_walk.h"
-#include "transport/seeded_bug.h"
-#include "transport/subpaths.h"
-#include "transport/visibility.h"
+#include "etendue/render/renderer.h"
+#include "etendue/transport/bidirectional_weight.h"
+#include "etendue/transport/renderer_members.h"
+#include "etendue/transport/visibility.h"
 
 namespace etendue {
 
@@ -29,63 +27,37 @@ class BidirectionalPathTracer final : public Renderer {
  public:
   static void describe(Description<BidirectionalPathTracer>& d) {
     d.summary("Paths from the luminaires and from the camera, connected in all ways and weighted by how well each does.",
-              "Lafortune & Willems 1993; Veach & Guibas 1994; Veach 1997, chapter 10")
-        .member<&BidirectionalPathTracer::max_depth>(
-            "max_depth", "1",
-            "longest path, in segments: 1 shows luminaires only, 2 adds direct light. Both walks are kept as a whole while "
-            "they are connected, which takes up to 1 kB for each segment and thread, hence the limit",
-            range(1, longest_kept_walk))
-        .member<&BidirectionalPathTracer::roulette_depth>(
-            "roulette_depth", "1", "segments of either walk before Russian roulette may end it", at_least(1))
-        .member<&BidirectionalPathTracer::heuristic>("heuristic", "", "how strategies are weighted",
-                                                     choices("balance", "power"))
-        .member<&BidirectionalPathTracer::light_vertices>(
-            "light_vertices", "1", "shows the strategies with this many vertices from the luminaire alone; -1: all",
-            at_least(-1))
+              "Lafortune & Willems 1993; Veach & Guibas 1994; Veach 1997, chapter 10");
+    describe_max_depth<&BidirectionalPathTracer::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    describe_roulette_depth<&BidirectionalPathTracer::roulette_depth>(d);
+    describe_heuristic<&BidirectionalPathTracer::heuristic>(d);
+    d.member<&BidirectionalPathTracer::light_vertices>(
+         "light_vertices", "1", "shows the strategies with this many vertices from the luminaire alone; -1: all", at_least(-1))
         .member<&BidirectionalPathTracer::camera_vertices>(
             "camera_vertices", "1", "shows the strategies with this many vertices from the camera alone; -1: all", at_least(-1))
         .member<&BidirectionalPathTracer::weighted>("weighted", "",
                                                     "whether strategies are weighted; without, each shows all light it finds");
   }
 
-  std::string limits() const override {
-    return "specular reflections of light that comes from luminaires without extent by specular surfaces";
-  }
-  std::vector<Advice> misses(const SceneTraits& traits) const override {
-    std::vector<Advice> advice;
-    if (light_vertices >= 0 || camera_vertices >= 0 || !weighted)
-      advice.push_back({"all light: its members choose or do not weight strategies", ""});
-    const std::vector<std::string> delta = delta_names(traits);
-    if (!delta.empty() && !traits.specular.empty())
-      advice.push_back({"mirror images of caustics of " + some_of(delta) + " by " + some_of(traits.specular),
-                        "(give the luminaire a small area)"});
-    miss_subsurface(traits, advice);
-    return advice;
-  }
-
-  void begin(const RenderContext& context) override {
-    Renderer::begin(context);
-    parallel_ = has_parallel_rays(context.camera, context.image.width);
+  PathClasses finds() const override {
+    const bool all = light_vertices < 0 && camera_vertices < 0 && weighted;
+    return all ? all_paths & ~(delta_caustics_in_mirrors | subsurface_light) : no_paths;
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
-    if (sample.features) note_first_surface(context.scene, camera_ray, sample);
-    static thread_local std::vector<Vertex> camera, light;
-    Sample s{context, sample, camera, light, sample.wavelengths};
-    std::function<void(int, const Spectrum&)> emitted = [&](int length, const Spectrum& value) {
-      if (shows(0, length + 1)) add(s, length, 0, length + 1, 1, value);
-    };
-    std::function<void()> crossed = [&] { meet(s, int(camera.size())); };
-    walk_from_camera(context, camera_ray, parallel_, {max_depth + 1, roulette_depth, &sample}, sample.wavelengths,
-                     sample.random, sample.arena, camera, &emitted, &crossed);
-    sample.random.jump(light_dimension);
+    if (sample.observe.features) note_first_surface(context.scene, camera_ray, sample);
+    static thread_local std::vector<KeptVertex> camera, light;
+    Wavelengths light_wavelengths = sample.wavelengths;
+    Sample s{*this, context, sample, camera, light, light_wavelengths};
+    walk_from_camera(context, camera_ray, {max_depth, roulette_depth}, sample, camera, s);
+    SampleContext light_sample{light_wavelengths, sample.numbers.fork("light"), sample.arena, {}, nullptr, sample.abort};
     EmittedLight emitted_light;
-    walk_from_luminaire(context.scene, *light_sampler, camera_ray.time, {max_depth, roulette_depth, &sample},
-                        s.light_wavelengths, sample.random, sample.arena, light, emitted_light);
+    walk_from_luminaire(context.scene, *light_sampler, camera_ray.time, {max_depth - 1, roulette_depth}, light_sample, light,
+                        emitted_light);
     if (light.size() > 1) s.direct = sampled_density(*light_sampler, light[1], light[0], light[1].out);
 
     for (int t = 2; t <= int(camera.size()) && !sample.aborted(); ++t) {
-      const Vertex& z = camera[size_t(t - 1)];
+      const KeptVertex& z = camera[size_t(t - 1)];
       meet(s, t);
       if (!z.connectable()) continue;
       if (t <= max_depth) sample_luminaire(s, t);
@@ -95,33 +67,46 @@ class BidirectionalPathTracer final : public Renderer {
     for (int n = 2; n <= int(light.size()) && n <= max_depth && !sample.aborted(); ++n)
       if (light[size_t(n - 1)].connectable()) connect_to_lens(s, n);
 
-    if (sample.record) {
-      record_walk(sample.record->vertices, std::span<const Vertex>(camera).subspan(1));
-      record_walk(sample.record->light_vertices, light);
+    if (PathRecord* record = sample.observe.record) {
+      record_walk(record->vertices, std::span<const KeptVertex>(camera).subspan(1));
+      record_walk(record->light_vertices, light);
     }
     return s.radiance;
   }
 
  private:
-  // Parts of a sample keep their dimensions whatever the others used.
-  static constexpr std::uint32_t light_dimension = 1u << 20, luminaire_dimension = 2u << 20, lens_dimension = 3u << 20;
-
-  struct Sample {
+  /// One sample: both walks, and what was found. It listens to the camera's.
+  struct Sample final : WalkListener {
+    const BidirectionalPathTracer& self;
     const RenderContext& context;
     SampleContext& at;
-    std::vector<Vertex>& camera;
-    std::vector<Vertex>& light;
-    Wavelengths light_wavelengths;
-    Spectrum radiance{};
+    std::vector<KeptVertex>& camera;
+    std::vector<KeptVertex>& light;
+    Wavelengths& light_wavelengths;
+    const LightFront front;
+    Spectrum radiance;
     float direct = 0;  ///< density of light[0] when sampled as seen from light[1]
 
+    Sample(const BidirectionalPathTracer& renderer, const RenderContext& c, SampleContext& sample,
+           std::vector<KeptVertex>& camera_walk, std::vector<KeptVertex>& light_walk, Wavelengths& w)
+        : self(renderer),
+          context(c),
+          at(sample),
+          camera(camera_walk),
+          light(light_walk),
+          light_wavelengths(w),
+          front(c.scene) {}
+
+    void emitted(int length, const Spectrum& value) override {
+      if (self.shows(0, length + 1)) self.add(*this, length, 0, length + 1, 1, value);
+    }
+    void crossed_luminaire() override { self.meet(*this, int(camera.size())); }
     const Scene& scene() const { return context.scene; }
-    LightFront front{context.scene};
   };
 
   /// s = 0: the camera walk's last vertex lies on a luminaire.
   void meet(Sample& s, int t) const {
-    const Vertex& z = s.camera[size_t(t - 1)];
+    const KeptVertex& z = s.camera[size_t(t - 1)];
     const int length = t - 1;
     if (!shows(0, t)) return;
     const auto met = [&](const SurfacePoint& point) {
@@ -129,15 +114,15 @@ class BidirectionalPathTracer final : public Renderer {
       if (light.black()) return;
       float weight = 1;
       if (length > 1 && weighted) {
-        const Vertex& x1 = s.camera[size_t(t - 2)];
-        Vertex x0 = z;
+        const KeptVertex& x1 = s.camera[size_t(t - 2)];
+        KeptVertex x0 = z;
         x0.point = point;
         ConnectedPath path{nullptr, 0, s.camera.data(), t, 0, 0, 0, 0, 0, 0, true};
         path.begun = path.camera_last_from_light = begun_density(*light_sampler, x1, x0, -z.out);
         path.direct = sampled_density(*light_sampler, x1, x0, -z.out);
         path.camera_before_from_light =
             vertex_density(x0.infinite ? 1 : point.object->emission->density(point, z.out), x0, x1, z.out, z.chance, s.front);
-        if (path.begun > 0 && !seeded(SeededBug::luminaire_twice)) weight = bidirectional_weight(path, heuristic);
+        if (path.begun > 0) weight = bidirectional_weight(path, heuristic);
       }
       add(s, length, 0, t, weight, light);
     };
@@ -159,12 +144,11 @@ class BidirectionalPathTracer final : public Renderer {
   /// s = 1.
   void sample_luminaire(Sample& s, int t) const {
     if (!shows(1, t)) return;
-    const Vertex& z = s.camera[size_t(t - 1)];
-    SampleStream& random = s.at.random;
-    random.jump(luminaire_dimension + 3 * std::uint32_t(t));
-    const float which = random.next();
-    const Point2 u = random.next_pair();
-    const LightChoice choice = light_sampler->choose(z.point.position, z.point.normal, which);
+    const KeptVertex& z = s.camera[size_t(t - 1)];
+    NumberStream numbers = s.at.numbers.fork("luminaire", std::uint32_t(t));
+    const float which = numbers.next();
+    const Point2 u = numbers.next_pair();
+    const LightChoice choice = light_sampler->choose(z.point.position, z.normal(), which);
     if (!choice.luminaire) return;
     const SurfaceSample l = choice.luminaire->sample_visible(z.point.position, u, z.point.time);
     if (!(l.density > 0)) return;
@@ -174,18 +158,20 @@ class BidirectionalPathTracer final : public Renderer {
     Spectrum light = z.throughput * f.value * emitted / (choice.probability * l.density);
     if (light.black()) return;
 
-    Vertex x0;
+    KeptVertex x0;
     x0.kind = Vertex::Kind::luminaire;
     x0.infinite = l.infinite;
     x0.point = l.point;
     MediumStack scratch;
+    Spectrum likely;
     const Spectrum visible = visible_fraction(s.scene(), l.infinite ? leaving_ray(z, l.direction) : connecting_ray(z, x0),
-                                              media_towards(z, l.direction, scratch), s.at.wavelengths, s.at.arena);
+                                              media_towards(z, l.direction, scratch), s.at.wavelengths, numbers, s.at.arena,
+                                              Transport::radiance, &likely);
     if (visible.black()) return;
     light *= visible;
     float weight = 1;
     if (weighted) {
-      const float chance = visible.average();
+      const float chance = likely.average();
       ConnectedPath path{&x0, 1, s.camera.data(), t, 0, 0, 0, 0, 0, 0, !l.delta};
       path.begun = begun_density(*light_sampler, z, x0, l.direction);
       path.direct = sampled_density(*light_sampler, z, x0, l.direction);
@@ -195,14 +181,13 @@ class BidirectionalPathTracer final : public Renderer {
       path.camera_before_from_light = before_from(s.camera, t, l.direction, Transport::importance, s.front);
       if (path.begun > 0 && path.direct > 0) weight = bidirectional_weight(path, heuristic);
     }
-    if (seeded(SeededBug::wrong_measure) && !l.infinite) light *= 1 / (1 + l.distance);
     add(s, t, 1, t, weight, light);
   }
 
   /// s > 1, t > 1.
   void connect(Sample& s, int n, int t) const {
     if (!shows(n, t)) return;
-    const Vertex &y = s.light[size_t(n - 1)], &z = s.camera[size_t(t - 1)];
+    const KeptVertex &y = s.light[size_t(n - 1)], &z = s.camera[size_t(t - 1)];
     const Vector3 d = y.point.position - z.point.position;
     const float squared = length_squared(d);
     if (!(squared > 0)) return;
@@ -215,13 +200,15 @@ class BidirectionalPathTracer final : public Renderer {
     if (y.single && z.single) light /= float(spectrum_size);
     if (light.black()) return;
     MediumStack scratch;
-    const Spectrum visible =
-        visible_fraction(s.scene(), connecting_ray(z, y), media_towards(z, direction, scratch), s.at.wavelengths, s.at.arena);
+    Spectrum likely;
+    NumberStream numbers = s.at.numbers.fork("connection", std::uint32_t(n * 0x10000 + t));
+    const Spectrum visible = visible_fraction(s.scene(), connecting_ray(z, y), media_towards(z, direction, scratch),
+                                              s.at.wavelengths, numbers, s.at.arena, Transport::radiance, &likely);
     if (visible.black()) return;
     light *= visible;
     float weight = 1;
     if (weighted) {
-      const float chance = visible.average();
+      const float chance = likely.average();
       ConnectedPath path{s.light.data(),        n, s.camera.data(), t, 0, 0, 0, 0, s.direct, s.light[0].forward,
                          can_be_met(s.light[0])};
       path.light_last_from_camera = vertex_density(at_camera.density, z, y, direction, chance, s.front);
@@ -236,34 +223,33 @@ class BidirectionalPathTracer final : public Renderer {
   /// t = 1.
   void connect_to_lens(Sample& s, int n) const {
     if (!shows(n, 1)) return;
-    const Vertex& y = s.light[size_t(n - 1)];
-    s.at.random.jump(lens_dimension + 2 * std::uint32_t(n));
-    const auto lens = s.context.camera.sample_lens(y.point.position, y.point.time, s.at.random.next_pair());
+    const KeptVertex& y = s.light[size_t(n - 1)];
+    NumberStream numbers = s.at.numbers.fork("lens", std::uint32_t(n));
+    const auto lens = s.context.camera.sample_lens(y.point.position, y.point.time, numbers.next_pair());
     if (!lens || !(lens->density > 0)) return;
     const ScatterValue f = scattering(y, y.out, lens->direction, Transport::importance);
     Spectrum light = y.throughput * f.value * (lens->importance / lens->density);
-    if (seeded(SeededBug::lens_importance)) light *= square(lens->distance) / lens->density;
     if (light.black()) return;
     MediumStack scratch;
+    Spectrum likely;
     const Spectrum visible = visible_fraction(s.scene(), lens_ray(y, *lens), media_towards(y, lens->direction, scratch),
-                                              s.light_wavelengths, s.at.arena, Transport::importance);
+                                              s.light_wavelengths, numbers, s.at.arena, Transport::importance, &likely);
     if (visible.black()) return;
     light *= visible;
     float weight = 1;
     if (weighted) {
-      Vertex z = s.camera[0];
+      KeptVertex z = s.camera[0];
       z.point.position = lens->lens;
       Ray ray;
       ray.origin = lens->lens;
       ray.direction = -lens->direction;
       ray.time = y.point.time;
       ConnectedPath path{s.light.data(), n, &z, 1, 0, 0, 0, 0, s.direct, s.light[0].forward, can_be_met(s.light[0])};
-      path.light_last_from_camera = vertex_density(camera_direction_density(s.context.camera, parallel_, ray), z, y,
-                                                   ray.direction, visible.average(), s.front);
+      path.light_last_from_camera =
+          vertex_density(camera_direction_density(s.context.camera, ray), z, y, ray.direction, likely.average(), s.front);
       path.light_before_from_camera = before_from(s.light, n, lens->direction, Transport::radiance, s.front);
       weight = bidirectional_weight(path, heuristic);
     }
-    if (seeded(SeededBug::skipped_length) && n == 4) return;
     light *= weight;
     s.at.splat(lens->film, light, s.light_wavelengths, n);
     note(s, n, n, 1, weight, light, lens->film, true);
@@ -274,30 +260,27 @@ class BidirectionalPathTracer final : public Renderer {
   }
 
   void add(Sample& s, int length, int n, int t, float weight, Spectrum light) const {
-    if (seeded(SeededBug::skipped_length) && length == 4) return;
     light *= weight;
     s.radiance += light;
-    s.at.note_length(length, light);
+    s.at.observe.light(length, light);
     note(s, length, n, t, weight, light, {}, false);
   }
   void note(Sample& s, int length, int n, int t, float weight, const Spectrum& light, Point2 film, bool splat) const {
-    if (!s.at.record) [[likely]]
+    if (!s.at.observe.record) [[likely]]
       return;
-    s.at.record->contribute({std::to_string(n) + " from the luminaire, " + std::to_string(t) + " from the camera", length,
-                             weight, light, film, splat});
+    s.at.observe.record->contribute({std::to_string(n) + " from the luminaire, " + std::to_string(t) + " from the camera",
+                                     length, weight, light, film, splat});
   }
 
   /// The density of a walk's vertex before its last, `count` vertices long, had a walk come from `from` through the last.
-  static float before_from(const std::vector<Vertex>& walk, int count, const Vector3& from, Transport transport,
+  static float before_from(const std::vector<KeptVertex>& walk, int count, const Vector3& from, Transport transport,
                            const LightFront& front) {
     if (count < 2) return 0;
-    const Vertex &last = walk[size_t(count - 1)], &before = walk[size_t(count - 2)];
+    const KeptVertex &last = walk[size_t(count - 1)], &before = walk[size_t(count - 2)];
     return vertex_density(scattering_density(last, from, last.out, transport), last, before, last.out, last.chance, front);
   }
 
-  static bool can_be_met(const Vertex& luminaire) { return !luminaire.point.object->delta(); }
-
-  bool parallel_ = false;
+  static bool can_be_met(const KeptVertex& luminaire) { return !luminaire.point.object->delta(); }
 };
 
 static const Register<BidirectionalPathTracer> registered;

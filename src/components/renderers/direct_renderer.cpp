@@ -10,10 +10,10 @@
 // without extent: these count in full.
 
 #include "etendue/render/renderer.h"
-#include "transport/direct_light.h"
-#include "transport/ray_steps.h"
-#include "transport/record.h"
-#include "transport/visibility.h"
+#include "etendue/transport/direct_light.h"
+#include "etendue/transport/ray_tree.h"
+#include "etendue/transport/renderer_members.h"
+#include "etendue/transport/visibility.h"
 
 namespace etendue {
 namespace {
@@ -36,33 +36,15 @@ class DirectRenderer final : public Renderer {
         .member<&DirectRenderer::light_samples>("light_samples", "1", "points on luminaires for each sample of a pixel",
                                                 range(1, 65536))
         .member<&DirectRenderer::shader_samples>("shader_samples", "1", "directions of the shader for each sample of a pixel",
-                                                 range(1, 65536))
-        .member<&DirectRenderer::heuristic>("heuristic", "", "how the two strategies are weighted when both are used",
-                                            choices("balance", "power"));
+                                                 range(1, 65536));
+    describe_heuristic<&DirectRenderer::heuristic>(d);
   }
 
-  std::string limits() const override {
-    std::string text = "light that is scattered more than once";
-    if (strategy == Strategy::light) text += ", and luminaires seen in mirrors or through glass";
-    if (strategy == Strategy::shader) text += ", and luminaires that rays cannot meet";
-    return text;
-  }
-
-  std::vector<Advice> misses(const SceneTraits& traits) const override {
-    std::vector<Advice> list;
-    std::vector<std::string> scattering = traits.smooth;
-    for (const std::string& name : traits.specular)
-      if (std::find(scattering.begin(), scattering.end(), name) == scattering.end()) scattering.push_back(name);
-    if (!scattering.empty())
-      list.push_back(
-          {"light that " + some_of(scattering) + " send on to other surfaces", "PathTracer, BidirectionalPathTracer"});
-    if (strategy == Strategy::light && !traits.specular.empty())
-      list.push_back({"luminaires that are seen in " + some_of(traits.specular), "strategy: both finds them"});
-    if (strategy == Strategy::shader && traits.delta_luminaires())
-      list.push_back({"light of " + some_of(delta_names(traits)) + ", which no ray meets", "strategy: both finds it"});
-    miss_media(traits, list);
-    miss_subsurface(traits, list);
-    return list;
+  PathClasses finds() const override {
+    PathClasses lost = diffuse_light | glossy_light | specular_views | area_caustics | delta_caustics |
+                       delta_caustics_in_mirrors | scattering_media | emitting_media | uneven_media | subsurface_light;
+    if (strategy == Strategy::shader) lost |= delta_light;
+    return all_paths & ~lost;
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
@@ -75,7 +57,7 @@ class DirectRenderer final : public Renderer {
     SurfacePoint point;
     const auto add = [&](int length, const Spectrum& light) {
       radiance += light;
-      sample.note_length(length, light);
+      sample.observe.light(length, light);
     };
     for (int crossings = 0; crossings <= most_crossings; ++crossings) {  // goes round where light passes straight on
       const ArenaScope memory(sample.arena);
@@ -84,21 +66,20 @@ class DirectRenderer final : public Renderer {
           far->surface_point(ray, hit, point);
           const Spectrum light = throughput * far->emission->radiance(point, -ray.direction, sample.wavelengths);
           add(1, light);
-          record_escape(sample.record, *far, ray, throughput);
-          record_emission(sample.record, light, 1, 1);
+          sample.observe.escape(*far, ray, throughput);
+          sample.observe.met(light, 1, 1);
         }
         return radiance;
       }
       const Vector3 out = -ray.direction;
-      record_surface(sample.record, point, throughput);
+      sample.observe.surface(point, throughput);
       if (point.object->luminaire()) {
         const Spectrum light = throughput * point.object->emission->radiance(point, out, sample.wavelengths);
         add(1, light);
-        record_emission(sample.record, light, 1, 1);
+        sample.observe.met(light, 1, 1);
       }
       const Scatter* scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
-      if (sample.features) note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths);
-      sample.features = nullptr;  // of the first surface only
+      sample.observe.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
       if (!scatter) return radiance;
 
       Spectrum direct;
@@ -108,7 +89,7 @@ class DirectRenderer final : public Renderer {
         direct += by_shader(scene, point, *scatter, ray, media, sample);
       direct *= throughput;
       add(2, direct);
-      record_direct(sample.record, direct, 2, 1);
+      sample.observe.sampled(direct, 2, 1);
 
       const auto straight = pass_straight(point, *scatter, ray, media);
       if (!straight) return radiance;
@@ -138,8 +119,8 @@ class DirectRenderer final : public Renderer {
     LuminaireSample light;
     for (int i = 0; i < light_samples && !sample.aborted(); ++i) {
       // Choices in equal strata over all samples: together they still choose luminaires as one choice does.
-      const float choice = std::min((float(i) + sample.random.next()) / n, one_minus_epsilon);
-      const Point2 u = sample.random.next_pair();
+      const float choice = std::min((float(i) + sample.numbers.next()) / n, one_minus_epsilon);
+      const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(point.position, point.normal, choice);
       if (!chosen.luminaire || !sample_luminaire(*chosen.luminaire, point, sample.wavelengths, u, light)) continue;
       const ScatterValue f = scatter.value_and_density(out, light.direction, Transport::radiance, bent_lobes);
@@ -147,8 +128,8 @@ class DirectRenderer final : public Renderer {
       const bool rivalled = strategy == Strategy::both && !light.delta;
       const float weight = weight_over_density(heuristic, n * chosen.probability * light.density,
                                                rivalled ? float(shader_samples) * f.density : 0);
-      sum +=
-          f.value * light.radiance * weight * visible_fraction(scene, light.shadow, nullptr, sample.wavelengths, sample.arena);
+      sum += f.value * light.radiance * weight *
+             visible_fraction(scene, light.shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena);
     }
     return sum;
   }
@@ -161,8 +142,8 @@ class DirectRenderer final : public Renderer {
     Hit hit;
     SurfacePoint met;
     for (int i = 0; i < shader_samples && !sample.aborted(); ++i) {
-      const float choice = std::min((float(i) + sample.random.next()) / n, one_minus_epsilon);
-      const auto next = scatter.sample(out, choice, sample.random.next_pair(), Transport::radiance, bent_lobes);
+      const float choice = std::min((float(i) + sample.numbers.next()) / n, one_minus_epsilon);
+      const auto next = scatter.sample(out, choice, sample.numbers.next_pair(), Transport::radiance, bent_lobes);
       if (!next || enters_body(point, *next)) continue;
       Wavelengths wavelengths = sample.wavelengths;
       Spectrum throughput = next->weight / n;

@@ -20,10 +20,10 @@
 // of a path tracer, cut by Russian roulette, and with all kinds of lobes followed the expectation is the path tracer's.
 
 #include "etendue/render/renderer.h"
-#include "transport/direct_light.h"
-#include "transport/ray_steps.h"
-#include "transport/record.h"
-#include "transport/visibility.h"
+#include "etendue/transport/direct_light.h"
+#include "etendue/transport/ray_tree.h"
+#include "etendue/transport/renderer_members.h"
+#include "etendue/transport/visibility.h"
 
 namespace etendue {
 namespace {
@@ -50,31 +50,17 @@ class DistributionRenderer final : public Renderer {
             "specular_samples", "1",
             "rays along each perfect mirror and refraction where the tree splits; with 1 both are followed", range(1, 65536))
         .member<&DistributionRenderer::split_depth>(
-            "split_depth", "1", "segments up to which the tree splits, at each surface; beyond, one ray goes on", range(0, 16))
-        .member<&DistributionRenderer::max_depth>(
-            "max_depth", "1", "longest path, in segments: 1 shows luminaires only, 2 adds direct light", at_least(1))
-        .member<&DistributionRenderer::roulette_depth>(
-            "roulette_depth", "1", "segments before Russian roulette may end a branch that no longer splits", at_least(1));
+            "split_depth", "1", "segments up to which the tree splits, at each surface; beyond, one ray goes on", range(0, 16));
+    describe_max_depth<&DistributionRenderer::max_depth>(d);
+    describe_roulette_depth<&DistributionRenderer::roulette_depth>(d);
   }
 
-  std::string limits() const override {
-    std::string text = "light that reaches a point only through specular surfaces from luminaires that rays cannot meet";
-    if (diffuse_samples == 0) text += ", light that diffuse surfaces send to others";
-    if (glossy_samples == 0) text += ", light that glossy surfaces send to others";
-    return text;
-  }
-
-  std::vector<Advice> misses(const SceneTraits& traits) const override {
-    std::vector<Advice> list;
-    if (diffuse_samples == 0 && !traits.smooth.empty())
-      list.push_back({"light that matt surfaces among " + some_of(traits.smooth) + " send on to others",
-                      "diffuse_samples: 1 or more finds it"});
-    if (glossy_samples == 0 && !traits.glossy.empty())
-      list.push_back({"light that " + some_of(traits.glossy) + " reflect", "glossy_samples: 1 or more finds it"});
-    miss_caustics(traits, list);
-    miss_media(traits, list);
-    miss_subsurface(traits, list);
-    return list;
+  PathClasses finds() const override {
+    PathClasses lost =
+        delta_caustics | delta_caustics_in_mirrors | scattering_media | emitting_media | uneven_media | subsurface_light;
+    if (diffuse_samples == 0) lost |= diffuse_light | area_caustics;
+    if (glossy_samples == 0) lost |= glossy_light | area_caustics;
+    return all_paths & ~lost;
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
@@ -120,7 +106,7 @@ class DistributionRenderer final : public Renderer {
     }
     light *= weight;
     tree.add(branch.depth, light);
-    record_emission(tree.sample.record, light, branch.depth, weight);
+    tree.sample.observe.met(light, branch.depth, weight);
   }
 
   void follow(RayTree& tree, Branch& branch) const {
@@ -134,19 +120,16 @@ class DistributionRenderer final : public Renderer {
       if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
         for (const SceneObject* far : scene.infinite_luminaires()) {
           far->surface_point(branch.ray, hit, point);
-          record_escape(sample.record, *far, branch.ray, branch.throughput);
+          sample.observe.escape(*far, branch.ray, branch.throughput);
           add_emission(tree, branch, point);
         }
         return;
       }
       const Vector3 out = -branch.ray.direction;
-      record_surface(sample.record, point, branch.throughput);
+      sample.observe.surface(point, branch.throughput);
       if (point.object->luminaire()) add_emission(tree, branch, point);
       const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
-      if (sample.features) {
-        note_features(*sample.features, scene, point, hit, scatter, out, branch.wavelengths);
-        sample.features = nullptr;  // of the first surface only
-      }
+      sample.observe.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
       if (!scatter) return;
 
       const Place place{point, *scatter, out, branch.depth <= split_depth};
@@ -154,7 +137,7 @@ class DistributionRenderer final : public Renderer {
       if (!last && scatter->has(smooth_lobes)) {
         const Spectrum direct = branch.throughput * direct_light(tree, branch, place);
         tree.add(branch.depth + 1, direct);
-        record_direct(sample.record, direct, branch.depth + 1, 1);
+        sample.observe.sampled(direct, branch.depth + 1, 1);
       }
       // What goes straight on is no longer for it, so the last segment may do that.
       const Lobes lobes = last ? Lobes(pass_through) : followed();
@@ -162,15 +145,15 @@ class DistributionRenderer final : public Renderer {
         if (!split(tree, branch, place, lobes)) return;
         continue;
       }
-      const float choice = sample.random.next();
-      const auto next = scatter->sample(out, choice, sample.random.next_pair(), Transport::radiance, lobes);
+      const float choice = sample.numbers.next();
+      const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), Transport::radiance, lobes);
       if (!next || enters_body(place.point, *next)) return;
       branch.throughput *= next->weight;
       step(sample, branch, place, *next, next->density, 1);
       // Radiance that refraction changed comes back when the path leaves the medium: that decides as little as splitting.
       if (branch.depth > roulette_depth) {
         const float survival = std::min(0.95f, branch.throughput.maximum() * branch.eta_squared / branch.share);
-        if (sample.random.next() >= survival) return;
+        if (sample.numbers.next() >= survival) return;
         branch.throughput /= survival;
       }
       if (branch.throughput.black() || !branch.may_go_on(next->lobe)) return;
@@ -195,8 +178,8 @@ class DistributionRenderer final : public Renderer {
       if (!place.scatter.has(kind.lobes & lobes)) continue;
       const int rivals = place.scatter.has(kind.rivals) ? kind.rival_count : 0;
       for (int i = 0; i < kind.count && !sample.aborted(); ++i) {
-        const float choice = (float(i) + sample.random.next()) / float(kind.count);
-        const auto next = place.scatter.sample(place.out, std::min(choice, one_minus_epsilon), sample.random.next_pair(),
+        const float choice = (float(i) + sample.numbers.next()) / float(kind.count);
+        const auto next = place.scatter.sample(place.out, std::min(choice, one_minus_epsilon), sample.numbers.next_pair(),
                                                Transport::radiance, kind.lobes);
         if (!next || enters_body(place.point, *next)) continue;
         Branch child = branch;
@@ -212,9 +195,9 @@ class DistributionRenderer final : public Renderer {
         }
         step(sample, child, place, *next, density, kind.count + rivals);
         if (child.throughput.black() || !child.may_go_on(next->lobe)) continue;
-        if (!first) record_surface(sample.record, place.point, branch.throughput);  // each branch from its surface on
+        if (!first) sample.observe.surface(place.point, branch.throughput);  // each branch from its surface on
         first = false;
-        record_scatter(sample.record, *next);
+        sample.observe.scattered(*next);
         if (kind.lobes == pass_through) {
           branch = child;
           goes_on = true;
@@ -232,7 +215,7 @@ class DistributionRenderer final : public Renderer {
     if (next.dispersive) branch.throughput *= branch.wavelengths.drop_secondary();
     branch.eta_squared *= next.eta * next.eta;
     go_on(place.point, next, branch.ray, branch.around());
-    if (!place.splits) record_scatter(sample.record, next);
+    if (!place.splits) sample.observe.scattered(next);
     if (next.lobe == pass_through) return;  // as if nothing had been there
     ++branch.depth;
     branch.share /= float(rays);
@@ -264,8 +247,8 @@ class DistributionRenderer final : public Renderer {
     LuminaireSample light;
     for (int i = 0; i < count && !sample.aborted(); ++i) {
       // Choices in equal strata over all rays: together they still choose luminaires as one choice does.
-      const float choice = std::min((float(i) + sample.random.next()) / float(count), one_minus_epsilon);
-      const Point2 u = sample.random.next_pair();
+      const float choice = std::min((float(i) + sample.numbers.next()) / float(count), one_minus_epsilon);
+      const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(place.point.position, place.point.normal, choice);
       if (!chosen.luminaire || !sample_luminaire(*chosen.luminaire, place.point, branch.wavelengths, u, light)) continue;
       const float density = float(count) * chosen.probability * light.density;
@@ -274,7 +257,8 @@ class DistributionRenderer final : public Renderer {
       if (place.scatter.has(alone))
         f += place.scatter.evaluate(place.out, light.direction, Transport::radiance, alone) / density;
       if (f.black()) continue;
-      sum += f * light.radiance * visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.arena);
+      sum += f * light.radiance *
+             visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.numbers, sample.arena);
     }
     return sum;
   }

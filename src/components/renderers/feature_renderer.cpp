@@ -8,8 +8,7 @@
 #include "display_colors.h"
 #include "etendue/describe/color.h"
 #include "etendue/render/renderer.h"
-#include "transport/ray_steps.h"
-#include "transport/record.h"
+#include "etendue/transport/ray_tree.h"
 
 namespace etendue {
 namespace {
@@ -17,9 +16,9 @@ namespace {
 enum class Feature : std::uint8_t { normal, shading_normal, depth, albedo, uv, object, primitive, position, hit_count, facing };
 
 class FeatureRenderer final : public Renderer {
+ public:
   Feature feature = Feature::shading_normal;
 
- public:
   static void describe(Description<FeatureRenderer>& d) {
     d.summary(
          "Shows what the first surfaces are like instead of light, in colours of linear sRGB, the same for every sample of a "
@@ -37,20 +36,21 @@ class FeatureRenderer final : public Renderer {
                     "facing"));
   }
 
-  std::string limits() const override { return "all light: it shows what surfaces are like"; }
-  std::vector<Advice> misses(const SceneTraits&) const override {
-    return {{"any light, as it shows what surfaces are like", "PathTracer, BidirectionalPathTracer"}};
-  }
+  PathClasses finds() const override { return no_paths; }  // it shows what surfaces are like
 
-  void begin(const RenderContext& context) override {
-    Renderer::begin(context);
+  std::unique_ptr<RenderProcess> begin(const RenderContext& context) const override;
+};
+
+/// Knows the objects of a scene by numbers.
+class FeatureProcess final : public RenderProcess {
+ public:
+  FeatureProcess(const FeatureRenderer& r, const RenderContext& c) : RenderProcess(r, c), feature(r.feature) {
     white_ = rgb_space("srgb").illuminant;
-    objects_.clear();
-    number(context.scene);
+    number(c.scene);
     std::sort(objects_.begin(), objects_.end());
   }
 
-  Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
+  Spectrum radiance(const Ray& camera_ray, SampleContext& sample) const override {
     const Scene& scene = context.scene;
     MediumStack media;
     Ray ray = camera_ray;
@@ -58,10 +58,11 @@ class FeatureRenderer final : public Renderer {
     SurfacePoint point;
     if (!meet_surface(scene, ray, media_around(scene, ray, media), hit, point)) return {};
     const Vector3 out = -ray.direction;
-    record_surface(sample.record, point, Spectrum(1.0f));
+    sample.observe.surface(point, Spectrum(1.0f));
     const Scatter* scatter = nullptr;
-    if (sample.features || feature == Feature::albedo) scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
-    if (sample.features) note_features(*sample.features, scene, point, hit, scatter, out, sample.wavelengths);
+    if (sample.observe.features || feature == Feature::albedo)
+      scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
+    sample.observe.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
 
     Spectrum value;
     if (feature == Feature::albedo) {  // light after all: white light, scattered
@@ -70,8 +71,8 @@ class FeatureRenderer final : public Renderer {
       value = display_colors()(color(scene, camera_ray, hit, point, distance(camera_ray.origin, point.position)));
       sample.wavelengths = display_colors().wavelengths;
     }
-    sample.note_length(1, value);
-    record_emission(sample.record, value, 1, 1);
+    sample.observe.light(1, value);
+    sample.observe.met(value, 1, 1);
     return value;
   }
 
@@ -140,9 +141,14 @@ class FeatureRenderer final : public Renderer {
     return id;
   }
 
+  const Feature feature;
   Color white_;
   std::vector<std::pair<const SceneObject*, size_t>> objects_;  // sorted by address, each with its number by place in the file
 };
+
+std::unique_ptr<RenderProcess> FeatureRenderer::begin(const RenderContext& context) const {
+  return std::make_unique<FeatureProcess>(*this, context);
+}
 
 const Register<FeatureRenderer> registered;
 

@@ -9,9 +9,9 @@
 // where refraction disperses light the refracted branch, alone, follows the hero wavelength.
 
 #include "etendue/render/renderer.h"
-#include "transport/ray_steps.h"
-#include "transport/record.h"
-#include "transport/visibility.h"
+#include "etendue/transport/ray_tree.h"
+#include "etendue/transport/renderer_members.h"
+#include "etendue/transport/visibility.h"
 
 namespace etendue {
 namespace {
@@ -22,32 +22,14 @@ class WhittedRenderer final : public Renderer {
  public:
   static void describe(Description<WhittedRenderer>& d) {
     d.summary("Classical ray tracing: shadow rays to luminaires without extent, perfect mirrors and refraction.",
-              "Whitted 1980, An improved illumination model for shaded display")
-        .member<&WhittedRenderer::max_depth>("max_depth", "1",
-                                             "longest path, in segments: 1 shows luminaires only, 2 adds direct light; each "
-                                             "more may double the work where surfaces both reflect and refract",
-                                             range(1, 64));
+              "Whitted 1980, An improved illumination model for shaded display");
+    describe_max_depth<&WhittedRenderer::max_depth>(
+        d, "; each more may double the work where surfaces both reflect and refract", range(1, 64));
   }
 
-  std::string limits() const override {
-    return "light of luminaires with an extent other than seen directly, in mirrors or through glass, and all light that "
-           "diffuse and glossy surfaces send to one another; what is left is exact";
-  }
-
-  std::vector<Advice> misses(const SceneTraits& traits) const override {
-    std::vector<Advice> list;
-    if (!traits.smooth.empty()) {
-      for (const auto* luminaires : {&traits.areas, &traits.environments})
-        if (!luminaires->empty())
-          list.push_back({"light of " + some_of(*luminaires) + " on " + some_of(traits.smooth),
-                          "DirectRenderer, DistributionRenderer, PathTracer"});
-      list.push_back({"light that " + some_of(traits.smooth) + " send on to other surfaces",
-                      "DistributionRenderer, PathTracer, BidirectionalPathTracer"});
-    }
-    miss_caustics(traits, list);
-    miss_media(traits, list);
-    miss_subsurface(traits, list);
-    return list;
+  PathClasses finds() const override {
+    return all_paths & ~(area_light | diffuse_light | glossy_light | area_caustics | delta_caustics |
+                         delta_caustics_in_mirrors | scattering_media | emitting_media | uneven_media | subsurface_light);
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
@@ -77,37 +59,34 @@ class WhittedRenderer final : public Renderer {
         far->surface_point(branch.ray, hit, point);
         const Spectrum light = branch.throughput * far->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
         tree.add(branch.depth, light);
-        record_escape(sample.record, *far, branch.ray, branch.throughput);
-        record_emission(sample.record, light, branch.depth, 1);
+        sample.observe.escape(*far, branch.ray, branch.throughput);
+        sample.observe.met(light, branch.depth, 1);
       }
       return false;
     }
     const Vector3 out = -branch.ray.direction;
-    record_surface(sample.record, point, branch.throughput);
+    sample.observe.surface(point, branch.throughput);
     if (point.object->luminaire()) {
       const Spectrum light = branch.throughput * point.object->emission->radiance(point, out, branch.wavelengths);
       tree.add(branch.depth, light);
-      record_emission(sample.record, light, branch.depth, 1);
+      sample.observe.met(light, branch.depth, 1);
     }
     const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
-    if (sample.features) {
-      note_features(*sample.features, scene, point, hit, scatter, out, branch.wavelengths);
-      sample.features = nullptr;  // of the first surface only
-    }
+    sample.observe.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
     if (!scatter) return false;
     const bool last = branch.depth >= max_depth;
     if (!last && scatter->has(smooth_lobes)) {
-      const Spectrum direct = branch.throughput * direct_light(scene, point, *scatter, out, branch.wavelengths, sample.arena);
+      const Spectrum direct = branch.throughput * direct_light(scene, point, *scatter, out, branch.wavelengths, sample);
       tree.add(branch.depth + 1, direct);
-      record_direct(sample.record, direct, branch.depth + 1, 1);
+      sample.observe.sampled(direct, branch.depth + 1, 1);
     }
 
     bool first = true, goes_on = false;
     for (const Lobe lobe : {specular_reflection, specular_transmission, pass_through}) {
       // What goes straight on is no longer for it, so the last segment may do that.
       if (!scatter->has(lobe) || (last && lobe != pass_through)) continue;
-      const float choice = sample.random.next();  // a surface may have several mirrors
-      const auto next = scatter->sample(out, choice, sample.random.next_pair(), Transport::radiance, lobe);
+      const float choice = sample.numbers.next();  // a surface may have several mirrors
+      const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), Transport::radiance, lobe);
       if (!next || enters_body(point, *next)) continue;
       RayBranch child = branch;
       child.throughput *= next->weight;
@@ -115,9 +94,9 @@ class WhittedRenderer final : public Renderer {
       if (child.throughput.black() || !child.may_go_on(lobe)) continue;
       if (lobe != pass_through) ++child.depth;
       go_on(point, *next, child.ray, child.around());
-      if (!first) record_surface(sample.record, point, branch.throughput);  // each branch is told from its surface on
+      if (!first) sample.observe.surface(point, branch.throughput);  // each branch is told from its surface on
       first = false;
-      record_scatter(sample.record, *next);
+      sample.observe.scattered(*next);
       if (lobe == pass_through) {
         branch = child;
         goes_on = true;
@@ -130,14 +109,15 @@ class WhittedRenderer final : public Renderer {
 
   /// The sum over all luminaires without extent.
   static Spectrum direct_light(const Scene& scene, const SurfacePoint& point, const Scatter& scatter, const Vector3& out,
-                               const Wavelengths& wavelengths, Arena& arena) {
+                               const Wavelengths& wavelengths, SampleContext& sample) {
     Spectrum sum;
     LuminaireSample light;
     for (const SceneObject* luminaire : scene.luminaires()) {
       if (!luminaire->delta() || !sample_luminaire(*luminaire, point, wavelengths, {0.5f, 0.5f}, light)) continue;
       const Spectrum f = scatter.evaluate(out, light.direction, Transport::radiance, smooth_lobes);
       if (f.black()) continue;
-      sum += f * light.radiance / light.density * visible_fraction(scene, light.shadow, nullptr, wavelengths, arena);
+      sum += f * light.radiance / light.density *
+             visible_fraction(scene, light.shadow, nullptr, wavelengths, sample.numbers, sample.arena);
     }
     return sum;
   }

@@ -8,9 +8,9 @@ namespace {
 // Counter based: a number is a hash of its own indices. The counter (sample, dimension) times an odd constant is one to
 // one, and its exclusive or with the pixel's hash walks through another part of the hash's domain in every pixel, as
 // splitmix64 does with its state (Steele, Lea & Flood 2014).
-std::uint64_t bits(const SampleKey& key, std::uint32_t dimension) {
+std::uint64_t bits(SampleKey key, std::uint32_t dimension) {
   const std::uint64_t counter = (std::uint64_t(key.sample) << 32) | dimension;
-  return mix_bits(key.pixel ^ ((counter + 1) * 0x9e3779b97f4a7c15ull));
+  return mix_bits(key.walk ^ ((counter + 1) * 0x9e3779b97f4a7c15ull));
 }
 
 class IndependentSampler final : public Sampler {
@@ -19,11 +19,11 @@ class IndependentSampler final : public Sampler {
     d.summary("Independent uniform numbers: the plainest estimate, and the noisiest.",
               "Steele, Lea & Flood 2014, Fast splittable pseudorandom number generators");
   }
-  float number(const SampleKey& key, std::uint32_t dimension) const override {
+  float number(SampleKey key, std::uint32_t dimension) const override {
     return to_unit_float(std::uint32_t(bits(key, dimension) >> 32));
   }
-  Point2 pair(const SampleKey& key, std::uint32_t dimension) const override { return halves(bits(key, dimension)); }
-  Pairs two_pairs(const SampleKey& key, std::uint32_t first, std::uint32_t second) const override {
+  Point2 pair(SampleKey key, std::uint32_t dimension) const override { return halves(bits(key, dimension)); }
+  Pairs two_pairs(SampleKey key, std::uint32_t first, std::uint32_t second) const override {
     return {halves(bits(key, first)), halves(bits(key, second))};
   }
 

@@ -67,9 +67,9 @@ std::uint32_t shuffled(std::uint32_t sample, std::uint64_t hash) {
 }
 
 /// The key is well mixed already: one multiplication, folded, spreads the dimension over all bits.
-std::uint64_t hash(const SampleKey& key, std::uint32_t dimension) {
+std::uint64_t hash(SampleKey key, std::uint32_t dimension) {
   __extension__ using Wide = unsigned __int128;
-  const Wide product = Wide(key.pixel ^ ((std::uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull)) * 0xd6e8feb86659fd93ull;
+  const Wide product = Wide(key.walk ^ ((std::uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull)) * 0xd6e8feb86659fd93ull;
   return std::uint64_t(product >> 64) ^ std::uint64_t(product);
 }
 
@@ -84,13 +84,13 @@ class SobolSampler final : public Sampler {
         "Burley 2020, Practical hash-based Owen scrambling");
   }
 
-  float number(const SampleKey& key, std::uint32_t dimension) const override {
+  float number(SampleKey key, std::uint32_t dimension) const override {
     const std::uint64_t h = hash(key, dimension);
     const std::uint32_t index = shuffled(key.sample, h);
     return to_unit_float(reverse(permute_reversed(index, std::uint32_t(h >> 32))));
   }
 
-  Point2 pair(const SampleKey& key, std::uint32_t dimension) const override {
+  Point2 pair(SampleKey key, std::uint32_t dimension) const override {
     const std::uint64_t h = hash(key, dimension);
     const std::uint32_t index = shuffled(key.sample, h);
     const std::uint32_t x = permute_reversed(index, std::uint32_t(h >> 32));
@@ -99,7 +99,7 @@ class SobolSampler final : public Sampler {
     return {to_unit_float(std::uint32_t(both >> 32)), to_unit_float(std::uint32_t(both))};
   }
 
-  Pairs two_pairs(const SampleKey& key, std::uint32_t first, std::uint32_t second) const override {
+  Pairs two_pairs(SampleKey key, std::uint32_t first, std::uint32_t second) const override {
     const std::uint64_t g = hash(key, first), h = hash(key, second);
     const auto g_low = std::uint32_t(g), h_low = std::uint32_t(h), start = reverse(key.sample);
     const Four index = reverse(permute_reversed(Four{start, start, start, start}, Four{g_low, g_low, h_low, h_low}));

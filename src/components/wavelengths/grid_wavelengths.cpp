@@ -41,10 +41,10 @@ class GridWavelengths final : public WavelengthSampler {
     while (std::gcd(stride_, std::uint32_t(count)) != 1) ++stride_;
   }
 
-  Wavelengths sample(const SampleKey& key, float) const override {
+  Wavelengths sample(SampleKey key, float) const override {
     const std::uint32_t n = std::uint32_t(count);
     // Not the pixel's hash itself: samplers use that, and the choice must not follow theirs.
-    const std::uint64_t offset = mix_bits(key.pixel ^ 0x6a09e667f3bcc908ull) >> 32;
+    const std::uint64_t offset = mix_bits(key.walk ^ 0x6a09e667f3bcc908ull) >> 32;
     const std::uint32_t hero = std::uint32_t((offset + std::uint64_t(key.sample) * stride_) % n);
     Wavelengths result;
     for (int i = 0; i < spectrum_size; ++i) {

@@ -53,7 +53,7 @@ class HeroWavelengths final : public WavelengthSampler {
     }
   }
 
-  Wavelengths sample(const SampleKey&, float u) const override {
+  Wavelengths sample(SampleKey, float u) const override {
     // A distance of 1/size in u is a whole number of cells: all wavelengths share the fraction within theirs.
     static_assert(cells % spectrum_size == 0);
     const float position = clamp(u, 0, one_minus_epsilon) * float(cells);

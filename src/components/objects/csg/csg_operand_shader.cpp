@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "csg.h"
-#include "transport/bound.h"
+#include "etendue/transport/scattering.h"
 
 namespace etendue {
 namespace {
@@ -65,7 +65,7 @@ bool OperandShader::moves_exit() const {
 }
 
 std::optional<SubsurfaceExit> OperandShader::sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
-                                                         SampleStream& random, Arena& arena) const {
+                                                         NumberStream& random, Arena& arena) const {
   const Csg* const solid = solid_at(p);
   if (!solid) return std::nullopt;
   SurfacePoint there = p;

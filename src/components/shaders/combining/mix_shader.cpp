@@ -132,7 +132,7 @@ class MixShader final : public Shader {
   bool stochastic() const override { return first->stochastic() || second->stochastic(); }
   bool moves_exit() const override { return first->moves_exit() || second->moves_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
-                                            SampleStream& random, Arena& arena) const override {
+                                            NumberStream& random, Arena& arena) const override {
     return (first->moves_exit() ? first : second)->sample_exit(p, scene, w, random, arena);
   }
 

@@ -23,7 +23,7 @@ class PerturbedNormalShader : public Shader {
   bool stochastic() const override { return shader->stochastic(); }
   bool moves_exit() const override { return shader->moves_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
-                                            SampleStream& random, Arena& arena) const override {
+                                            NumberStream& random, Arena& arena) const override {
     return shader->sample_exit(perturbed(p), scene, w, random, arena);
   }
 

@@ -152,7 +152,7 @@ class SheenShader final : public Shader {
   bool stochastic() const override { return base && base->stochastic(); }
   bool moves_exit() const override { return base && base->moves_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
-                                            SampleStream& random, Arena& arena) const override {
+                                            NumberStream& random, Arena& arena) const override {
     return base ? base->sample_exit(p, scene, w, random, arena) : std::nullopt;
   }
 

@@ -154,7 +154,7 @@ class Subsurface final : public Shader {
   bool moves_exit() const override { return true; }
 
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
-                                            SampleStream& random, Arena& arena) const override {
+                                            NumberStream& random, Arena& arena) const override {
     SubsurfaceBody body;
     body.returned = reflectance_at(*color, p, w);
     if (body.returned.black()) return std::nullopt;

@@ -57,7 +57,7 @@ struct Profiles {
 
 }  // namespace
 
-bool exit_by_diffusion(const SubsurfaceBody& body, const SurfacePoint& entry, const Scene& scene, SampleStream& random,
+bool exit_by_diffusion(const SubsurfaceBody& body, const SurfacePoint& entry, const Scene& scene, NumberStream& random,
                        SurfacePoint& exit, Spectrum& weight) {
   constexpr int most = 64;  // points on one line
   const Profiles profiles(body);

@@ -18,9 +18,9 @@ struct SubsurfaceBody {
 
 /// Where light that entered at a point leaves. `weight` is what it is multiplied by on its way, over the density of the
 /// choice. False: it does not.
-bool exit_by_diffusion(const SubsurfaceBody&, const SurfacePoint& entry, const Scene&, SampleStream&, SurfacePoint& exit,
+bool exit_by_diffusion(const SubsurfaceBody&, const SurfacePoint& entry, const Scene&, NumberStream&, SurfacePoint& exit,
                        Spectrum& weight);
-bool exit_by_random_walk(const SubsurfaceBody&, const SurfacePoint& entry, const Scene&, SampleStream&, SurfacePoint& exit,
+bool exit_by_random_walk(const SubsurfaceBody&, const SurfacePoint& entry, const Scene&, NumberStream&, SurfacePoint& exit,
                          Spectrum& weight);
 
 /// The nearest point at which a ray meets the surface of an object, through all others; the ray goes on from there.

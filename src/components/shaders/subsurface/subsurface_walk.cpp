@@ -23,7 +23,7 @@ namespace {
 /// Numbers for the walk: as many as it takes, from a seed (splitmix64, Steele, Lea & Flood 2014).
 class WalkRandom {
  public:
-  explicit WalkRandom(SampleStream& random) {
+  explicit WalkRandom(NumberStream& random) {
     const std::uint64_t high = std::bit_cast<std::uint32_t>(random.next()), low = std::bit_cast<std::uint32_t>(random.next());
     state_ = mix_bits((high << 32 | low) + 0x9e3779b97f4a7c15ull);
   }
@@ -64,7 +64,7 @@ bool inside(const Scene& scene, const SceneObject* object, Ray ray) {
 
 }  // namespace
 
-bool exit_by_random_walk(const SubsurfaceBody& body, const SurfacePoint& entry, const Scene& scene, SampleStream& random,
+bool exit_by_random_walk(const SubsurfaceBody& body, const SurfacePoint& entry, const Scene& scene, NumberStream& random,
                          SurfacePoint& exit, Spectrum& weight) {
   constexpr int most_scatterings = 1 << 16, checked_every = 256;
   Spectrum extinction, scattering;

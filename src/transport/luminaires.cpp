@@ -1,4 +1,4 @@
-#include "luminaire_sampling.h"
+#include "etendue/transport/luminaires.h"
 
 #include "etendue/core/warp.h"
 
@@ -61,9 +61,9 @@ Point2 LightFront::sample(Point2 u) const {
 }
 
 bool sample_emitted_light(const Scene& scene, const LightSampler& lights, const Wavelengths& w, float time,
-                          SampleStream& random, EmittedLight& light) {
-  const float which = random.next();
-  const Point2 position = random.next_pair(), direction = random.next_pair();
+                          NumberStream& numbers, EmittedLight& light) {
+  const float which = numbers.next();
+  const Point2 position = numbers.next_pair(), direction = numbers.next_pair();
   const LightChoice choice = lights.choose(which);
   if (!choice.luminaire || !(choice.probability > 0)) return false;
   const SceneObject& luminaire = *choice.luminaire;

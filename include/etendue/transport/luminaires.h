@@ -2,7 +2,7 @@
 // Where paths from the light begin.
 
 #include "etendue/light_sampler.h"
-#include "etendue/sampler.h"
+#include "etendue/numbers.h"
 #include "etendue/scene.h"
 
 namespace etendue {
@@ -53,6 +53,6 @@ class LightFront {
 
 /// Chooses a luminaire by power, a point on it and a direction; for one at infinity a direction, and a place across it as
 /// LightFront has it. False: nothing leaves there.
-bool sample_emitted_light(const Scene&, const LightSampler&, const Wavelengths&, float time, SampleStream&, EmittedLight&);
+bool sample_emitted_light(const Scene&, const LightSampler&, const Wavelengths&, float time, NumberStream&, EmittedLight&);
 
 }  // namespace etendue

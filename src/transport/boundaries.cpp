@@ -1,4 +1,4 @@
-#include "medium_tracking.h"
+#include "etendue/transport/boundaries.h"
 
 namespace etendue {
 namespace {

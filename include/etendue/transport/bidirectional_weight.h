@@ -12,17 +12,17 @@
 // A strategy that would connect at a vertex whose scattering is specular, or meet a luminaire without extent, cannot
 // happen and is left out, as is meeting the lens.
 
-#include "multiple_importance.h"
-#include "vertex.h"
+#include "etendue/transport/kept_walk.h"
+#include "etendue/transport/multiple_importance.h"
 
 namespace etendue {
 
 /// A path: `light[0 … s-1]` from the luminaire, `camera[0 … t-1]` from the lens, and what the connection changes. The vertices
 /// hold the densities of their own walks; those next to the connection are seen from the other side with these.
 struct ConnectedPath {
-  const Vertex* light = nullptr;
+  const KeptVertex* light = nullptr;
   int s = 0;
-  const Vertex* camera = nullptr;
+  const KeptVertex* camera = nullptr;
   int t = 0;
   float light_last_from_camera = 0;    ///< E of light[s-1]
   float light_before_from_camera = 0;  ///< E of light[s-2]

@@ -1,6 +1,4 @@
-#include "record.h"
-
-#include <algorithm>
+#include "etendue/transport/observer.h"
 
 #include "etendue/describe/color.h"
 
@@ -25,39 +23,49 @@ std::string lobe_name(Lobe lobe) {
   return "unknown";
 }
 
-void record_surface_slowly(PathRecord& record, const SurfacePoint& p, const Spectrum& throughput) {
+void PathObserver::surface_slowly(const SurfacePoint& p, const Spectrum& throughput) {
   PathRecord::Vertex v;
   v.kind = "surface";
   v.object = object_name(*p.object);
   v.position = p.position;
   v.normal = p.normal;
   v.throughput = throughput;
-  record.add(std::move(v));
+  record->add(std::move(v));
 }
 
-void record_volume_slowly(PathRecord& record, const Point3& position, const Spectrum& throughput) {
+void PathObserver::medium_slowly(const Point3& position, const Spectrum& throughput) {
   PathRecord::Vertex v;
   v.kind = "volume";
   v.position = position;
   v.throughput = throughput;
-  record.add(std::move(v));
+  record->add(std::move(v));
 }
 
-void record_escape_slowly(PathRecord& record, const SceneObject& far, const Ray& ray, const Spectrum& throughput) {
+void PathObserver::escape_slowly(const SceneObject& far, const Ray& ray, const Spectrum& throughput) {
   PathRecord::Vertex v;
   v.kind = "escaped";
   v.object = object_name(far);
   v.position = ray.origin;
   v.normal = Normal3(ray.direction);
   v.throughput = throughput;
-  record.add(std::move(v));
+  record->add(std::move(v));
 }
 
-void record_scatter_slowly(PathRecord& record, const ScatterSample& s) {
-  PathRecord::Vertex& v = record.vertices.back();
+void PathObserver::scattered_slowly(const ScatterSample& s) {
+  PathRecord::Vertex& v = record->vertices.back();
   v.lobe = lobe_name(s.lobe);
   v.density = s.density;
   if (s.dispersive) v.note = "dispersion: only the hero wavelength goes on";
+}
+
+void PathObserver::met_slowly(const Spectrum& light, int length, float weight) {
+  record->vertices.back().emitted += light;
+  record->contribute({"luminaire met", length, weight, light, {}, false});
+}
+
+void PathObserver::sampled_slowly(const Spectrum& light, int length, float weight) {
+  record->vertices.back().direct = light;
+  record->contribute({"luminaire sampled", length, weight, light, {}, false});
 }
 
 namespace {
@@ -85,18 +93,20 @@ int place_in(const Scene& scene, const SceneObject* object) {
 
 }  // namespace
 
-void note_features(Features& features, const Scene& scene, const SurfacePoint& point, const Hit& hit, const Scatter* scatter,
-                   const Vector3& out, const Wavelengths& wavelengths, float distance_before) {
-  features.normal = Vector3(dot(point.shading_normal, out) < 0 ? -point.shading_normal : point.shading_normal);
-  features.depth = distance_before + hit.distance;
+void PathObserver::first_surface_slowly(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Scatter* scatter,
+                                        const Vector3& out, const Wavelengths& wavelengths, float before) {
+  Features& f = *features;
+  features = nullptr;
+  f.normal = Vector3(dot(point.shading_normal, out) < 0 ? -point.shading_normal : point.shading_normal);
+  f.depth = before + hit.distance;
   const SceneObject* top = hit.depth > 0 ? hit.scenes[hit.depth - 1] : hit.object;
-  features.object = place_in(scene, top) + 1;
+  f.object = place_in(scene, top) + 1;
   if (!scatter) return;
   static const RgbSpace& srgb = rgb_space("srgb");
   const Xyz c = to_xyz(scatter->albedo(out) * srgb.illuminant->evaluate(wavelengths, ColorUse::reflectance), wavelengths);
   const auto& m = srgb.from_xyz;
-  features.albedo = {float(m[0] * c.x + m[1] * c.y + m[2] * c.z), float(m[3] * c.x + m[4] * c.y + m[5] * c.z),
-                     float(m[6] * c.x + m[7] * c.y + m[8] * c.z)};
+  f.albedo = {float(m[0] * c.x + m[1] * c.y + m[2] * c.z), float(m[3] * c.x + m[4] * c.y + m[5] * c.z),
+              float(m[6] * c.x + m[7] * c.y + m[8] * c.z)};
 }
 
 }  // namespace etendue

@@ -1,10 +1,10 @@
 #pragma once
-// Steps that renderers which follow rays from the camera have in common.
+// Steps that renderers which follow trees of rays from the camera have in common.
 
-#include "bound.h"
+#include "etendue/transport/boundaries.h"
+#include "etendue/transport/medium.h"
 #include "etendue/transport/sample_context.h"
-#include "media.h"
-#include "medium_tracking.h"
+#include "etendue/transport/scattering.h"
 
 namespace etendue {
 
@@ -28,40 +28,6 @@ inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& 
     ray.width = point.footprint;
   }
   return false;
-}
-
-/// What the black side of a surface leaves of its scattering: light that goes straight on, through holes and thin panes.
-class StraightScatter final : public ScatterCombination {
- public:
-  StraightScatter(const SurfacePoint& p, const Scatter& whole) : ScatterCombination(p, pass_through), whole_(whole) {
-    has_choice_ = false;
-  }
-  ScatterValue world_value_and_density(const Vector3&, const Vector3&, Transport, Lobes) const override { return {}; }
-  std::optional<ScatterSample> world_sample(const Vector3& out, float, Point2, Transport transport, Lobes) const override {
-    return whole_.sample(out, 0, {}, transport, pass_through);  // asked alone the lobe is certain
-  }
-  Spectrum world_albedo(const Vector3& out, Lobes) const override { return whole_.albedo(out, pass_through); }
-
- private:
-  const Scatter& whole_;
-};
-
-/// How light is scattered towards `out`; null: it is not.
-inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& out, const Wavelengths& wavelengths,
-                                    Arena& arena) {
-  const SceneObject& object = *point.object;
-  if (!object.shader) return nullptr;
-  const bool black = object.sides != Sides::both && (dot(point.normal, out) > 0) != (object.sides == Sides::front);
-  if (!black) return bound(*object.shader, point, wavelengths, arena);
-  if (!(object.shader->possible_lobes() & pass_through)) return nullptr;
-  const Scatter* whole = bound(*object.shader, point, wavelengths, arena);
-  if (!whole || !whole->has(pass_through)) return nullptr;
-  return whole->lobes() == pass_through ? whole : arena.make<StraightScatter>(point, *whole);
-}
-
-/// Whether a sampled direction leads into a body that light leaves elsewhere: who does not ask where loses the path.
-inline bool enters_body(const SurfacePoint& point, const ScatterSample& next) {
-  return next.transmitted() && next.lobe != pass_through && point.object->shader->moves_exit();
 }
 
 /// Makes a ray go on from a point in a sampled direction; `media` are changed when it goes through the surface. Its cone
@@ -130,36 +96,8 @@ struct RayTree {
 
   void add(int length, const Spectrum& light) {
     radiance += light;
-    sample.note_length(length, light);
+    sample.observe.light(length, light);
   }
 };
-
-/// What a renderer that knows nothing of media misses.
-inline void miss_media(const SceneTraits& traits, std::vector<Advice>& list) {
-  if (!traits.media.empty())
-    list.push_back({"absorption and scattering in " + some_of(traits.media), "PathTracer, BidirectionalPathTracer"});
-  if (!traits.emissive_media.empty())
-    list.push_back({"light that " + some_of(traits.emissive_media) + " send out from within", "PathTracer"});
-}
-
-/// What a renderer that does not ask where light leaves a body misses.
-inline void miss_subsurface(const SceneTraits& traits, std::vector<Advice>& list) {
-  if (!traits.moved_exits.empty()) list.push_back({"light scattered inside " + some_of(traits.moved_exits), "PathTracer"});
-}
-
-/// The names of all luminaires without extent.
-inline std::vector<std::string> delta_names(const SceneTraits& traits) {
-  std::vector<std::string> names = traits.points;
-  names.insert(names.end(), traits.distant.begin(), traits.distant.end());
-  return names;
-}
-
-/// What a renderer whose paths all begin at the camera misses: no path meets a luminaire without extent.
-inline void miss_caustics(const SceneTraits& traits, std::vector<Advice>& list) {
-  if (traits.delta_luminaires() && !traits.specular.empty() && !traits.smooth.empty())
-    list.push_back({"light of " + some_of(delta_names(traits)) + " that " + some_of(traits.specular) + " throw onto " +
-                        some_of(traits.smooth) + " (caustics)",
-                    "BidirectionalPathTracer"});
-}
 
 }  // namespace etendue

@@ -1,11 +1,9 @@
 #pragma once
-// Light that comes to a surface straight from luminaires.
+// Light that comes to a vertex straight from luminaires.
 
 #include "etendue/light_sampler.h"
-#include "etendue/sampler.h"
-#include "etendue/scene.h"
-#include "etendue/shader.h"
-#include "multiple_importance.h"
+#include "etendue/transport/multiple_importance.h"
+#include "etendue/transport/vertex.h"
 
 namespace etendue {
 
@@ -46,44 +44,26 @@ template <class Scattering, class Leave>
   return true;
 }
 
-/// On a surface; `out` is the direction the path came from. `shader_sampling` says whether directions are also sampled by
-/// the shader.
-[[gnu::always_inline]] inline bool propose_direct_light(const LightSampler& lights, const SurfacePoint& point,
-                                                        const Scatter& scatter, const Vector3& out,
+/// From a path's vertex: `out` is where the path came from. Light of a luminaire that scattering can meet as well is weighted
+/// against that.
+[[gnu::always_inline]] inline bool propose_direct_light(const LightSampler& lights, const Vertex& vertex, float time,
                                                         const Wavelengths& wavelengths, float choice, Point2 u,
-                                                        Heuristic heuristic, DirectLight& direct, bool shader_sampling = true) {
+                                                        Heuristic heuristic, DirectLight& direct) {
   return propose_light(
-      lights, point.position, point.normal, point.time, wavelengths, choice, u, heuristic, direct,
-      [&](const Vector3& in) __attribute__((always_inline)) {
-        // Of all lobes, as the path will be continued by: the density is that of choosing this direction among them.
-        ScatterValue f = scatter.value_and_density(out, in, Transport::radiance);
-        if (!shader_sampling) f.density = 0;
-        return f;
-      },
+      lights, vertex.point.position, vertex.normal(), time, wavelengths, choice, u, heuristic, direct,
+      [&](const Vector3& in) __attribute__((always_inline)) { return scattering(vertex, vertex.out, in, Transport::radiance); },
       [&](const SurfaceSample& s, Ray& ray) __attribute__((always_inline)) {
-        if (s.infinite)
-          point.leave(s.direction, ray);
-        else
-          point.towards(s.point, ray);
-      });
-}
-
-/// In a medium.
-inline bool propose_direct_light(const LightSampler& lights, const VolumeShader& volume, const Point3& at, const Vector3& out,
-                                 float time, const Wavelengths& wavelengths, float choice, Point2 u, Heuristic heuristic,
-                                 DirectLight& direct) {
-  return propose_light(
-      lights, at, {}, time, wavelengths, choice, u, heuristic, direct,
-      [&](const Vector3& in) {
-        const float phase = volume.phase(at, out, in);
-        return ScatterValue{Spectrum(phase), phase};
-      },
-      [&](const SurfaceSample& s, Ray& ray) {
-        ray.origin = at;
-        ray.direction = s.direction;
         ray.time = time;
-        ray.maximum = infinity;
-        if (!s.infinite) SurfacePoint::end_at(s.point, ray);
+        if (vertex.in_medium()) {
+          ray.origin = vertex.point.position;
+          ray.direction = s.direction;
+          ray.maximum = infinity;
+          if (!s.infinite) SurfacePoint::end_at(s.point, ray);
+        } else if (s.infinite) {
+          vertex.point.leave(s.direction, ray);
+        } else {
+          vertex.point.towards(s.point, ray);
+        }
       });
 }
 

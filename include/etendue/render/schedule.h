@@ -1,0 +1,71 @@
+#pragma once
+// Schedule: work over all cores. An algorithm says what is to be done for each of many items; what comes of them is put
+// together in the order of items, so no result depends on threads.
+
+#include <atomic>
+#include <type_traits>
+#include <vector>
+
+#include "etendue/core/arena.h"
+#include "etendue/film/image_buffer.h"
+
+namespace etendue {
+
+class Schedule {
+ public:
+  virtual ~Schedule() = default;
+
+  /// Runs `work(item, tile, arena)` for items 0 … count-1 on all threads and adds the tiles to the film.
+  template <class Work>
+  void film(std::uint64_t count, Work&& work) {
+    using W = std::remove_reference_t<Work>;
+    film_items(
+        count,
+        [](void* self, std::uint64_t item, ImageTile& tile, Arena& arena) { (*static_cast<W*>(self))(item, tile, arena); },
+        &work);
+  }
+
+  /// Runs `work(item, results, arena)`, which appends to its own std::vector<T>, and returns all that came, in the order of
+  /// items: photons, training samples, bounds.
+  template <class T, class Work>
+  std::vector<T> collect(std::uint64_t count, Work&& work) {
+    struct Collection final : Results {
+      std::remove_reference_t<Work>& work;
+      std::vector<T> all;
+      explicit Collection(std::remove_reference_t<Work>& w) : work(w) {}
+      void* make() override { return new std::vector<T>; }
+      void fill(std::uint64_t item, void* results, Arena& arena) override {
+        work(item, *static_cast<std::vector<T>*>(results), arena);
+      }
+      void take(void* results) override {
+        auto& some = *static_cast<std::vector<T>*>(results);
+        all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
+        delete &some;
+      }
+    } collection(work);
+    items(count, collection);
+    return std::move(collection.all);
+  }
+
+  /// Whether what is being done will be thrown away. Items that have not begun are then left out; long ones look at it, too.
+  bool aborted() const { return abort && abort->load(std::memory_order_relaxed); }
+  const std::atomic<bool>* abort = nullptr;  ///< null: never
+
+ protected:
+  using FilmWork = void (*)(void* self, std::uint64_t item, ImageTile&, Arena&);
+  virtual void film_items(std::uint64_t count, FilmWork, void* self) = 0;
+
+  /// What comes of items, of whatever type.
+  class Results {
+   public:
+    virtual void* make() = 0;                                                ///< a place for those of one item; any thread
+    virtual void fill(std::uint64_t item, void* results, Arena& arena) = 0;  ///< any thread
+    virtual void take(void* results) = 0;                                    ///< one item after the other, in order
+
+   protected:
+    ~Results() = default;
+  };
+  virtual void items(std::uint64_t count, Results&) = 0;
+};
+
+}  // namespace etendue

@@ -1,0 +1,86 @@
+#pragma once
+// Walks that are kept as a whole, with the densities of their vertices from both sides: for algorithms that connect or compare
+// what two walks found.
+//
+// Densities of vertices are per area [1/m^2] on surfaces and per volume [1/m^3] in media, where the density of the distance
+// takes the place of the cosine: with p_w the solid-angle density of the direction from a to b and S the chance to get
+// along the edge,
+//     p(b) = p_w S |cos_b| / d^2   or   p_w S s_b / d^2   (Veach 1997, section 8.2.2; Pauly, Kollig & Keller 2000,
+// "Metropolis light transport for participating media", section 3). Points of a luminaire at infinity have densities
+// per solid angle, and what they light has the density p_A |cos| or p_A s_b, with p_A that of its place across the direction
+// (LightFront).
+//
+// These densities only weigh strategies against one another, and for that need be the same whichever strategy made
+// the path: S and s_b are means over the path's wavelengths, and specular scattering counts 1.
+
+#include <vector>
+
+#include "etendue/camera.h"
+#include "etendue/transport/sample_context.h"
+#include "etendue/transport/vertex.h"
+
+namespace etendue {
+
+/// A vertex of such a walk.
+struct KeptVertex : Vertex {
+  bool specular = false;           ///< the walk was scattered on by a specular lobe
+  bool infinite = false;           ///< a luminaire at infinity, or an escaped ray
+  bool single = false;             ///< the throughput holds the hero only
+  bool parallel = false;           ///< of a camera whose rays are parallel: its directions are given by places, not angles
+  Spectrum throughput;             ///< light or importance that arrives, over the walk's density
+  float extinction = 0;            ///< mean over wavelengths [1/m], in a medium
+  float chance = 1;                ///< of getting along the edge from the vertex before
+  float forward = 0, reverse = 0;  ///< densities from the walk's side and from the other
+
+  /// Whether a path that ends here can be connected to another: by what is not specular, whatever the walk chose.
+  bool connectable() const { return on_surface() ? scatters_smoothly() : kind != Kind::escape; }
+};
+
+/// How long walks are.
+struct WalkLimits {
+  int longest = 64;        ///< segments
+  int roulette_depth = 5;  ///< segments before Russian roulette may end a walk
+};
+
+/// What is told of a camera walk while it grows.
+struct WalkListener {
+  /// Light that media themselves send towards the camera: the path's length in segments, and what it brings.
+  virtual void emitted(int /*length*/, const Spectrum&) {}
+  /// A luminaire whose surface lets all light pass straight on: it is the walk's last vertex for a moment.
+  virtual void crossed_luminaire() {}
+
+ protected:
+  ~WalkListener() = default;
+};
+
+/// The walk that begins with a camera ray, which is the sample's. An escaped one ends with a vertex of kind `escape`.
+void walk_from_camera(const RenderContext&, const Ray&, const WalkLimits&, SampleContext&, std::vector<KeptVertex>& walk,
+                      WalkListener&);
+
+/// A walk that begins at a luminaire, chosen by power. Null: no light leaves there, and the walk is empty. The context's
+/// wavelengths and numbers are the walk's.
+bool walk_from_luminaire(const Scene&, const LightSampler&, float time, const WalkLimits&, SampleContext&,
+                         std::vector<KeptVertex>& walk, EmittedLight&);
+
+/// The density of a vertex b that was chosen from a by a direction of solid-angle density `density`; `direction` is unit
+/// from a to b, `chance` that of getting along the edge.
+float vertex_density(float density, const KeptVertex& a, const KeptVertex& b, const Vector3& direction, float chance,
+                     const LightFront&);
+
+/// Density of a camera ray's direction [1/sr]; of a camera with parallel rays that of its place [1/m^2].
+float camera_direction_density(const Camera&, const Ray&);
+
+/// The density of a luminaire's point as the beginning of such a walk; `direction` is unit, from x1 to it. [1/m^2]; of a
+/// luminaire at infinity [1/sr].
+float begun_density(const LightSampler&, const KeptVertex& x1, const KeptVertex& luminaire, const Vector3& direction);
+
+/// Its density when a luminaire is sampled as seen from x1, in the same measure.
+float sampled_density(const LightSampler&, const KeptVertex& x1, const KeptVertex& luminaire, const Vector3& direction);
+
+/// For people: the vertices of a walk.
+void record_walk(std::vector<PathRecord::Vertex>&, std::span<const KeptVertex> walk);
+
+/// The features of the first surface along a camera ray, for renderers whose walks do not keep its hit.
+void note_first_surface(const Scene&, const Ray&, SampleContext&);
+
+}  // namespace etendue

@@ -1,0 +1,37 @@
+#pragma once
+// Members that several renderers have, each declared once.
+
+#include <string>
+
+#include "etendue/describe/description.h"
+#include "etendue/transport/multiple_importance.h"
+
+namespace etendue {
+
+/// `int`: the longest path in segments. `more` goes on with what is said of it.
+template <auto member, class R>
+Description<R>& describe_max_depth(Description<R>& d, const std::string& more = "", Range allowed = at_least(1)) {
+  return d.template member<member>("max_depth", "1",
+                                   "longest path, in segments: 1 shows luminaires only, 2 adds direct light" + more, allowed);
+}
+
+/// `int`: see Roulette::depth.
+template <auto member, class R>
+Description<R>& describe_roulette_depth(Description<R>& d) {
+  return d.template member<member>("roulette_depth", "1", "segments before Russian roulette may end a path", at_least(1));
+}
+
+/// `Heuristic`.
+template <auto member, class R>
+Description<R>& describe_heuristic(Description<R>& d) {
+  return d.template member<member>("heuristic", "", "how strategies that find the same light are weighted against each other",
+                                   choices("balance", "power"));
+}
+
+/// What max_depth says of renderers that keep a walk as a whole, and how long such walks may be [segments]. A vertex takes
+/// about a kilobyte with what lies around it and how it scatters, so a walk as long as this takes 100 MB for each thread.
+inline constexpr int longest_kept_walk = 100000;
+inline const char* const kept_walk_depth =
+    ". Walks are kept as a whole, which takes up to 1 kB for each segment and thread, hence the limit";
+
+}  // namespace etendue

@@ -1,0 +1,25 @@
+#pragma once
+// Russian roulette (Arvo & Kirk 1990, "Particle transport and image synthesis").
+
+#include <algorithm>
+
+namespace etendue {
+
+/// Ends walks that carry little, and lets others carry more: one that survives with probability q is divided by q, so what all
+/// walks carry together has the same mean. q is what is left of what the walk began with (Walk::left).
+struct Roulette {
+  int depth = 5;  ///< segments before it may end a walk
+
+  /// False: the walk ends. Takes a number only where there is a choice.
+  template <class Walk>
+  bool survives(Walk& walk) const {
+    if (walk.length >= depth) {
+      const float survival = std::min(1.0f, walk.left());
+      if (walk.numbers.next() >= survival) return false;
+      walk.throughput /= survival;
+    }
+    return !walk.throughput.black();
+  }
+};
+
+}  // namespace etendue

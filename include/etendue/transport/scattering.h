@@ -1,0 +1,56 @@
+#pragma once
+// How light is scattered at a point of a surface, as renderers ask for it.
+
+#include "etendue/describe/component.h"
+#include "etendue/scene.h"
+#include "etendue/shader.h"
+
+namespace etendue {
+
+/// The lobes that make a vertex of a path; what passes straight on makes none.
+inline constexpr Lobes vertex_lobes = Lobes(all_lobes & ~pass_through);
+
+/// How a shader scatters at a point. What its bind throws is told with its class; that costs nothing while nothing is thrown.
+inline const Scatter* bound(const Shader& shader, const SurfacePoint& p, const Wavelengths& w, Arena& arena) {
+  try {
+    return shader.bind(p, w, arena);
+  } catch (...) {
+    blame(shader, "binding");
+  }
+}
+
+/// What the black side of a surface leaves of its scattering: light that goes straight on, through holes and thin panes.
+class StraightScatter final : public ScatterCombination {
+ public:
+  StraightScatter(const SurfacePoint& p, const Scatter& whole) : ScatterCombination(p, pass_through), whole_(whole) {
+    has_choice_ = false;
+  }
+  ScatterValue world_value_and_density(const Vector3&, const Vector3&, Transport, Lobes) const override { return {}; }
+  std::optional<ScatterSample> world_sample(const Vector3& out, float, Point2, Transport transport, Lobes) const override {
+    return whole_.sample(out, 0, {}, transport, pass_through);  // asked alone the lobe is certain
+  }
+  Spectrum world_albedo(const Vector3& out, Lobes) const override { return whole_.albedo(out, pass_through); }
+
+ private:
+  const Scatter& whole_;
+};
+
+/// How light is scattered towards `out`; null: it is not.
+inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& out, const Wavelengths& wavelengths,
+                                    Arena& arena) {
+  const SceneObject& object = *point.object;
+  if (!object.shader) return nullptr;
+  const bool black = object.sides != Sides::both && (dot(point.normal, out) > 0) != (object.sides == Sides::front);
+  if (!black) return bound(*object.shader, point, wavelengths, arena);
+  if (!(object.shader->possible_lobes() & pass_through)) return nullptr;
+  const Scatter* whole = bound(*object.shader, point, wavelengths, arena);
+  if (!whole || !whole->has(pass_through)) return nullptr;
+  return whole->lobes() == pass_through ? whole : arena.make<StraightScatter>(point, *whole);
+}
+
+/// Whether a sampled direction leads into a body that light leaves elsewhere: who does not ask where loses the path.
+inline bool enters_body(const SurfacePoint& point, const ScatterSample& next) {
+  return next.transmitted() && next.lobe != pass_through && point.object->shader->moves_exit();
+}
+
+}  // namespace etendue

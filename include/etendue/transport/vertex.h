@@ -1,0 +1,58 @@
+#pragma once
+// Vertices of light transport paths.
+
+#include "etendue/camera.h"
+#include "etendue/scene.h"
+#include "etendue/shader.h"
+#include "etendue/transport/luminaires.h"
+#include "etendue/transport/medium.h"
+#include "etendue/transport/scattering.h"
+
+namespace etendue {
+
+/// Where a path is scattered, begins or ends.
+struct Vertex {
+  enum class Kind : std::uint8_t { camera, luminaire, surface, medium, escape };
+
+  Kind kind = Kind::surface;
+  /// Of a surface: light left a body here that it entered elsewhere (Shader::sample_exit); no ray came here.
+  bool moved = false;
+  SurfacePoint point;                  ///< in a medium only the position and time mean something; of an escape nothing
+  const Scatter* scatter = nullptr;    ///< of a surface; null: black
+  Medium medium;                       ///< of a vertex in a medium
+  const MediumStack* media = nullptr;  ///< around, on the side of `out`; null: nothing is tracked
+  Vector3 out;                         ///< unit, to the vertex before; of an escape: against the ray
+
+  bool on_surface() const { return kind == Kind::surface; }
+  bool in_medium() const { return kind == Kind::medium; }
+  /// Whether light that comes from a direction can be scattered here, and not by a mirror alone.
+  bool scatters_smoothly() const { return in_medium() || (on_surface() && scatter && scatter->has(smooth_lobes)); }
+  /// For a light sampler: zero where directions are not measured against a surface.
+  Normal3 normal() const { return in_medium() ? Normal3{} : point.normal; }
+};
+
+/// f |cos| of light scattered at a surface or a point of a medium from `out` towards `in` [1/sr], and the solid-angle density
+/// with which a walk that came from `out` is scattered to `in` [1/sr].
+inline ScatterValue scattering(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
+  if (v.in_medium()) {
+    const float phase = v.medium.phase(v.point.position, v.point.time, out, in);
+    return {Spectrum(phase), phase};
+  }
+  return v.scatter ? v.scatter->value_and_density(out, in, transport, vertex_lobes) : ScatterValue{};
+}
+/// The same density alone.
+inline float scattering_density(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
+  if (v.in_medium()) return v.medium.phase(v.point.position, v.point.time, out, in);
+  return v.scatter ? v.scatter->density(out, in, transport, vertex_lobes) : 0;
+}
+
+/// A ray from one vertex to another that ends just before it.
+Ray connecting_ray(const Vertex& from, const Vertex& to);
+/// A ray from a vertex to a point of the lens.
+Ray lens_ray(const Vertex&, const LensSample&);
+/// A ray that leaves a vertex.
+Ray leaving_ray(const Vertex& from, const Vector3& direction);
+/// The media along a ray that leaves a vertex; `scratch` holds them when they differ from those around the vertex.
+const MediumStack* media_towards(const Vertex&, const Vector3& direction, MediumStack& scratch);
+
+}  // namespace etendue

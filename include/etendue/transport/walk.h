@@ -1,0 +1,229 @@
+#pragma once
+// A walk: a path that grows vertex by vertex, from the camera or from a luminaire.
+//
+// From a vertex x_k a walk leaves in a direction w chosen with density p(w), and comes to x_{k+1} where the ray meets matter
+// that scatters. With T_0 what it begins with,
+//     T_{k+1} = T_k f |cos| / p       on a surface,
+//     T_{k+1} = T_k (phase / p)       in a medium, whose part of getting there is in T already (transport/medium.h),
+// is radiance (from the camera) or importance (from a luminaire) over the density of the whole walk (Veach 1997, section 8.2).
+//
+// One walk goes through everything that is no vertex: media, which may scatter it on the way; boundaries that mean nothing
+// since they lie within something of higher priority; surfaces that let it pass straight on. There the walk goes on with a
+// probability q, the part of light that does (or its share of all, where more light than came is scattered as well), and both
+// outcomes are made up for: a walk that passes has T changed by (the fraction that passes) / q, and one that stays by 1 / (1 -
+// q).
+
+#include "etendue/transport/boundaries.h"
+#include "etendue/transport/sample_context.h"
+#include "etendue/transport/vertex.h"
+
+namespace etendue {
+
+/// Who listens to a walk: nothing happens unless it is overridden, by hiding the function.
+struct NoListener {
+  /// Light that media send from the next segment to its origin, as the walk brings it.
+  void emitted(const Spectrum&) const {}
+  /// A luminaire that the walk passes straight through is the vertex, for a moment.
+  void crossed_luminaire() const {}
+};
+
+// Its functions are inlined where they are called, once in each algorithm, so that its state stays in registers: measured, a
+// tenth of the time of simple scenes.
+/// `clear`: the scene has neither media nor boundaries that light passes through; what deals with them is left out.
+template <bool clear>
+class Walk {
+ public:
+  /// `longest`: the segments after which it ends. `throughput`: T_0.
+  Walk(const Scene& scene_, SampleContext& sample_, const Ray& ray_, int longest_, Transport transport_ = Transport::radiance,
+       const Spectrum& begun_ = Spectrum(1.0f))
+      : scene(scene_),
+        sample(sample_),
+        numbers(sample_.numbers),
+        ray(ray_),
+        throughput(begun_),
+        longest(longest_),
+        transport(transport_),
+        begun(begun_),
+        tracks_(!clear && scene_.has_interiors()),
+        null_surfaces_(!clear && scene_.has_null_surfaces()) {}
+
+  const Scene& scene;
+  SampleContext& sample;
+  NumberStream& numbers;  ///< the sample's
+  Ray ray;                ///< along which it goes next
+  Spectrum throughput;    ///< T
+  MediumStack media;      ///< around the ray's origin
+  const int longest;
+  const Transport transport;
+
+  Vertex vertex;                ///< the last
+  int length = 0;               ///< segments so far
+  float direction_density = 0;  ///< [1/sr] of the last segment's direction, as scattering chose it
+  bool specular = true;         ///< whether a specular lobe chose it, or nobody: it is the first
+  Point3 from;                  ///< the vertex before, for densities as seen from there
+  Normal3 from_normal;
+  Spectrum edge;      ///< what media and surfaces on the last segment let through, likely: for densities
+  float crossed = 0;  ///< distance to the last boundary passed straight on [m], of the last segment
+  Hit hit;            ///< of the last surface
+
+  /// What is left of what it began with, without the change of radiance by refraction, which comes back.
+  float left() const {
+    if (transport == Transport::radiance) return throughput.maximum() * eta_squared_;
+    float most = 0;
+    for (int i = 0; i < spectrum_size; ++i)
+      if (begun[i] > 0) most = std::max(most, throughput[i] / begun[i]);
+    return most;
+  }
+
+  /// Goes along the ray to the next vertex; `found` is what the scene said of it, with `hit` filled. False: the walk has ended.
+  template <class Listener>
+  [[gnu::always_inline]] bool come_to_vertex(bool found, const Listener& listener) {
+    ++length;
+    edge = Spectrum(1.0f);
+    crossed = 0;
+    for (int crossings = 0; crossings <= most_crossings; found = scene.nearest(ray, hit), ++crossings) {
+      if (tracks_)
+        if (const Medium medium = medium_in(media)) {
+          const float reach = found ? hit.distance : infinity;
+          const FreeFlight flight = sample_free_flight(medium, ray, reach, throughput, sample.wavelengths, numbers);
+          if (!flight.emitted.black()) listener.emitted(throughput * flight.emitted);
+          throughput *= flight.weight;
+          if (throughput.black()) return false;
+          edge *= likely_transmittance(medium, ray, flight.distance, sample.wavelengths);
+          if (flight.scattered) return scattered_in(medium, ray(flight.distance));
+        }
+      vertex.out = -ray.direction;
+      if (!found) {
+        vertex.kind = Vertex::Kind::escape;
+        return true;
+      }
+      // What the last segment meets matters only if it shines.
+      if (clear && length >= longest && !watched && hit.depth == 0 && !hit.object->luminaire()) return false;
+      vertex.kind = Vertex::Kind::surface;
+      vertex.moved = false;
+      vertex.scatter = nullptr;
+      scene.locate(ray, hit, vertex.point);
+      if (tracks_) {
+        settle_coincident(scene, ray, hit, vertex.point, media);
+        if (hidden_by_priority(media, *vertex.point.object)) {
+          cross();
+          continue;
+        }
+        vertex.point.media = vertex.media = keeps ? sample.arena.make<MediumStack>(media) : &media;
+      }
+      if (length < longest || watched || null_surfaces_)
+        vertex.scatter = scattering_at(vertex.point, vertex.out, sample.wavelengths, sample.arena);
+      if (!null_surfaces_ || !vertex.scatter || !vertex.scatter->has(pass_through) || !passes(listener)) return true;
+    }
+    return false;
+  }
+  template <class Listener = NoListener>
+  bool next_vertex(const Listener& listener = {}) {
+    return come_to_vertex(scene.nearest(ray, hit), listener);
+  }
+
+  /// Chooses where the walk goes on from its last vertex: by `choice` among lobes, by `u` among directions. Empty: absorbed.
+  [[gnu::always_inline]] std::optional<ScatterSample> sample_direction(float choice, Point2 u) const {
+    if (vertex.in_medium()) {
+      ScatterSample s;
+      s.direction = vertex.medium.sample_phase(vertex.point.position, vertex.point.time, vertex.out, u, s.density);
+      s.weight = Spectrum(1.0f);
+      return s;
+    }
+    if (!vertex.scatter) return std::nullopt;
+    return vertex.scatter->sample(vertex.out, choice, u, transport, vertex_lobes);
+  }
+
+  /// Goes on in such a direction.
+  [[gnu::always_inline]] void leave(const ScatterSample& next) {
+    throughput *= next.weight;
+    if (next.dispersive) throughput *= sample.wavelengths.drop_secondary();
+    eta_squared_ *= next.eta * next.eta;
+    direction_density = next.density;
+    from = vertex.point.position;
+    from_normal = vertex.normal();
+    // Member by member: copying a ray just written stalls for its parts to reach memory.
+    ray.direction = next.direction;
+    ray.maximum = infinity;
+    if (!clear && vertex.in_medium()) {
+      specular = false;
+      ray.origin = from;
+      return;
+    }
+    specular = next.specular();
+    if (tracks_ && next.transmitted()) cross_boundary(media, *vertex.point.object, vertex.point.normal, next.direction);
+    ray.origin = vertex.point.exit(next.direction);
+    ray.width = vertex.point.footprint;
+  }
+
+  /// Of light that goes into a body which scatters it: comes to where it leaves again. The way inside is one segment. False: it
+  /// does not.
+  bool leave_body(const ScatterSample& next) {
+    throughput *= next.weight;
+    if (next.dispersive) throughput *= sample.wavelengths.drop_secondary();
+    const std::optional<SubsurfaceExit> exit =
+        vertex.point.object->shader->sample_exit(vertex.point, scene, sample.wavelengths, numbers, sample.arena);
+    if (!exit || !exit->scatter || ++length >= longest) return false;
+    throughput *= exit->weight;
+    // It leaves on the side it came in on.
+    const bool front = dot(vertex.point.normal, vertex.out) > 0;
+    vertex.point = exit->point;
+    if (tracks_) vertex.point.media = vertex.media;
+    vertex.scatter = exit->scatter;
+    vertex.out = Vector3(front ? vertex.point.normal : -vertex.point.normal);
+    vertex.moved = true;
+    return true;
+  }
+
+  /// Whether vertices are kept: what lies around them is then, too. Else it is that of the last alone.
+  bool keeps = false;
+  /// Whether someone wants to know of the last segment's end although it does not shine.
+  bool watched = false;
+
+ private:
+  bool scattered_in(const Medium& medium, const Point3& at) {
+    vertex.kind = Vertex::Kind::medium;
+    vertex.moved = false;
+    vertex.out = -ray.direction;
+    vertex.medium = medium;
+    vertex.scatter = nullptr;
+    vertex.point.position = at;
+    vertex.point.time = ray.time;
+    vertex.point.media = vertex.media = keeps ? sample.arena.make<MediumStack>(media) : &media;
+    return true;
+  }
+
+  void cross() {
+    if (tracks_) cross_boundary(media, *vertex.point.object, vertex.point.normal, ray.direction);
+    crossed += hit.distance;
+    ray.origin = vertex.point.exit(ray.direction);
+    ray.width = vertex.point.footprint;
+  }
+
+  template <class Listener>
+  bool passes(const Listener& listener) {
+    const Scatter& scatter = *vertex.scatter;
+    const auto straight = scatter.sample(vertex.out, 0, {}, transport, pass_through);
+    const bool alone = scatter.lobes() == pass_through;
+    const Spectrum fraction = straight ? straight->weight : Spectrum();
+    const float through = fraction.average();
+    const float q = alone         ? 1
+                    : through < 1 ? std::max(through, 0.0f)
+                                  : through / (through + scatter.albedo(vertex.out, vertex_lobes).average());
+    if (q < 1 && numbers.next() >= q) {
+      throughput /= 1 - q;
+      return false;
+    }
+    if (alone && vertex.point.object->luminaire()) listener.crossed_luminaire();
+    throughput *= fraction / q;
+    edge *= fraction;
+    cross();
+    return true;
+  }
+
+  const Spectrum begun;
+  float eta_squared_ = 1;
+  const bool tracks_, null_surfaces_;
+};
+
+}  // namespace etendue

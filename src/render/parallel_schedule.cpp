@@ -1,0 +1,117 @@
+#include "parallel_schedule.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <bit>
+#include <mutex>
+
+namespace etendue {
+
+std::uint32_t samples_per_step(const PixelArea& area) {
+  constexpr std::uint64_t wanted = std::uint64_t(1) << 19;
+  const auto pixels = std::uint64_t(area.width()) * std::uint64_t(area.height());
+  return std::uint32_t(std::bit_floor(std::clamp<std::uint64_t>(wanted / std::max<std::uint64_t>(pixels, 1), 1, 1 << 14)));
+}
+
+struct ParallelSchedule::State {
+  ImageBuffer& image;
+  std::function<void(std::uint64_t, std::uint64_t)> tick;
+  int threads;
+  tbb::global_control limit;
+  tbb::task_arena tasks;
+  tbb::enumerable_thread_specific<Arena> arenas;
+
+  // Tiles go round: taken by a worker, given back after merging.
+  std::mutex mutex;
+  std::vector<std::unique_ptr<ImageTile>> tiles;
+
+  ImageTile* take() {
+    const std::lock_guard lock(mutex);
+    if (tiles.empty()) return new ImageTile;
+    ImageTile* tile = tiles.back().release();
+    tiles.pop_back();
+    return tile;
+  }
+  void give(ImageTile* tile) {
+    const std::lock_guard lock(mutex);
+    tiles.emplace_back(tile);
+  }
+};
+
+namespace {
+int thread_count(int wanted) { return wanted > 0 ? wanted : tbb::info::default_concurrency(); }
+}  // namespace
+
+ParallelSchedule::ParallelSchedule(ImageBuffer& image, int threads, const std::atomic<bool>& abort_,
+                                   std::function<void(std::uint64_t, std::uint64_t)> tick)
+    : state_(new State{image,
+                       std::move(tick),
+                       thread_count(threads),
+                       tbb::global_control(tbb::global_control::max_allowed_parallelism, size_t(thread_count(threads))),
+                       tbb::task_arena(thread_count(threads)),
+                       {},
+                       {},
+                       {}}) {
+  abort = &abort_;
+}
+
+ParallelSchedule::~ParallelSchedule() = default;
+
+namespace {
+
+/// Runs `make(item)` on all threads and `take(its result)` one after the other, in the order of items.
+template <class Made, class Make, class Take>
+void in_order(tbb::task_arena& tasks, int threads, std::uint64_t count, const std::function<bool()>& aborted, const Make& make,
+              const Take& take) {
+  std::uint64_t next = 0;
+  tasks.execute([&] {
+    // Enough results in flight that no thread waits for a slow one, few enough that memory stays small.
+    tbb::parallel_pipeline(size_t(4 * threads),
+                           tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
+                                                                 [&](tbb::flow_control& flow) -> std::uint64_t {
+                                                                   if (next == count || aborted()) flow.stop();
+                                                                   return next++;
+                                                                 }) &
+                               tbb::make_filter<std::uint64_t, Made*>(tbb::filter_mode::parallel, make) &
+                               tbb::make_filter<Made*, void>(tbb::filter_mode::serial_in_order, take));
+  });
+}
+
+}  // namespace
+
+void ParallelSchedule::film_items(std::uint64_t count, FilmWork work, void* self) {
+  State& s = *state_;
+  std::uint64_t done = 0;
+  in_order<ImageTile>(
+      s.tasks, s.threads, count, [&] { return aborted(); },
+      [&](std::uint64_t item) {
+        std::unique_ptr<ImageTile> tile(s.take());
+        work(self, item, *tile, s.arenas.local());
+        return tile.release();
+      },
+      [&](ImageTile* tile) {
+        s.image.merge(*tile);
+        s.give(tile);
+        if (s.tick) s.tick(++done, count);
+      });
+}
+
+void ParallelSchedule::items(std::uint64_t count, Results& results) {
+  State& s = *state_;
+  in_order<void>(
+      s.tasks, s.threads, count, [&] { return aborted(); },
+      [&](std::uint64_t item) {
+        void* some = results.make();
+        Arena& arena = s.arenas.local();
+        results.fill(item, some, arena);
+        arena.reset();
+        return some;
+      },
+      [&](void* some) { results.take(some); });
+}
+
+}  // namespace etendue

@@ -1,0 +1,202 @@
+#include "etendue/transport/medium.h"
+
+#include <vector>
+
+#include "etendue/shader.h"
+#include "etendue/transport/boundaries.h"
+
+namespace etendue {
+namespace {
+
+/// exp(-s d) with 0 * infinity = 0: nothing is lost where nothing absorbs.
+Spectrum exponential(const Spectrum& extinction, float distance) {
+  return map(extinction, [distance](float s) { return s > 0 ? std::exp(-s * distance) : 1.0f; });
+}
+
+// For a homogeneous medium: int_0^d e exp(-s t) dt = e (1 - exp(-s d)) / s, and e d where s = 0.
+Spectrum emitted_along(const VolumeCoefficients& c, float distance) {
+  const Spectrum extinction = c.extinction();
+  Spectrum light;
+  for (int i = 0; i < spectrum_size; ++i) {
+    const float s = extinction[i];
+    light.set(i, c.emission[i] * (s > 0 ? -std::expm1(-s * distance) / s : distance));
+  }
+  return light;
+}
+
+/// Probabilities of the wavelengths, in proportion to what a walk carries of each.
+Spectrum shares(const Spectrum& throughput) {
+  const float sum = throughput.average() * spectrum_size;
+  return sum > 0 ? throughput / sum : Spectrum(1.0f / spectrum_size);
+}
+
+FreeFlight through_homogeneous(const VolumeCoefficients& c, float reach, const Spectrum& throughput, NumberStream& numbers) {
+  const Spectrum extinction = c.extinction();
+  const float choice = numbers.next(), u = numbers.next();
+  // Where nothing scatters, nothing is drawn.
+  if (c.scattering.black()) return {false, reach, exponential(extinction, reach)};
+
+  const Spectrum weights = shares(throughput);
+  int k = 0;
+  for (float rest = choice - weights[0]; rest >= 0 && k + 1 < spectrum_size; rest -= weights[k]) ++k;
+  while (k > 0 && !(weights[k] > 0)) --k;  // by rounding, behind the last that counts
+
+  const float distance = extinction[k] > 0 ? -std::log1p(-u) / extinction[k] : infinity;
+  const bool scattered = distance < reach;
+  const Spectrum t = exponential(extinction, scattered ? distance : reach);
+  const Spectrum densities = scattered ? extinction * t : t;
+  float density = 0;
+  for (int i = 0; i < spectrum_size; ++i) density += weights[i] * densities[i];
+  if (!(density > 0)) return {false, reach, {}};
+  return {scattered, scattered ? distance : reach, (scattered ? c.scattering * t : t) / density};
+}
+
+/// A weight this small is not followed further without a chance to end: media may go on for ever.
+constexpr float small = 0.05f;
+
+/// Goes from one tentative collision to the next: calls `at(t, coefficients)` at each of them until that says false, or the ray
+/// ends. `local` is the ray in the medium's coordinates, `m` the bound of extinction [1/m]. Returns whether the ray's end was
+/// reached.
+template <class At>
+bool collide(const VolumeShader& volume, const Ray& local, float reach, float m, const Wavelengths& w, NumberStream& numbers,
+             const At& at) {
+  if (!(m > 0)) return true;
+  for (float t = 0;;) {
+    t -= std::log1p(-numbers.next()) / m;
+    if (!(t < reach)) return true;
+    if (!at(t, volume.coefficients(local(t), local.time, w))) return false;
+  }
+}
+
+/// What is left of a bound when matter with this extinction is there. A bound that is none would make light out of nothing:
+/// that it is one is the medium's promise, which `conform` tests.
+Spectrum left_of(float m, const VolumeCoefficients& c) { return max(Spectrum(m) - c.extinction(), 0); }
+
+FreeFlight through_heterogeneous(const VolumeShader& volume, const Ray& local, float reach, const Spectrum& throughput,
+                                 const Wavelengths& w, NumberStream& numbers) {
+  const float m = volume.majorant(w).maximum();
+  FreeFlight flight{false, reach, Spectrum(1.0f)};
+  collide(volume, local, reach, m, w, numbers, [&](float t, const VolumeCoefficients& c) {
+    flight.emitted += flight.weight * c.emission / m;
+    const Spectrum null = left_of(m, c), weights = shares(throughput * flight.weight);
+    const float scatters = (weights * c.scattering).average(), passes = (weights * null).average();
+    if (!(scatters + passes > 0)) {
+      flight.weight = {};
+      return false;
+    }
+    const float p = scatters / (scatters + passes);
+    if (numbers.next() < p) {
+      flight.weight *= c.scattering / (m * p);
+      flight.scattered = true;
+      flight.distance = t;
+      return false;
+    }
+    flight.weight *= null / (m * (1 - p));
+    const float most = flight.weight.maximum();
+    if (most < small) {  // absorbed almost for sure
+      if (numbers.next() >= most)
+        flight.weight = {};
+      else
+        flight.weight /= most;
+    }
+    return !flight.weight.black();
+  });
+  return flight;
+}
+
+}  // namespace
+
+Point3 Medium::own(const Point3& p, float time) const { return object->transform.from_origin(time).back(p); }
+
+Ray Medium::own(const Ray& ray) const {
+  const Transform placed = object->transform.from_origin(ray.time);
+  Ray local = ray;
+  local.origin = placed.back(ray.origin);
+  local.direction = placed.back(ray.direction);
+  return local;
+}
+
+Spectrum transmittance(const Medium& medium, const Ray& ray, float distance, const Wavelengths& w, NumberStream& numbers) {
+  const VolumeShader& volume = *medium.volume;
+  if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), distance);
+  const float m = volume.majorant(w).maximum();
+  Spectrum fraction(1.0f);
+  collide(volume, medium.own(ray), distance, m, w, numbers, [&](float, const VolumeCoefficients& c) {
+    fraction *= left_of(m, c) / m;
+    const float most = fraction.maximum();
+    if (most < small) {
+      if (numbers.next() >= most)
+        fraction = {};
+      else
+        fraction /= most;
+    }
+    return !fraction.black();
+  });
+  return fraction;
+}
+
+Spectrum likely_transmittance(const Medium& medium, const Ray& ray, float distance, const Wavelengths& w) {
+  const VolumeShader& volume = *medium.volume;
+  if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), distance);
+  if (!std::isfinite(distance)) return Spectrum(1.0f);
+  // The optical depth by the midpoint rule, whose points are the same from both ends.
+  constexpr int points = 8;
+  const Ray local = medium.own(ray);
+  Spectrum depth;
+  for (int i = 0; i < points; ++i)
+    depth += volume.coefficients(local(distance * (float(i) + 0.5f) / points), ray.time, w).extinction();
+  // Never so small that a strategy is thought to be impossible.
+  return max(exponential(depth, distance / points), 1e-6f);
+}
+
+FreeFlight sample_free_flight(const Medium& medium, const Ray& ray, float reach, const Spectrum& throughput,
+                              const Wavelengths& w, NumberStream& numbers) {
+  const VolumeShader& volume = *medium.volume;
+  if (!volume.homogeneous()) return through_heterogeneous(volume, medium.own(ray), reach, throughput, w, numbers);
+  const VolumeCoefficients c = volume.coefficients(ray.origin, ray.time, w);
+  FreeFlight flight = through_homogeneous(c, reach, throughput, numbers);
+  if (volume.emits()) flight.emitted = emitted_along(c, reach);
+  return flight;
+}
+
+// A ray from the point to infinity crosses the surfaces of all objects around it. Walking the same way from outside,
+// where there is nothing, to the point enters and leaves them as any path would.
+void media_at_slowly(const Scene& scene, const Point3& p, float time, MediumStack& media) {
+  struct Crossing {
+    const SceneObject* object;
+    Normal3 normal;
+  };
+  static thread_local std::vector<Crossing> crossings;
+  crossings.clear();
+  constexpr size_t most = 1000;
+
+  Ray ray;
+  ray.origin = p;
+  ray.direction = normalize(Vector3{0.3713906f, 0.8571673f, 0.3565862f});
+  ray.time = time;
+  Hit hit;
+  SurfacePoint point;
+  while (crossings.size() < most && scene.nearest(ray, hit)) {
+    scene.locate(ray, hit, point);
+    crossings.push_back({point.object, point.normal});
+    HitList others;
+    Ray probe;
+    coincident_hits(scene, ray, hit, point, probe, others);
+    for (int i = 0; i < others.size; ++i) {
+      scene.locate(probe, others.hits[i], point);
+      crossings.push_back({point.object, point.normal});
+    }
+    if (others.size > 0) {
+      scene.locate(ray, hit, point);
+      point.error = std::max(point.error, length(probe.origin - point.position));
+    }
+    ray.origin = point.exit(ray.direction);
+    hit = {};
+  }
+  for (size_t i = crossings.size(); i-- > 0;) {
+    const SceneObject& object = *crossings[i].object;
+    if (enterable(object)) cross_boundary(media, object, crossings[i].normal, -ray.direction);
+  }
+}
+
+}  // namespace etendue

@@ -1,0 +1,30 @@
+#pragma once
+// Renderers with one fault each of the kind that gives plausible pictures: `verify` must find it.
+
+#include "etendue/render/renderer.h"
+
+namespace etendue {
+
+enum class Fault : std::uint8_t {
+  none,
+  wrong_mis_weight,       ///< the other strategy's density enters unsquared
+  no_squared_index,       ///< radiance is not changed by refraction
+  lost_cosine,            ///< where luminaires are sampled
+  wrong_measure,          ///< a distance too many where luminaires are sampled
+  roulette_undivided,     ///< survivors are not made up for those that ended
+  luminaire_twice,        ///< met luminaires count in full beside sampled ones
+  lens_importance,        ///< of light tracing: one cosine of the camera too many
+  phase_density,          ///< phase functions sampled as they are, weighted as if uniform
+  transmittance_squared,  ///< on the way to luminaires
+  skipped_length,         ///< no paths of exactly four segments
+};
+
+template <auto member, class R>
+void describe_fault(Description<R>& d) {
+  d.template member<member>(
+      "fault", "", "what is wrong",
+      choices("none", "wrong_mis_weight", "no_squared_index", "lost_cosine", "wrong_measure", "roulette_undivided",
+              "luminaire_twice", "lens_importance", "phase_density", "transmittance_squared", "skipped_length"));
+}
+
+}  // namespace etendue

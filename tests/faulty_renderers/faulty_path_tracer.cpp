@@ -1,0 +1,92 @@
+// A path tracer with a fault, of the same parts as PathTracer.
+
+#include "etendue/transport/direct_light.h"
+#include "etendue/transport/renderer_members.h"
+#include "etendue/transport/roulette.h"
+#include "etendue/transport/visibility.h"
+#include "etendue/transport/walk.h"
+#include "faults.h"
+
+namespace etendue {
+namespace {
+
+class FaultyPathTracer final : public Renderer {
+  Fault fault = Fault::none;
+  int max_depth = 64, roulette_depth = 5;
+
+ public:
+  static void describe(Description<FaultyPathTracer>& d) {
+    d.summary("For tests: path tracing with something wrong.");
+    describe_fault<&FaultyPathTracer::fault>(d);
+    describe_max_depth<&FaultyPathTracer::max_depth>(d);
+    describe_roulette_depth<&FaultyPathTracer::roulette_depth>(d);
+  }
+  PathClasses finds() const override {
+    return all_paths & ~(delta_caustics | delta_caustics_in_mirrors | emitting_media | subsurface_light);
+  }
+
+  Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
+    Spectrum radiance;
+    const Transport transport = fault == Fault::no_squared_index ? Transport::importance : Transport::radiance;
+    Walk<false> walk(context.scene, sample, ray, max_depth, transport);
+    if (context.scene.has_interiors()) media_at(context.scene, ray.origin, ray.time, walk.media);
+    const auto add = [&](int length, const Spectrum& light) {
+      if (fault == Fault::skipped_length && length == 4) return;
+      radiance += light;
+      sample.observe.light(length, light);
+    };
+    while (walk.next_vertex()) {
+      Vertex& v = walk.vertex;
+      if (v.kind == Vertex::Kind::escape) {
+        for (const SceneObject* far : context.scene.infinite_luminaires()) {
+          far->surface_point(walk.ray, walk.hit, v.point);
+          add(walk.length, met(walk));
+        }
+        break;
+      }
+      if (v.on_surface() && v.point.object->luminaire()) add(walk.length, met(walk));
+      if (walk.length >= max_depth) break;
+      const NumberStream::Bounce u = walk.numbers.next_bounce();
+      DirectLight direct;
+      if (v.scatters_smoothly() && propose_direct_light(*light_sampler, v, ray.time, sample.wavelengths, u.light_choice,
+                                                        u.light_point, Heuristic::power, direct))
+        add(walk.length + 1, walk.throughput * arriving(walk, direct));
+      const auto next = walk.sample_direction(u.lobe_choice, u.direction);
+      if (!next) break;
+      const bool in_medium = v.in_medium();
+      walk.leave(*next);
+      if (fault == Fault::phase_density && in_medium) walk.throughput *= next->density * (4 * pi);
+      const Spectrum before = walk.throughput;
+      if (!Roulette{roulette_depth}.survives(walk)) break;
+      if (fault == Fault::roulette_undivided) walk.throughput = before;
+    }
+    return radiance;
+  }
+
+ private:
+  Spectrum met(const Walk<false>& walk) const {
+    const SurfacePoint& p = walk.vertex.point;
+    const Spectrum light = walk.throughput * p.object->emission->radiance(p, -walk.ray.direction, walk.sample.wavelengths);
+    if (walk.specular || light.black() || fault == Fault::luminaire_twice) return light;
+    const float weight =
+        heuristic_weight(Heuristic::power, walk.direction_density,
+                         direct_light_density(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, p));
+    return light * (fault == Fault::wrong_mis_weight ? std::sqrt(weight) : weight);
+  }
+
+  Spectrum arriving(Walk<false>& walk, const DirectLight& direct) const {
+    MediumStack scratch;
+    const Vertex& v = walk.vertex;
+    const Spectrum visible = visible_fraction(walk.scene, direct.shadow, media_towards(v, direct.shadow.direction, scratch),
+                                              walk.sample.wavelengths, walk.numbers, walk.sample.arena);
+    Spectrum light = direct.light * visible;
+    if (fault == Fault::transmittance_squared) light *= visible;
+    if (fault == Fault::lost_cosine && v.on_surface()) light /= v.scatter->cosine(direct.shadow.direction);
+    if (fault == Fault::wrong_measure && std::isfinite(direct.shadow.maximum)) light *= 1 / (1 + direct.shadow.maximum);
+    return light;
+  }
+};
+const Register<FaultyPathTracer> registered;
+
+}  // namespace
+}  // namespace etendue

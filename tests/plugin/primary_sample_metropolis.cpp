@@ -1,0 +1,134 @@
+// Metropolis light transport in the space of numbers, in one file, out of tree: it holds any renderer inside.
+//
+// A path is a function of numbers u in [0, 1); F(u) is all that it brings to the film, and I(u) the luminance of that. A chain
+// whose density is I / b, b being the integral of I, adds b F(u) / I(u) for each of its states, so that brightness is found as
+// often as it is bright (Kelemen et al. 2002, "A simple and robust mutation strategy for the Metropolis light transport
+// algorithm"). A chain begins with one of M independent paths, chosen in proportion to I, and has the mean of their I for b:
+// then its mean is exact from the first state on (Veach 1997, section 11.3.1). Instead of choosing between the states before
+// and after a proposal with acceptance a, both are added, weighted by 1 - a and a.
+#include "etendue/render/renderer.h"
+#include "etendue/transport/number_vectors.h"
+
+using namespace etendue;
+
+class PrimarySampleMetropolis final : public Renderer {
+ public:
+  Ref<Renderer> inner;
+  int chains = 256, bootstrap = 64;
+  float large_steps = 0.3f;
+
+  static void describe(Description<PrimarySampleMetropolis>& d) {
+    d.summary("Metropolis light transport in primary sample space, around another renderer.", "Kelemen et al. 2002")
+        .member<&PrimarySampleMetropolis::inner>("inner", "", "the renderer whose paths are mutated", required)
+        .member<&PrimarySampleMetropolis::chains>("chains", "1", "Markov chains of each step", range(1, 65536))
+        .member<&PrimarySampleMetropolis::bootstrap>("bootstrap", "1", "paths a chain's first is chosen among", range(1, 65536))
+        .member<&PrimarySampleMetropolis::large_steps>("large_steps", "1", "part of proposals that are wholly new",
+                                                       range(0.01, 1));
+  }
+  PathClasses finds() const override { return inner ? inner->finds() : no_paths; }
+  Expectation expectation() const override { return inner ? inner->expectation() : Expectation::unbiased; }
+
+ private:
+  std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
+};
+
+class MetropolisProcess final : public RenderProcess {
+  const PrimarySampleMetropolis& settings_;
+  const std::unique_ptr<RenderProcess> inner_;
+
+  /// F(u): what one path brings, each part with its place on the film, and I(u).
+  struct Contribution {
+    std::vector<Splat> parts;
+    double brightness = 0;
+  };
+
+  void evaluate(const MutatedNumbers& numbers, Contribution& f, Arena& arena, const std::atomic<bool>* abort) const {
+    const ImageBuffer& image = context.image;
+    f.parts.clear();
+    PathRequest request;
+    request.splats = &f.parts;
+    request.abort = abort;
+    const CameraSample s = inner_->path({0, 0, image.width, image.height}, numbers, {}, arena, request);
+    f.parts.push_back({s.film, s.value, s.wavelengths, 0});
+    f.brightness = 0;
+    for (const Splat& part : f.parts) f.brightness += std::max(0.0, double(to_xyz(part.value, part.wavelengths).y));
+    if (!std::isfinite(f.brightness)) f.brightness = 0;
+  }
+
+  /// One chain of so many states.
+  void run(std::uint64_t chain, std::uint64_t states, ImageTile& tile, Arena& arena, const std::atomic<bool>* abort) const {
+    const auto bits = [&](std::uint64_t n) { return mix_bits(context.seed ^ mix_bits(chain + 0x5bd1e995u * (n + 1))); };
+    const auto uniform = [&](std::uint64_t n) { return double(bits(n) >> 11) * 0x1p-53; };
+    Contribution current, proposed;
+    double b = 0;
+    std::vector<double> brightness(size_t(settings_.bootstrap));
+    for (size_t i = 0; i < brightness.size(); ++i) {
+      const MutatedNumbers numbers(bits(i));
+      evaluate(numbers, current, arena, abort);
+      b += brightness[i] = current.brightness;
+    }
+    for (std::uint64_t i = 0; i < states; ++i) tile.count_path();
+    if (!(b > 0)) return;
+    size_t first = 0;
+    for (double rest = uniform(1u << 20) * b; first + 1 < brightness.size() && rest >= brightness[first]; ++first)
+      rest -= brightness[first];
+    b /= double(brightness.size());
+    MutatedNumbers numbers(bits(first));
+    evaluate(numbers, current, arena, abort);
+
+    const auto add = [&](const Contribution& f, double weight) {
+      if (f.brightness > 0 && weight > 0)
+        for (const Splat& part : f.parts)
+          tile.splat(part.film, int(part.film.x), int(part.film.y), 0, part.value * float(weight * b / f.brightness),
+                     part.wavelengths, part.length);
+    };
+    double held = 0;  // of the current state, not added yet
+    for (std::uint64_t i = 0; i < states; ++i) {
+      if (abort && abort->load(std::memory_order_relaxed)) return;
+      if (uniform((2u << 20) + 2 * i) < double(settings_.large_steps))
+        numbers.large_step();
+      else
+        numbers.small_step();
+      evaluate(numbers, proposed, arena, abort);
+      const double accept = std::min(1.0, proposed.brightness / current.brightness);
+      held += 1 - accept;
+      if (uniform((2u << 20) + 2 * i + 1) < accept) {
+        numbers.accept();
+        add(current, held);
+        std::swap(current, proposed);
+        held = accept;
+      } else {
+        numbers.reject();
+        add(proposed, accept);
+      }
+    }
+    add(current, held);
+  }
+
+ public:
+  MetropolisProcess(const PrimarySampleMetropolis& r, const RenderContext& c)
+      : RenderProcess(r, c), settings_(r), inner_(r.inner->start(c)) {
+    if (!c.image.crop.empty()) r.fail({}, "renders whole pictures, no crops");
+    const SampleKey one(1, 2, 3, 4), other(5, 6, 7, 8);
+    if (c.wavelengths.sample(one, 0.3f)[0] != c.wavelengths.sample(other, 0.3f)[0])
+      r.fail({}, "needs wavelengths that follow from a number, such as HeroWavelengths");
+  }
+
+  void prepare_step(Schedule& schedule, IndexRange samples) override { inner_->prepare_step(schedule, samples); }
+
+  void step(Schedule& schedule, IndexRange samples) override {
+    const ImageBuffer& image = context.image;
+    const auto chains = std::uint64_t(settings_.chains);
+    const std::uint64_t all = std::uint64_t(image.width) * std::uint64_t(image.height) * (samples.end - samples.begin);
+    schedule.film(chains, [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
+      tile.begin(image, {});  // splats alone
+      run(samples.begin * chains + item, all / chains + (item < all % chains), tile, arena, schedule.abort);
+    });
+  }
+};
+
+std::unique_ptr<RenderProcess> PrimarySampleMetropolis::begin(const RenderContext& context) const {
+  return std::make_unique<MetropolisProcess>(*this, context);
+}
+
+static const Register<PrimarySampleMetropolis> registered;
