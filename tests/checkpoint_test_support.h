@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "job/checkpoint.h"
-#include "process.h"
+#include "program_support.h"
 #include "render_support.h"
 
 namespace etendue::checkpoint_test {
@@ -67,7 +67,7 @@ std::string complaint(F&& f) {
 
 inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-class CheckpointTest : public testing::Test {
+class CheckpointTest : public RunsProgram {
  protected:
   /// Renders passes of a job into a file.
   std::string part(const Ref<Job>& job, const std::string& name, std::optional<IndexRange> passes = {}) {
@@ -77,7 +77,6 @@ class CheckpointTest : public testing::Test {
     EXPECT_EQ(job->checkpoint_failure(), "");
     return job->checkpoint_file;
   }
-  TemporaryFolder folder;
 };
 
 }  // namespace etendue::checkpoint_test
