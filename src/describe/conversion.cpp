@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "words.h"
 #include "etendue/describe/color.h"
 #include "etendue/describe/description.h"
 
@@ -112,7 +113,7 @@ int to_choice(const Value& v, const Member& m) {
   if (!s) mismatch("one of " + known, v);
   for (size_t i = 0; i < m.choices.size(); ++i)
     if (m.choices[i] == *s) return int(i);
-  throw Error(fmt::format("has no choice '{}'{}; known are {}", *s, suggestion(*s, m.choices), known), v.location);
+  throw Error(fmt::format("has no choice '{}'{}; known are {}", *s, meant_choice(*s, m), known), v.location);
 }
 
 void to_numbers(const Value& v, const Member& m, double* out, int count) {

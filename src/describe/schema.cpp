@@ -54,19 +54,30 @@ Json reference(const std::string& definition) { return {{"$ref", "#/$defs/" + de
 
 Json either(const Json& one, const Json& other) { return {{"anyOf", Json::array({one, other})}}; }
 
+/// A number within the member's range; whole numbers that a double does not tell apart are refused.
+Json number_schema(const Member& member) {
+  const bool whole = member.kind == Kind::integer;
+  Json json;
+  json["type"] = whole ? "integer" : "number";
+  constexpr std::int64_t largest = (std::int64_t(1) << 53) - 1;
+  if (member.range && std::isfinite(member.range->low))
+    json[member.range->open_low ? "exclusiveMinimum" : "minimum"] = member.range->low;
+  else if (whole)
+    json["minimum"] = -largest;
+  if (member.range && std::isfinite(member.range->high))
+    json["maximum"] = member.range->high;
+  else if (whole)
+    json["maximum"] = largest;
+  return json;
+}
+
 /// The value itself.
 Json plain_item_schema(const Member& member) {
   Json json;
   switch (member.kind) {
     case Kind::boolean: json["type"] = "boolean"; break;
     case Kind::integer:
-    case Kind::number:
-      json["type"] = member.kind == Kind::integer ? "integer" : "number";
-      if (member.range) {
-        if (std::isfinite(member.range->low)) json[member.range->open_low ? "exclusiveMinimum" : "minimum"] = member.range->low;
-        if (std::isfinite(member.range->high)) json["maximum"] = member.range->high;
-      }
-      break;
+    case Kind::number: return number_schema(member);
     case Kind::string:
       json["type"] = "string";
       if (!member.choices.empty()) json["enum"] = member.choices;
@@ -78,7 +89,10 @@ Json plain_item_schema(const Member& member) {
     case Kind::point3:
     case Kind::normal3: {
       const int size = member.kind == Kind::vector2 ? 2 : 3;
-      json = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", size}, {"maxItems", size}};
+      json = {{"type", "array"},
+              {"items", either(number_schema(member), reference("expression"))},
+              {"minItems", size},
+              {"maxItems", size}};
       break;
     }
     case Kind::color: return reference("color");
@@ -112,7 +126,11 @@ bool is_row(const Member& member) {
 Json member_schema(const Member& member) {
   Json json = item_schema(member);
   if (member.list) {
-    json = {{"type", "array"}, {"items", is_row(member) ? either(json, {{"type", "number"}}) : json}};
+    if (is_row(member)) json = either(json, number_schema(member));
+    // Corners of triangles and the like, by threes.
+    if (member.kind == Kind::integer)
+      json = either(json, {{"type", "array"}, {"items", number_schema(member)}, {"minItems", 3}, {"maxItems", 3}});
+    json = {{"type", "array"}, {"items", json}};
     if (member.kind != Kind::string && member.kind != Kind::file) json = either(json, reference("expression"));
   } else if (member.kind == Kind::component || member.kind == Kind::color) {
     json = either(json, {{"type", "null"}});
@@ -205,8 +223,8 @@ std::string json_schema() {
       {"description", "A number for all wavelengths, linear sRGB, or an expression such as blackbody(2856 K)."},
       {"anyOf", Json::array({{{"type", "number"}}, numbers(3), reference("expression")})}};
   definitions["transform"] = {
-      {"description", "A matrix of 3 rows of 4, row by row, or an expression such as translate(0, 1 m, 0)."},
-      {"anyOf", Json::array({numbers(12), reference("expression")})}};
+      {"description", "A matrix of 3 or 4 rows of 4, row by row, or an expression such as translate(0, 1 m, 0)."},
+      {"anyOf", Json::array({numbers(12), numbers(16), reference("expression")})}};
   for (const ClassInfo* info : described_classes()) {
     if (!info->abstract()) definitions[info->name] = class_schema(*info);
     definitions[info->name + ".any"] = any_schema(*info);

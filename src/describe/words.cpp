@@ -84,4 +84,17 @@ std::string no_member(const ClassInfo& info, const std::string& given) {
   return text + suggestion(given, known);
 }
 
+std::string meant_choice(const std::string& given, const Member& member) {
+  if (const std::string* same = same_but_for_spelling(given, member.choices)) return " (did you mean '" + *same + "'?)";
+  const std::string word = bare(given);
+  // What is said of members of this name comes before what is said of all.
+  const ForeignWord* general = nullptr;
+  for (const ForeignWord& entry : foreign_choices()) {
+    if (entry.word != word || std::ranges::find(member.choices, first_quoted(entry.here)) == member.choices.end()) continue;
+    if (entry.where == member.name) return told(entry);
+    if (entry.where.empty()) general = &entry;
+  }
+  return general ? told(*general) : suggestion(given, member.choices);
+}
+
 }  // namespace etendue

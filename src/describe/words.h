@@ -11,14 +11,18 @@ namespace etendue {
 
 /// A word of pbrt ("pbrt"), Mitsuba ("Mitsuba"), Blender ("Blender") or of many programs (""), and what is written here.
 struct ForeignWord {
-  std::string_view where;  ///< the class a member's word is of; "": of any class that has the first member in `here`
-  std::string_view word;   ///< in small letters, without '_' and blanks
+  /// The class a member's word is of; "": of any class that has the first member in `here`. The member a choice's word is of;
+  /// "": of any that has the first choice in `here`.
+  std::string_view where;
+  std::string_view word;  ///< in small letters, without '_' and blanks
   std::string_view whose;
   std::string_view here;  ///< 'Names' in quotes are classes, 'names' members of the class named last, or of `where`
 };
 
 std::span<const ForeignWord> foreign_classes();
 std::span<const ForeignWord> foreign_members();
+/// What members that offer a choice may be: 'names' in `here` are choices.
+std::span<const ForeignWord> foreign_choices();
 /// Of units, functions, and options of the command line: `here` is what to write.
 std::span<const ForeignWord> foreign_units();
 std::span<const ForeignWord> foreign_functions();
@@ -31,5 +35,8 @@ std::string translation(std::string_view given, std::span<const ForeignWord>);
 std::string meant_class(const std::string& given, const ClassInfo* of = nullptr);
 /// "Sphere has no member 'radus' (did you mean 'radius'?)".
 std::string no_member(const ClassInfo&, const std::string& given);
+
+/// What follows "has no choice 'x'" of a member.
+std::string meant_choice(const std::string& given, const Member&);
 
 }  // namespace etendue

@@ -65,6 +65,11 @@ class PlacedObject : public SceneObject {
   /// A point by area, with its density per own area; 0: none was found. A continuous map of the unit square to the surface,
   /// where there is one, keeps samples well spread. Never throws.
   virtual float own_sample(Point2 u, OwnPoint&) const = 0;
+  /// Where smooth pieces of own_sample's map meet within the unit square: at these x, and at these y, in order.
+  struct Seams {
+    std::vector<double> x, y;
+  };
+  virtual Seams own_seams() const { return {}; }
   /// The density own_sample gives a point with.
   virtual float own_density(const SurfacePoint&) const { return float(1 / own_area()); }
 
@@ -89,6 +94,12 @@ class PlacedObject : public SceneObject {
     float value = 0, error = 0;
   };
   Area area_of(const Transform&) const;
+  /// A part of own_sample's unit square.
+  struct Piece {
+    double x0, x1, y0, y1;
+  };
+  /// The area of a piece after a transform, by Gauss's rule in so many panels each way.
+  double stretched(const Transform&, const Piece&, int panels) const;
 
   Bounds3 bounds_;
   float margin_ = 0;

@@ -50,15 +50,16 @@ void Parser::not_closed(char bracket, const Location& opened) {
   throw Abandoned{};
 }
 
-// Skips to where the next member or statement may start. Brackets that are open, or are opened on the way, are skipped
-// with what they hold; a new line ends a statement outside of them, so that one mistake hides as little as possible.
+// Skips to where the next member or statement may start; a new line ends a statement outside of brackets, so that one mistake
+// hides as little as possible.
 void Parser::recover(bool in_block) {
-  std::string open = std::exchange(open_, {});
-  while (token_.type != TokenType::end) {
-    if (open.empty()) {
-      if (token_.first_in_line || token_.is(';')) return;
-      if (in_block && (token_.is('}') || token_.is(','))) return;
-    }
+  skip(std::exchange(open_, {}), in_block,
+       [&] { return token_.first_in_line || token_.is(';') || (in_block && (token_.is('}') || token_.is(','))); });
+}
+
+// Brackets that are open, or are opened on the way, are skipped with what they hold.
+void Parser::skip(std::string open, bool in_block, const std::function<bool()>& stops) {
+  while (token_.type != TokenType::end && !(open.empty() && stops())) {
     if (token_.is('{') || token_.is('[') || token_.is('(')) {
       open += token_.symbol;
     } else if (token_.is('}')) {

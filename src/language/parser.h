@@ -1,6 +1,7 @@
 #pragma once
 // Tokens into statements and expressions, by recursive descent with one token of look-ahead.
 
+#include <functional>
 #include <memory>
 #include <unordered_map>
 
@@ -36,6 +37,8 @@ class Parser {
   void member(Node& component, Seen& seen);
   bool member_value(Node& component, size_t index);
   void recover(bool in_block);
+  /// Goes on until `stops` says so outside of all brackets, of which some are `open` already; in a block to its end at most.
+  void skip(std::string open, bool in_block, const std::function<bool()>& stops);
   void require_separator(const char* what);
 
   // repair.cpp: what was probably meant where something is missing

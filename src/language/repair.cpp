@@ -79,15 +79,9 @@ bool Parser::misses_bracket(Node& component) {
   Node& value = component.children.back();
   value = {};
   value.type = NodeType::bad;
-  int open = 0;
   take();
   // To the ']' that closes the list, or the end of the line, or of the block.
-  const auto closes = [&] { return token_.is('}') || token_.is(']') || token_.is(')'); };
-  while (token_.type != TokenType::end && !(open == 0 && (token_.first_in_line || closes()))) {
-    if (token_.is('[') || token_.is('(') || token_.is('{')) ++open;
-    if (closes()) --open;
-    take();
-  }
+  skip({}, true, [&] { return token_.first_in_line || token_.is('}') || token_.is(']') || token_.is(')'); });
   if (token_.is(']') || token_.is(')')) skip_stray_bracket();
   return true;
 }

@@ -88,21 +88,13 @@ void Job::prepare() {
   if (camera->shutter_close < camera->shutter_open) camera->fail("shutter_close", "the shutter closes before it opens");
   for (const Ref<Output>& output : outputs)
     if (!output) fail("outputs", "an output is none");
-  const auto count_anew_from = [&](const DoublePoint3& centre) {
-    count_from(centre);
-    prepare_tree(*scene);
-    camera->prepare();
-  };
   // Seen from far away the scene would be coarse where the picture is fine.
   constexpr float far = 4;
   const Vector3 away = scene->centre() - Point3{};
   if (camera->place() && length(away) > far * scene->radius() && is_finite(away)) {
-    count_anew_from(centre_ + DoubleVector3(away));
-  } else if (constexpr double near = 1e5; scene->unbounded() && scene->centre() == Point3{} && scene->radius() == 1 &&
-                                          length(centre_ - DoublePoint3{}) < near) {
-    // Where all surfaces are endless, a sphere of 1 m around the point that is counted from stands for the scene: light paths
-    // begin around it. That is to be the world's origin, unless floats were too coarse for the camera then.
-    count_anew_from({});
+    count_from(centre_ + DoubleVector3(away));
+    prepare_tree(*scene);
+    camera->prepare();
   }
   refuse_uneven_media_within(*scene, false);
   camera->set_film(image->width, image->height);

@@ -12,13 +12,6 @@ namespace {
 
 class CheckpointProgramTest : public CheckpointTest {
  protected:
-  int run(const std::vector<std::string>& arguments) {
-    Process process(program, arguments, folder);
-    const int status = process.wait();
-    out = process.out();
-    err = process.err();
-    return status;
-  }
   /// `render scene --samples n --quiet` and more.
   std::vector<std::string> rendering(const std::string& samples, const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{"render", "scene.etd", "--samples", samples, "--quiet"};
@@ -30,9 +23,6 @@ class CheckpointProgramTest : public CheckpointTest {
     const std::string bytes = file_text(folder / a);
     return !bytes.empty() && bytes == file_text(folder / b);
   }
-
-  const std::string program = ETENDUE_BINARY_DIR "/etendue";
-  std::string out, err;
 };
 
 TEST_F(CheckpointProgramTest, continues_and_merges) {

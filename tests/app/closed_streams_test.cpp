@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <regex>
 
-#include "support/process.h"
+#include "support/program_support.h"
 
 namespace etendue {
 namespace {
@@ -20,29 +20,15 @@ const char* const tiny_scene = R"(Job {
 }
 )";
 
-class StreamsTest : public testing::Test {
+class StreamsTest : public RunsProgram {
  protected:
   void SetUp() override { scene = folder.write("tiny.etd", tiny_scene); }
 
-  int run(const std::vector<std::string>& arguments) { return finish(Process(program, arguments, folder)); }
   /// A shell's command line, in which "$E" is the program.
   int shell(const std::string& command) {
     return finish(Process("/bin/sh", {"-c", "E='" + program + "'; " + command}, folder));
   }
-  bool says(const std::string& part) const { return err.find(part) != std::string::npos; }
-  bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
-
-  const std::string program = ETENDUE_BINARY_DIR "/etendue";
-  TemporaryFolder folder;
-  std::string scene, out, err;
-
- private:
-  int finish(Process&& process) {
-    const int status = process.wait();
-    out = process.out();
-    err = process.err();
-    return status;
-  }
+  std::string scene;
 };
 
 // ---- standard output and error ------------------------------------------------------------------------------------------

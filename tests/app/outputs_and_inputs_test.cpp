@@ -6,25 +6,15 @@
 #include <cstring>
 
 #include "etendue/film/image_tools.h"
-#include "support/process.h"
+#include "support/program_support.h"
 
 namespace etendue {
 namespace {
 
 namespace fs = std::filesystem;
 
-class OutputsTest : public testing::Test {
+class OutputsTest : public RunsProgram {
  protected:
-  int run(const std::vector<std::string>& arguments) {
-    Process process(program, arguments, folder);
-    const int status = process.wait();
-    out = process.out();
-    err = process.err();
-    return status;
-  }
-  bool says(const std::string& part) const { return err.find(part) != std::string::npos; }
-  bool exists(const std::string& name) const { return fs::exists(folder / name); }
-
   /// A scene with a file of each kind: an include, a mesh, a texture, a spectrum, a plugin.
   std::string write_scene(const std::string& name, const std::string& outputs = "") {
     folder.write("lamp.etd", "lamp = DiffuseEmission { radiance: spectrum(\"light.csv\") }\n");
@@ -57,10 +47,6 @@ class OutputsTest : public testing::Test {
     EXPECT_FALSE(exists("other.npy")) << input;
     EXPECT_EQ(out, "") << input;
   }
-
-  const std::string program = ETENDUE_BINARY_DIR "/etendue";
-  TemporaryFolder folder;
-  std::string out, err;
 };
 
 const std::vector<std::string> all_inputs = {"scene.etd", "lamp.etd", "light.csv", "mesh.ply", "texture.hdr"};

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "support/process.h"
+#include "support/program_support.h"
 
 namespace etendue {
 namespace {
@@ -25,23 +25,11 @@ Job {
 }
 )";
 
-class ProgramTest : public testing::Test {
+class ProgramTest : public RunsProgram {
  protected:
-  /// Runs the program to its end in the test's folder.
-  int run(const std::vector<std::string>& arguments) {
-    Process process(program, arguments, folder);
-    const int status = process.wait();
-    out = process.out();
-    err = process.err();
-    return status;
-  }
   void SetUp() override { scene = folder.write("tiny.etd", tiny_scene); }
 
-  static bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-  const std::string program = ETENDUE_BINARY_DIR "/etendue";
-  TemporaryFolder folder;
-  std::string scene, out, err;
+  std::string scene;
 };
 
 /// The doubles of an NPY file behind its header.

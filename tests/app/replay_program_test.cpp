@@ -4,22 +4,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "support/process.h"
+#include "support/program_support.h"
 #include "support/replay_test_support.h"
 
 namespace etendue::replay_test {
 namespace {
 
-class ReplayProgram : public testing::Test {
+class ReplayProgram : public RunsProgram {
  protected:
-  /// Runs the program to its end in the test's folder.
-  int run(const std::vector<std::string>& arguments) {
-    Process process(program, arguments, folder);
-    const int status = process.wait();
-    out = process.out();
-    err = process.err();
-    return status;
-  }
   /// Runs a command line as it was printed, with further options.
   int run_printed(const std::string& command, const std::vector<std::string>& more = {}) {
     std::istringstream words(command);
@@ -37,9 +29,7 @@ class ReplayProgram : public testing::Test {
     caustic = folder.write("caustic.etd", point_scene("PathTracer { samples: 1 }", {floor_disc, "lamp", "ball"}));
   }
 
-  const std::string program = ETENDUE_BINARY_DIR "/etendue";
-  TemporaryFolder folder;
-  std::string scene, caustic, out, err;
+  std::string scene, caustic;
 };
 
 TEST_F(ReplayProgram, the_command_of_a_path_replays_it_alone) {

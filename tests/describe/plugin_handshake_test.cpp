@@ -4,24 +4,17 @@
 
 #include <cstdlib>
 
-#include "support/process.h"
+#include "support/program_support.h"
 
 namespace etendue {
 namespace {
 
-class PluginHandshake : public testing::Test {
+class PluginHandshake : public RunsProgram {
  protected:
   void SetUp() override { ::unsetenv("ETENDUE_HOSTILE"); }
   void TearDown() override { ::unsetenv("ETENDUE_HOSTILE"); }
 
   static std::string library(const std::string& name) { return ETENDUE_HOSTILE_PLUGINS "/lib" + name + ".so"; }
-  int run(const std::vector<std::string>& arguments) {
-    Process process(ETENDUE_BINARY_DIR "/etendue", arguments, folder);
-    const int status = process.wait();
-    out = process.out();
-    err = process.err();
-    return status;
-  }
   /// What is said when the plugin misbehaves and its classes are listed, or a scene is rendered with them.
   std::string listing(const std::string& how) {
     ::setenv("ETENDUE_HOSTILE", how.c_str(), 1);
@@ -49,10 +42,6 @@ class PluginHandshake : public testing::Test {
     EXPECT_TRUE(has(err, made)) << err;
     return err;
   }
-  static bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-  TemporaryFolder folder;
-  std::string out, err;
 };
 
 TEST_F(PluginHandshake, a_right_one_renders) { EXPECT_EQ(rendering("", "HostileShader {}", "1", 0), ""); }

@@ -2,6 +2,7 @@
 
 #include "etendue/describe/reflection.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include <set>
 
 #include "describe/reflection_values.h"
+#include "etendue/language/language.h"
 
 namespace etendue {
 namespace {
@@ -116,6 +118,7 @@ std::string problem(const Json& schema, const Json& value, const Json& root, con
                                           : false;
     if (!fits) return wrong("is no " + type);
   }
+  if (value.is_string() && value.get<std::string>().size() < schema.value("minLength", 0u)) return wrong("is too short");
   if (value.is_number()) {
     if (schema.contains("minimum") && value < schema["minimum"]) return wrong("is too small");
     if (schema.contains("exclusiveMinimum") && value <= schema["exclusiveMinimum"]) return wrong("is too small");
@@ -198,6 +201,102 @@ TEST(ReflectionTest, defaults_fit_the_schema_and_wrong_members_do_not) {
     EXPECT_NE(problem(definition, other, schema), "") << info->name;
   }
   EXPECT_GT(ranges, 3);
+}
+
+/// A member as it may be written in JSON, and whether it can be read.
+struct Written {
+  const char *class_name, *member, *json;
+  bool right;
+};
+
+// Whoever checks a scene by the schema learns what the program would say of it, as far as a schema can: of values, not of what
+// expressions in strings come to.
+TEST(ReflectionTest, the_schema_refuses_what_the_program_refuses) {
+  const Json schema = Json::parse(json_schema());
+  const char* const twelve = "[1, 0, 0, 4, 0, 1, 0, 5, 0, 0, 1, 6]";
+  const char* const sixteen = "[1, 0, 0, 4, 0, 1, 0, 5, 0, 0, 1, 6, 0, 0, 0, 1]";
+  const Written rows[] = {{"Sphere", "radius", "2", true},
+                          {"Sphere", "radius", "\"10 cm\"", true},
+                          {"Sphere", "radius", "0", false},
+                          {"Sphere", "radius", "-1", false},
+                          {"Sphere", "radius", "true", false},
+                          {"Sphere", "radius", "null", false},
+                          {"Sphere", "radius", "[1]", false},
+                          {"Sphere", "radius", "{\"class\": \"Sphere\"}", false},
+                          {"Sphere", "radius", "\"\"", false},
+                          {"Sphere", "no_such_member", "1", false},
+                          {"Sphere", "transform", twelve, true},
+                          {"Sphere", "transform", sixteen, true},
+                          {"Sphere", "transform", "[1, 0, 0]", false},
+                          {"Sphere", "transform", "1", false},
+                          {"Sphere", "transform", "\"translate(1, 2, 3)\"", true},
+                          {"Sphere", "sides", "\"front\"", true},
+                          {"Sphere", "sides", "3", false},
+                          {"Sphere", "sides", "true", false},
+                          {"Sphere", "priority", "3", true},
+                          {"Sphere", "priority", "1.5", false},
+                          {"Sphere", "shader", "{\"class\": \"Lambertian\"}", true},
+                          {"Sphere", "shader", "null", true},
+                          {"Sphere", "shader", "{\"class\": \"Sphere\"}", false},
+                          {"Sphere", "shader", "{}", false},
+                          {"Sphere", "shader", "0.5", false},
+                          {"Sphere", "shader", "{\"class\": \"Lambertian\", \"color\": true}", false},
+                          {"Lambertian", "color", "0.5", true},
+                          {"Lambertian", "color", "[1, 0, 0.5]", true},
+                          {"Lambertian", "color", "\"blackbody(3000 K)\"", true},
+                          {"Lambertian", "color", "{\"class\": \"CheckerMap\", \"first\": 0.1}", true},
+                          {"Lambertian", "color", "[1, 0]", false},
+                          {"Lambertian", "color", "true", false},
+                          {"Lambertian", "color", "{\"class\": \"Lambertian\"}", false},
+                          {"Box", "size", "[1, 2, 3]", true},
+                          {"Box", "size", "[\"10 cm\", \"2 m\", \"3 m\"]", true},
+                          {"Box", "size", "\"[1, 2, 3] cm\"", true},
+                          {"Box", "size", "[1, 2]", false},
+                          {"Box", "size", "[1, 2, 3, 4]", false},
+                          {"Box", "size", "[1, 2, true]", false},
+                          {"Box", "size", "1", false},
+                          {"TriangleMesh", "positions", "[[0, 0, 0], [1, 0, 0]]", true},
+                          {"TriangleMesh", "positions", "[0, 0, 0, 1, 0, 0]", true},
+                          {"TriangleMesh", "positions", "[]", true},
+                          {"TriangleMesh", "positions", "[[0, 0], [1, 0]]", false},
+                          {"TriangleMesh", "positions", "1", false},
+                          {"TriangleMesh", "positions", "[null]", false},
+                          {"TriangleMesh", "triangles", "[[0, 1, 2]]", true},
+                          {"TriangleMesh", "triangles", "[0, 1, 2]", true},
+                          {"TriangleMesh", "triangles", "[[0, 1.5, 2]]", false},
+                          {"TriangleMesh", "file", "\"a.ply\"", true},
+                          {"TriangleMesh", "file", "3", false},
+                          {"PathTracer", "samples", "4", true},
+                          {"PathTracer", "samples", "0", false},
+                          {"PathTracer", "samples", "2.5", false},
+                          {"PathTracer", "samples", "100000000000000000000", false},
+                          {"PathTracer", "next_event", "false", true},
+                          {"PathTracer", "next_event", "1", false},
+                          {"PathTracer", "heuristic", "\"balance\"", true},
+                          {"RampMap", "along", "\"v\"", true},
+                          {"RampMap", "positions", "[0, \"1/2\", 1]", true},
+                          {"RampMap", "colors", "[[1, 0, 0], [0, 1, 0]]", true},
+                          {"RampMap", "colors", "[[1, 0], [0, 1]]", false},
+                          {"RampMap", "colors", "0.1", false},
+                          {"BvhScene", "objects", "[{\"class\": \"Sphere\"}]", true},
+                          {"BvhScene", "objects", "{\"class\": \"Sphere\"}", false},
+                          {"BvhScene", "objects", "[{\"class\": \"Lambertian\"}]", false}};
+  for (const Written& row : rows) {
+    const std::string text = fmt::format(R"({{ "class": "{}", "{}": {} }})", row.class_name, row.member, row.json);
+    std::string thrown;
+    try {
+      parse_component(text, "text.json");
+    } catch (const std::exception& e) {
+      thrown = e.what();
+    }
+    EXPECT_EQ(thrown.empty(), row.right) << text << "\n" << thrown;
+    // Of the object alone, without what else its class requires.
+    const Json value = Json::parse(text);
+    const Json& properties = schema["$defs"][row.class_name]["properties"];
+    const std::string wrong =
+        properties.contains(row.member) ? problem(properties[row.member], value[row.member], schema) : "has no such member";
+    EXPECT_EQ(wrong.empty(), row.right) << text << "\n" << wrong;
+  }
 }
 
 TEST(ReflectionTest, the_manual_has_a_page_for_every_class_and_no_dead_links) {

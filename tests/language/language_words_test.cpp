@@ -62,7 +62,8 @@ TEST(Words, EveryNameTheyAreToldExists) {
 }
 
 TEST(Words, AreFoundByTheirSpellingAndStandOnce) {
-  for (const auto& table : {foreign_classes(), foreign_members(), foreign_units(), foreign_functions(), foreign_options()}) {
+  for (const auto& table :
+       {foreign_classes(), foreign_members(), foreign_choices(), foreign_units(), foreign_functions(), foreign_options()}) {
     std::set<std::pair<std::string_view, std::string_view>> seen;
     for (const ForeignWord& entry : table) {
       EXPECT_TRUE(seen.emplace(entry.where, entry.word).second) << entry.where << " " << entry.word;
@@ -121,6 +122,58 @@ TEST(Words, OfMembers) {
   const Ref<Job> job = load_job_text(job_with("renderer: PathTracer {}"), "text");
   EXPECT_EQ(errors_of([&] { set_path(*job, "renderer.spp", "4"); }),
             "1:10: PathTracer has no member 'spp' (here it is 'samples')");
+}
+
+// Each word is told where it is of use: some member has the choice that is meant, and not the word itself.
+TEST(Words, EveryChoiceTheyAreToldExists) {
+  std::vector<Member> all;
+  for (const ClassInfo* info : Registry::instance().all())
+    for (const Member& m : info->members)
+      if (m.kind == Kind::choice) all.push_back(m);
+  ASSERT_GT(all.size(), 30u);
+  for (const ForeignWord& entry : foreign_choices()) {
+    std::vector<std::string> names = quoted(entry.here);
+    const std::string meant = names.at(0);
+    const auto told = [&](const Member& m) {
+      return std::ranges::find(m.choices, std::string(entry.word)) == m.choices.end() &&
+             meant_choice(std::string(entry.word), m).find("here it is '" + meant + "'") != std::string::npos &&
+             std::ranges::find(m.choices, meant) != m.choices.end();
+    };
+    EXPECT_TRUE(std::ranges::any_of(all, told)) << entry.where << " " << entry.word << ": " << meant;
+    if (!entry.where.empty()) {
+      const auto of = [&](const Member& m) { return m.name == entry.where && told(m); };
+      EXPECT_TRUE(std::ranges::any_of(all, of)) << entry.where << " " << entry.word << ": " << meant;
+    }
+    if (names.size() == 3) {  // a member of a class
+      const ClassInfo* info = Registry::instance().find(names[2]);
+      EXPECT_TRUE(info && info->find(names[1])) << entry.here;
+    }
+  }
+}
+
+TEST(Words, OfChoices) {
+  const auto said = [](const std::string& text) {
+    const std::string all = part_errors("x = " + text + "\nLanguagePart {}");
+    const size_t begin = all.find("has no choice");
+    return begin == std::string::npos ? all : all.substr(begin, all.find("; known are") - begin);
+  };
+  EXPECT_EQ(said("Dielectric { distribution: \"GGX\" }"), "has no choice 'GGX' (did you mean 'ggx'?)");
+  EXPECT_EQ(said("Dielectric { distribution: Beckman }"), "has no choice 'Beckman' (did you mean 'beckmann'?)");
+  EXPECT_EQ(said("Conductor { distribution: \"trowbridge-reitz\" }"),
+            "has no choice 'trowbridge-reitz' (pbrt's word; here it is 'ggx')");
+  EXPECT_EQ(said("Sphere { sides: double_sided }"), "has no choice 'double_sided' (here it is 'both')");
+  EXPECT_EQ(said("Sphere { sides: inside }"), "has no choice 'inside' (here it is 'back')");
+  EXPECT_EQ(said("ImageMap { file: \"x.png\", interpolation: Closest }"),
+            "has no choice 'Closest' (Blender's word; here it is 'nearest')");
+  EXPECT_EQ(said("ImageMap { file: \"x.png\", interpolation: linear }"), "has no choice 'linear' (here it is 'bilinear')");
+  EXPECT_EQ(said("ImageMap { file: \"x.png\", wrap: EXTEND }"), "has no choice 'EXTEND' (Blender's word; here it is 'clamp')");
+  EXPECT_EQ(said("RampMap { interpolation: constant }"), "has no choice 'constant' (Blender's word; here it is 'step')");
+  EXPECT_EQ(said("Curve { basis: bspline }"), "has no choice 'bspline' (did you mean 'b_spline'?)");
+  EXPECT_EQ(said("FeatureRenderer { feature: sh_normal }"),
+            "has no choice 'sh_normal' (Mitsuba's word; here it is 'shading_normal')");
+  EXPECT_EQ(said("FeatureRenderer { feature: nonsense }"), "has no choice 'nonsense'");
+  // A word of one member says nothing of another.
+  EXPECT_EQ(said("NurbsSurface { keep: clamped }"), "has no choice 'clamped'");
 }
 
 TEST(Words, OfUnitsAndCalls) {

@@ -106,8 +106,8 @@ TEST(LayeredShader, SmoothPlastic) {
       Arena arena;
       const Scatter& s = *shader->bind(test::surface_point({0, 0, 1}), test::wavelengths(), arena);
       const double albedo = into(out) * rho * (1 - 0.596346) / (1 - rho * 0.596346);
-      EXPECT_NEAR(s.albedo(out, diffuse_lobes)[0], albedo, 0.01);
-      EXPECT_NEAR(s.albedo(out)[0], albedo + 1 - into(out), 0.01);
+      EXPECT_NEAR(s.albedo(out, diffuse_lobes)[0], albedo, 3e-5);
+      EXPECT_NEAR(s.albedo(out)[0], albedo + 1 - into(out), 3e-5);
     }
   }
 }
@@ -182,9 +182,15 @@ TEST(LayeredShader, SlabsOfFog) {
   }
 }
 
+/// What albedo() may be off, as it is an estimate: of all that leaves, and of what is reflected (greatest of all directions,
+/// found with a hundred thousand samples each). 0: what it is made of is exact there.
+struct Estimate {
+  double all, reflected;
+};
 struct Case {
   std::string name;
   Ref<Shader> shader;
+  Estimate off;
   bool lossless = false;
 };
 
@@ -198,18 +204,18 @@ std::vector<Case> cases() {
   const Ref<Shader> paper = create<Shader>("DiffuseTransmitter", {{"reflectance", 0.4}, {"transmittance", 0.6}});
   const Ref<Shader> waxed = create<Shader>("MixShader", {{"first", glass()}, {"second", paper}, {"amount", 0.5}});
   const Ref<Shader> plastic = layered(glass(), matt(0.8));
-  return {{"white under glass", layered(glass(), matt(1)), true},
-          {"shiny under glass", layered(glass(), shiny)},
-          {"shiny mirror under tinted glass", layered(glass(), half, {{"medium", fog(100, 0, 0)}})},
-          {"mirror under milk", layered(glass(), mirror, {{"medium", fog(100, 500, 0.4)}})},
-          {"slab of white milk", layered(glass(), glass(1), {{"medium", fog(0, 1500, 0.6)}}), true},
-          {"shiny mirror under dusty glass", layered(dull, half)},
-          {"slab of dusty glass", layered(dull, glass(1), {{"medium", fog(50, 0, 0)}})},
-          {"paper on glass", layered(paper, glass(), {{"medium", fog(200, 0, 0)}})},
-          {"glass on paper", layered(glass(), paper), true},
-          {"waxed paper over paper in mist", layered(waxed, paper, {{"medium", fog(0, 300, -0.3)}}), true},
-          {"dusty below", layered(glass(), layered(glass(1.3), dull))},
-          {"plastic under glass", layered(glass(1.2), plastic)}};
+  return {{"white under glass", layered(glass(), matt(1)), {0, 0}, true},
+          {"shiny under glass", layered(glass(), shiny), {0.135, 0.135}},
+          {"shiny mirror under tinted glass", layered(glass(), half, {{"medium", fog(100, 0, 0)}}), {0.062, 0.062}},
+          {"mirror under milk", layered(glass(), mirror, {{"medium", fog(100, 500, 0.4)}}), {0.132, 0.132}},
+          {"slab of white milk", layered(glass(), glass(1), {{"medium", fog(0, 1500, 0.6)}}), {0, 0.08}, true},
+          {"shiny mirror under dusty glass", layered(dull, half), {0.067, 0.067}},
+          {"slab of dusty glass", layered(dull, glass(1), {{"medium", fog(50, 0, 0)}}), {0.047, 0.01}},
+          {"paper on glass", layered(paper, glass(), {{"medium", fog(200, 0, 0)}}), {0.008, 0.006}},
+          {"glass on paper", layered(glass(), paper), {0, 0.001}, true},
+          {"waxed paper over paper in mist", layered(waxed, paper, {{"medium", fog(0, 300, -0.3)}}), {0, 0.088}, true},
+          {"dusty below", layered(glass(), layered(glass(1.3), dull)), {0.017, 0.082}},
+          {"plastic under glass", layered(glass(1.2), plastic), {0.006, 0.006}}};
 }
 
 /// A smooth function of direction, different in all of them.
@@ -273,7 +279,7 @@ TEST(LayeredShader, KeepsEnergyAndEstimatesIt) {
       const Vector3 out = at_angle(frame, angle);
       Mean all, reflected;
       double albedo = 0, albedo_reflected = 0;
-      at_many_points(*c.shader, 2000, [&](const Scatter& s, test::Random& random) {
+      at_many_points(*c.shader, 25000, [&](const Scatter& s, test::Random& random) {
         const float choice = random();
         const auto sample = s.sample(out, choice, random.pair(), Transport::importance);
         all.add(sample ? double(sample->weight[0]) : 0);
@@ -282,10 +288,47 @@ TEST(LayeredShader, KeepsEnergyAndEstimatesIt) {
         albedo_reflected = double(s.albedo(out, reflection_lobes)[0]);
         EXPECT_TRUE(!sample || s.has(sample->lobe)) << c.name;
       });
-      EXPECT_LE(all.mean(), 1 + 5 * all.error() + 1e-4) << c.name;
-      EXPECT_MEAN(all, c.lossless ? 1 : all.mean()) << c.name;
-      EXPECT_NEAR(albedo, all.mean(), 0.15) << c.name << " at " << angle;
-      EXPECT_NEAR(albedo_reflected, reflected.mean(), 0.15) << c.name << " at " << angle;
+      if (c.lossless)
+        EXPECT_MEAN(all, 1) << c.name;
+      else
+        EXPECT_LE(all.mean(), 1 + 5 * all.error() + 1e-4) << c.name;
+      EXPECT_NEAR(albedo, all.mean(), c.off.all + 5 * all.error() + 5e-5) << c.name << " at " << angle;
+      EXPECT_NEAR(albedo_reflected, reflected.mean(), c.off.reflected + 5 * reflected.error() + 5e-5)
+          << c.name << " at " << angle;
+    }
+}
+
+// A mirror under tinted glass, all rounds between them: F + (1 - F)^2 a^2 m / (1 - F a^2 m), with a left of one passage.
+TEST(LayeredShader, AlbedoOfAMirrorUnderTintedGlass) {
+  const Ref<Shader> mirror = create<Shader>("PerfectSpecular", {{"color", 0.9}});
+  const Ref<Shader> shader = layered(glass(), mirror, {{"medium", fog(300, 0, 0)}});  // 1 mm, by default
+  Arena arena;
+  const Scatter& s = *shader->bind(test::surface_point({0, 0, 1}), test::wavelengths(), arena);
+  for (const double angle : {0.0, 45.0, 75.0}) {
+    const double c = std::cos(angle * M_PI / 180), sine = std::sin(angle * M_PI / 180) / 1.5;
+    const double f = double(fresnel_dielectric(float(c), 1.5f)), a = std::exp(-0.3 / std::sqrt(1 - sine * sine));
+    const double m = 0.9 * a * a;
+    EXPECT_NEAR(s.albedo(at_angle(frame, angle))[0], f + (1 - f) * (1 - f) * m / (1 - f * m), 1e-5) << angle;
+  }
+}
+
+// Much fog between two faces that do nothing: the two-stream model (Kubelka & Munk 1931) with K = 2 absorption and S = 3/4
+// scattering, R = sinh(b) / (a sinh(b) + a' cosh(b)), T = a' / (...), a = (K + S) / S, a' = sqrt(a^2 - 1), b = a' S; and what
+// is left of light that was not scattered, exp(-extinction).
+TEST(LayeredShader, AlbedoOfFogIsThatOfTwoStreams) {
+  const Ref<Shader> none = create<Shader>("PassThrough");
+  for (const double absorption : {0.05, 1.0, 4.0})
+    for (const double scattering : {0.5, 6.0, 20.0}) {
+      const Ref<Shader> shader = layered(none, none, {{"medium", fog(absorption, scattering, 0)}, {"thickness", 1.0}});
+      Arena arena;
+      const Scatter& s = *shader->bind(test::surface_point({0, 0, 1}), test::wavelengths(), arena);
+      const double K = 2 * absorption, S = 0.75 * scattering, a = (K + S) / S, root = std::sqrt(a * a - 1), b = root * S;
+      const double below = a * std::sinh(b) + root * std::cosh(b), unscattered = std::exp(-scattering);
+      EXPECT_NEAR(s.albedo({0, 0, 1}, reflection_lobes)[0], (1 - unscattered) * std::sinh(b) / below, 2e-5)
+          << absorption << " " << scattering;
+      EXPECT_NEAR(s.albedo({0, 0, 1}, transmission_lobes)[0],
+                  (1 - unscattered) * root / below + unscattered * std::exp(-absorption), 2e-5)
+          << absorption << " " << scattering;
     }
 }
 

@@ -5,9 +5,8 @@
 
 #include <cmath>
 
-#include "etendue/render/job.h"
-#include "process.h"
 #include "render/checkpoint.h"
+#include "program_support.h"
 #include "render_support.h"
 
 namespace etendue::checkpoint_test {
@@ -68,7 +67,7 @@ std::string complaint(F&& f) {
 
 inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-class CheckpointTest : public testing::Test {
+class CheckpointTest : public RunsProgram {
  protected:
   /// Renders passes of a job into a file.
   std::string part(const Ref<Job>& job, const std::string& name, std::optional<IndexRange> passes = {}) {
@@ -78,7 +77,6 @@ class CheckpointTest : public testing::Test {
     EXPECT_EQ(job->checkpoint_failure(), "");
     return job->checkpoint_file;
   }
-  TemporaryFolder folder;
 };
 
 }  // namespace etendue::checkpoint_test

@@ -111,6 +111,33 @@ TEST(ThinMedia, PaperBoundsTheMediumItsObjectNames) {
     expect(r, camera, ball + ", interior: HomogeneousVolume { absorption: 1000 } }\n" + sky, 0.3, "soot");
 }
 
+// Paper around an absorber. Light that paper lets in is diffuse; of what its inner side sends out a part m comes to its inner
+// side again, so that from outside R + T^2 m (1 + R m + (R m)^2 + ...) is seen. In a ball of radius 1 all chords are 2 cos:
+// m = integral of exp(-2 a cos) 2 cos dcos = 2 (1 - (1 + 2 a) exp(-2 a)) / (2 a)^2. Between two sheets at the distance d it is
+// twice the exponential integral E3(a d), and what crosses is scattered through to the other side as well.
+TEST(ThinMedia, PaperAroundAnAbsorber) {
+  const double R = 0.3, T = 0.6;
+  const std::string paper = "shader: DiffuseTransmitter { reflectance: 0.3, transmittance: 0.6 }";
+  const std::string camera = "PerspectiveCamera { from: [0, 0, 4], to: [0, 0, 0], fov: 5 deg }";
+  for (const double a : {0.2, 1.0, 3.0}) {
+    const double x = 2 * a, m = 2 * (1 - (1 + x) * std::exp(-x)) / (x * x);
+    for (const std::string& r : tracers)
+      expect(r, camera, fmt::format("Sphere {{ {}, interior: HomogeneousVolume {{ absorption: {} }} }}\n", paper, a) + sky,
+             R + T * T * m / (1 - R * m), fmt::format("ball of {}", a));
+  }
+  const double depth = 0.6;
+  double m = 0;  // 2 E3(depth), by cosines
+  constexpr int steps = 100000;
+  for (int i = 0; i < steps; ++i) {
+    const double c = (i + 0.5) / steps;
+    m += 2 * c * std::exp(-depth / c) / steps;
+  }
+  for (const std::string& r : tracers)
+    expect(r, camera,
+           fmt::format("Box {{ size: [400, 400, 0.5], {}, interior: HomogeneousVolume {{ absorption: 1.2 }} }}\n", paper) + sky,
+           R + T * T * m / (1 - R * m), "slab");
+}
+
 // Without an interior a pane bounds nothing: the fog around goes on inside. Of a glass ball in its place it would not.
 TEST(ThinMedia, AThinBubbleIsFullOfWhatIsAround) {
   const std::string camera = "PerspectiveCamera { from: [0, 0, 1.9], to: [0, 0, 0], fov: 1 deg }";

@@ -252,8 +252,8 @@ class EmissionTrial {
       for (size_t k = 0; k < spectrum_size; ++k) sums[k].add(double(s[int(k)]));
     }
     if (of_many_colours()) return check_luminous_power(what);
-    // Of maps that vary the power is an estimate, from some points.
-    const double relative = varies() ? 0.2 : 0.01;
+    // Of maps that vary the power is an estimate, from a thousand points: 3 % off at most among 400 parts drawn.
+    const double relative = varies() ? 0.05 : 0.01;
     for (size_t k = 0; k < spectrum_size; ++k)
       compare_power(what, sums[k], double(power_[int(k)]), relative, fmt::format("W/nm at {} nm", wavelengths_[int(k)]));
   }
@@ -280,7 +280,8 @@ class EmissionTrial {
       at(double(trial.uniform()));
       sum.add(seen(power_sample()));
     }
-    compare_power(what, sum, said, 0.3, "W/nm as the eye weighs it");
+    // A projected image's is taken to be alike all over the image: that is 6 % off at most among 100 parts drawn.
+    compare_power(what, sum, said, 0.08, "W/nm as the eye weighs it");
   }
 
   void compare_power(const std::string& what, const statistics::Mean& m, double said, double relative,

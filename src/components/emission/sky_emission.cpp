@@ -140,12 +140,39 @@ class SkyEmission final : public EmissionShader {
     if (towards.y < 0) return {};
     const float chord = length(towards - sun_), h = square(chord) / 2;
     Spectrum value = model_.sky(towards.y, 2 * safe_asin(chord / 2), w);
-    if (sun && h <= height_) {
-      // The sine of the angle from the sun's middle over that of its radius is the sine seen from the sun's centre.
-      const float sines = h * (2 - h) / (height_ * (2 - height_));
-      value += model_.sun(safe_asin(towards.y), safe_sqrt(1 - sines), w) * disc_;
-    }
+    if (sun && h <= height_) value += in_sun(towards, h, w);
     return value * factor_;
+  }
+
+  /// What the sun adds at 1 - cos of the angle from its middle.
+  Spectrum in_sun(const Vector3& towards, float h, const Wavelengths& w) const {
+    // The sine of the angle from the sun's middle over that of its radius is the sine seen from the sun's centre.
+    const float sines = h * (2 - h) / (height_ * (2 - height_));
+    return model_.sun(safe_asin(towards.y), safe_sqrt(1 - sines), w) * disc_;
+  }
+
+  using OfChannels = std::array<double, SkyModel::channels>;
+  /// Adds the integrals of the sun's light over what of its disc is above the horizon, and of the same on level ground.
+  void integrate_sun(OfChannels& all, OfChannels& level) const {
+    constexpr int rings = 64, sectors = 32;
+    const Frame frame{Normal3(sun_)};
+    for (int first = 0; first < SkyModel::channels; first += spectrum_size) {
+      Wavelengths w;
+      const int count = std::min(spectrum_size, SkyModel::channels - first);
+      for (int i = 0; i < spectrum_size; ++i) w.place(i, SkyModel::wavelength(first + std::min(i, count - 1)), 1);
+      for (int k = 0; k < rings * sectors; ++k) {
+        const float h = height_ * (float(k % rings) + 0.5f) / rings, r = safe_sqrt(h * (2 - h));
+        float sine = 0, cosine = 0;
+        sin_cos_turn((float(k / rings) + 0.5f) / sectors, sine, cosine);
+        const Vector3 d = frame.to_world({r * cosine, r * sine, 1 - h});
+        if (d.y < 0) continue;
+        const Spectrum light = in_sun(d, h, w) * (sun_angle_ / (rings * sectors));
+        for (int i = 0; i < count; ++i) {
+          all[size_t(first + i)] += double(light[i]);
+          level[size_t(first + i)] += double(light[i] * d.y);
+        }
+      }
+    }
   }
 
   /// Integrals over directions at each channel, by steps of 1 degree from the zenith and 2 around it; the sky is the same to
@@ -153,7 +180,7 @@ class SkyEmission final : public EmissionShader {
   void integrate() {
     constexpr int rows = 90, columns = 90;
     const double step = 3.14159265358979323846 / 180;
-    std::array<double, SkyModel::channels> level{};
+    OfChannels level{}, of_sun{};
     all_ = {};
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column) {
@@ -167,13 +194,12 @@ class SkyEmission final : public EmissionShader {
           level[size_t(c)] += value * double(cosine);
         }
       }
+    if (sun) integrate_sun(of_sun, level);
     double sky_light = 0, sun_light = 0;
     for (int c = 0; c < SkyModel::channels; ++c) {
-      const float from_sun = sun ? model_.sun(c, elevation_) * disc_ * sun_angle_ : 0;
       sky_light += tristimulus(c) * double(all_[size_t(c)]);
-      sun_light += tristimulus(c) * double(from_sun);
-      all_[size_t(c)] += from_sun;
-      level[size_t(c)] += double(from_sun * sun_.y);
+      sun_light += tristimulus(c) * of_sun[size_t(c)];
+      all_[size_t(c)] += float(of_sun[size_t(c)]);
     }
     sun_share_ = sun ? float(std::clamp(sun_light / (sun_light + sky_light), 0.1, 0.9)) : 0;
     if (!(lux > 0)) return;

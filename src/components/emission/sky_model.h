@@ -38,8 +38,6 @@ class SkyModel {
   /// Of the sun's disc at an elevation [rad] above the horizon; `cos_psi` is the cosine, seen from the sun's centre, between
   /// the place on its surface and the observer: 1 in the middle, 0 at the limb.
   Spectrum sun(float elevation, float cos_psi, const Wavelengths&) const;
-  /// Mean over the disc.
-  float sun(int channel, float elevation) const { return sun(channel, Piece(elevation)); }
   /// From the values of the channels to those at wavelengths.
   template <class F>
   static Spectrum between_channels(const Wavelengths& w, const F& value) {

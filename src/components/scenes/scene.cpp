@@ -70,6 +70,19 @@ void count_within(SceneObject& object, const DoublePoint3& centre, float time) {
   object.prepare();
 }
 
+/// Where all surfaces are endless, a sphere of 1 m stands for the scene, for light paths to begin around. It lies around the
+/// world's origin, unless floats were too coarse there for what is counted from `centre`, near the camera: then around that.
+Bounds3 for_endless_ones(const DoublePoint3& centre) {
+  constexpr double near = 1e5;
+  const DoubleVector3 away = DoublePoint3{} - centre;
+  const Point3 middle = length(away) < near ? Point3{} + Vector3(away) : Point3{};
+  const float half = 1 / std::sqrt(3.0f);
+  Bounds3 cube;
+  cube.add(middle - Vector3{half, half, half});
+  cube.add(middle + Vector3{half, half, half});
+  return cube;
+}
+
 /// More boxes than this are searched by a tree.
 constexpr size_t few_interiors = 16;
 
@@ -199,6 +212,7 @@ void Scene::prepare() {
     finite.push_back(object.get());
   }
   coarse.say();
+  if (unbounded_ && bounds_.empty()) bounds_ = for_endless_ones(transform.inner());
   if (interiors_.size() > few_interiors) {
     std::vector<Bounds3> boxes;
     boxes.swap(interiors_);

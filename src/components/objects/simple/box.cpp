@@ -114,6 +114,12 @@ class Box final : public PlacedObject {
 
   double own_area() const override { return until_[5]; }
 
+  Seams own_seams() const override {
+    Seams seams;
+    for (int face = 0; face < 5; ++face) seams.x.push_back(until_[face] / until_[5]);
+    return seams;
+  }
+
   float own_sample(Point2 u, OwnPoint& p) const override {
     double x = double(u.x) * until_[5];
     int face = 0;

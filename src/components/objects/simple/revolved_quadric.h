@@ -50,6 +50,7 @@ class RevolvedQuadric : public PlacedObject {
   void own_point(const Ray&, const Hit&, OwnPoint&) const override;
   double own_area() const override { return low_area_ + side_area_ + high_area_; }
   float own_sample(Point2 u, OwnPoint&) const override;
+  Seams own_seams() const override { return {{}, {low_area_ / own_area(), (low_area_ + side_area_) / own_area()}}; }
 
  private:
   enum Part : std::uint32_t { side, low_cap, high_cap };

@@ -96,6 +96,11 @@ class Tube final : public PlacedObject {
 
   double own_area() const override { return areas_[outer] + areas_[inner] + areas_[low_end] + areas_[high_end]; }
 
+  Seams own_seams() const override {
+    const double area = own_area(), until_side = areas_[low_end] + areas_[outer], until_bore = until_side + areas_[high_end];
+    return {{}, {areas_[low_end] / area, until_side / area, until_bore / area}};
+  }
+
   float own_sample(Point2 u, OwnPoint& p) const override {
     // Once around the profile: out along the low end, up, in along the high end and down in the bore.
     const double area = own_area();
