@@ -105,8 +105,8 @@ def leak_table(program, rays, out):
         for renderer, structure in [("PathTracer", s) for s in STRUCTURES] + [("BidirectionalPathTracer", "BvhScene")]:
             lit = []
             for room in (box, mesh):
-                text = description(where, f"{renderer} {{ samples: {samples}, max_depth: {depth}, roulette_depth: {depth} }}", structure,
-                                   room(where) + "\n" + SKY, size)
+                members = f"samples: {samples}, max_depth: {depth}, roulette_depth: {depth}"
+                text = description(where, f"{renderer} {{ {members} }}", structure, room(where) + "\n" + SKY, size)
                 lit.append(int((program.render(text) > 0).sum()))
             total += sum(lit)
             cells.append(" / ".join(map(str, lit)))
