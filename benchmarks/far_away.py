@@ -7,6 +7,7 @@ Renders closed rooms that are lit from outside, in each structure, and a furnish
 """
 
 import argparse
+import math
 import pathlib
 import subprocess
 import sys
@@ -92,7 +93,8 @@ class Program:
 
 def leak_table(program, rays, out):
     size, depth = 16, 8
-    samples = max(1, int(rays / (size * size * 2 * depth)))  # a ray on, and one to the sky, from each vertex
+    # A path has as many rays as segments, and one to the sky from each vertex but the last; none is ended by roulette.
+    samples = math.ceil(rays / (size * size * (2 * depth - 1)))
     out(f"Light that gets in, of {rays:.0e} rays for each entry: pixels of {size * size} that are not black, in a room that is a "
         "`Box` / a `TriangleMesh`.\n")
     out("| place | scale | " + " | ".join(STRUCTURES) + " | bidirectional |")
@@ -103,8 +105,8 @@ def leak_table(program, rays, out):
         for renderer, structure in [("PathTracer", s) for s in STRUCTURES] + [("BidirectionalPathTracer", "BvhScene")]:
             lit = []
             for room in (box, mesh):
-                text = description(where, f"{renderer} {{ samples: {samples}, max_depth: {depth} }}", structure,
-                                   room(where) + "\n" + SKY, size)
+                members = f"samples: {samples}, max_depth: {depth}, roulette_depth: {depth}"
+                text = description(where, f"{renderer} {{ {members} }}", structure, room(where) + "\n" + SKY, size)
                 lit.append(int((program.render(text) > 0).sum()))
             total += sum(lit)
             cells.append(" / ".join(map(str, lit)))

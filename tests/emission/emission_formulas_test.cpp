@@ -5,12 +5,15 @@
 
 #include <fstream>
 
+#include "components/emission/direction_table.h"
 #include "etendue/describe/color.h"
 #include "support/image_file.h"
 #include "support/luminaire_test_support.h"
 
 namespace etendue::test {
 namespace {
+
+constexpr double degree = M_PI / 180;
 
 /// The integral over directions (the upper half about +-z too) of g, by midpoints even in z and azimuth.
 double over_sphere(const std::function<double(const Vector3&)>& g, int steps = 600, int sectors = 240) {
@@ -21,6 +24,30 @@ double over_sphere(const std::function<double(const Vector3&)>& g, int steps = 6
       sum += g({float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)});
     }
   return sum * 4 * M_PI / (steps * sectors);
+}
+
+// Within its cells as well: a table of few and wide ones, in cells that are much finer.
+TEST(EmissionFormulas, DirectionsAreEvenWithinTheCellsOfATable) {
+  DirectionTable table;
+  table.build({20, 60, 130}, {-30, 90, 250}, [](size_t row, size_t column) { return double(1 + row + 2 * column); });
+  constexpr size_t rows = 22, columns = 28;
+  constexpr int count = 200000;
+  std::vector<double> counts(rows * columns), expected(rows * columns);
+  Random random(71);
+  for (int i = 0; i < count; ++i) {
+    const DirectionSample s = table.sample(random.pair());
+    const double theta = std::acos(double(s.direction.z)) / degree, phi = std::atan2(s.direction.y, s.direction.x) / degree;
+    const double from_first = phi < -30 ? phi + 360 + 30 : phi + 30;
+    ++counts[size_t((theta - 20) / 5) * columns + size_t(from_first / 10)];
+  }
+  double sum = 0;
+  for (size_t row = 0; row < rows; ++row)
+    for (size_t column = 0; column < columns; ++column) {
+      const double band = std::cos((20 + 5 * double(row)) * degree) - std::cos((25 + 5 * double(row)) * degree);
+      sum += expected[row * columns + column] = band * double(1 + (row >= 8) + 2 * (column >= 12));
+    }
+  for (double& e : expected) e *= count / sum;
+  EXPECT_GT(chi_square(counts, expected), each_of(1));
 }
 
 /// Watts per nanometre that leave a lamp, at the hero wavelength: over points by their densities and all directions.

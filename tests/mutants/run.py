@@ -158,6 +158,10 @@ class Build:
     def make(self, texts, place):
         """Compiles and links what the changed sources are part of. Returns the test program to run."""
         shadow = place / "sources"
+        # What lies beside a header finds it there first: all sources move with it.
+        together = any(file.startswith("src/") and file.endswith(".h") for file in texts)
+        if together:
+            shutil.copytree(self.root / "src", shadow / "src")
         objects = {}
         for file, text in texts.items():
             copy = shadow / file
@@ -174,7 +178,7 @@ class Build:
             source, words = self.compile[made]
             words = list(words)
             relative = os.path.relpath(source, self.root)
-            if relative in texts:
+            if relative in texts or (together and relative.startswith("src/")):
                 words[words.index(source)] = str(shadow / relative)
             objects[made] = str(place / (made.replace("/", "_")))
             words[words.index("-o") + 1] = objects[made]

@@ -112,6 +112,41 @@ TEST(Objects, AreaSamplingMatchesItsDensity) {
   }
 }
 
+// What an even spread over a surface has in closed form: the mean of x^2 + y^2 and that of z^2, by midpoints of the square.
+TEST(Objects, PointsLieEvenly) {
+  const struct {
+    const char* shape;
+    std::vector<Setting> settings;
+    double around, along;
+  } expected[] = {
+      {"Disc", {{"radius", 3}}, 9 / 2.0, 0},
+      {"Annulus", {{"radius", 3}, {"inner_radius", 1}}, (9 + 1) / 2.0, 0},
+      {"Annulus", {{"radius", 3}, {"inner_radius", 2}, {"sweep", 70}}, (9 + 4) / 2.0, 0},
+      {"Sphere", {{"radius", 3}}, 2 * 9 / 3.0, 9 / 3.0},
+      {"Rectangle", {{"corner", {-1, -2, 0}}, {"edge_u", {2, 0, 0}}, {"edge_v", {0, 4, 0}}}, 1 / 3.0 + 4 / 3.0, 0},
+      // From z = -h/2 to h/2.
+      {"Cylinder", {{"radius", 2}, {"height", 3}, {"caps", false}}, 4, 9 / 12.0},
+      // A cone from radius a to b: of what is even along its side, r = a + (b - a) t has the density r.
+      {"Cone", {{"radius", 3}, {"top_radius", 0}, {"height", 2}, {"caps", false}}, 9 / 2.0, 4 / 6.0},
+      // (R + r cos p)^2 with the density R + r cos p; (r sin p)^2 with the same.
+      {"Torus", {{"radius", 2}, {"tube_radius", 1}}, 4 + 3 / 2.0, 1 / 2.0},
+  };
+  constexpr int side = 256;
+  for (const auto& e : expected) {
+    SCOPED_TRACE(e.shape);
+    const Ref<SceneObject> shape = object(e.shape, e.settings);
+    double around = 0, along = 0;
+    for (int i = 0; i < side * side; ++i) {
+      const SurfaceSample s = shape->sample_area({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}, 0);
+      const double x = double(s.point.position.x), y = double(s.point.position.y), z = double(s.point.position.z);
+      around += (x * x + y * y) / (side * side);
+      along += z * z / (side * side);
+    }
+    EXPECT_NEAR(around, e.around, 1e-3 * e.around);
+    EXPECT_NEAR(along, e.along, 1e-3 * e.along + 1e-9);
+  }
+}
+
 /// All surface points of an object along a ray.
 template <class F>
 void for_all_hits(const SceneObject& object, Ray r, const F& call) {

@@ -125,6 +125,31 @@ TEST(SamplerPairs, HighSampleNumbers) {
   }
 }
 
+// Both numbers of a pair are scrambled on their own. Of an aligned block of four, two points lie in the halves where the first
+// digits of x and y agree. Their second digits agree or do not; with scramblings that are independent (Owen 1995), whether they
+// do for both alike is a toss of a coin; with one scrambling for x and y it is the same for all pixels.
+TEST(SamplerPairs, BothNumbersAreScrambledOnTheirOwn) {
+  const Ref<Sampler> s = create<Sampler>("SobolSampler");
+  for (const std::uint32_t begin : {0u, 4096u})
+    for (const bool agreeing : {false, true}) {
+      constexpr int count = 4096;
+      int alike = 0;
+      for (int i = 0; i < count; ++i) {
+        int found = 0, parity = 0;
+        for (std::uint32_t k = 0; k < 4; ++k) {
+          const Point2 p = s->pair(SampleKey(1, i % 64, i / 64, begin + k), 4);
+          const int x = int(4 * p.x), y = int(4 * p.y);
+          if ((x / 2 == y / 2) != agreeing) continue;
+          ++found;
+          parity ^= (x ^ y) & 1;
+        }
+        ASSERT_EQ(found, 2);
+        alike += parity == 0;
+      }
+      EXPECT_NEAR(alike, count / 2, 4.5 * std::sqrt(count) / 2) << begin << " " << agreeing;
+    }
+}
+
 // A number of one sample and dimension is none of another sample's, at whatever dimension.
 TEST(SamplerPairs, NumbersAreNotSharedBetweenSamplesAndDimensions) {
   for (const std::string& name : samplers) {

@@ -55,7 +55,7 @@ class Pairs : public testing::TestWithParam<Shape> {};
 
 // Whatever the order in which triangles and their corners are given, the nearest triangle is found, with the weights of its own
 // corners. In a convex quadrilateral with its corners on a grid of eighths the pair is exactly plane and is tested as one; the
-// others, and those turned at random, as they come.
+// others, and those turned at random, as they come. The other structures find the same.
 TEST_P(Pairs, AreMetAsTheirTrianglesAre) {
   Random random(11);
   for (int trial = 0; trial < 400; ++trial) {
@@ -85,7 +85,10 @@ TEST_P(Pairs, AreMetAsTheirTrianglesAre) {
       }
     }
     if (flat) continue;
-    const Ref<Scene> scene = ref_cast<Scene>(Registry::instance().create("BruteForceScene"));
+    const char* const structures[] = {"BruteForceScene", "BvhScene",    "BruteForceScene",
+                                      "EmbreeScene",     "OctreeScene", "GridScene"};
+    const char* const structure = structures[trial / 2 % 6];
+    const Ref<Scene> scene = ref_cast<Scene>(Registry::instance().create(structure));
     scene->objects = {object("TriangleMesh", {{"positions", positions}, {"triangles", indices}})};
     prepare_tree(*scene);
 
@@ -107,14 +110,14 @@ TEST_P(Pairs, AreMetAsTheirTrianglesAre) {
       if (met == 2 && std::abs(e[0].t - e[1].t) < 1e-4) continue;  // folded onto each other: either will do
 
       Hit hit;
-      ASSERT_EQ(scene->nearest(ray, hit), nearest >= 0) << "trial " << trial;
+      ASSERT_EQ(scene->nearest(ray, hit), nearest >= 0) << "trial " << trial << " " << structure;
       EXPECT_EQ(scene->any(ray), nearest >= 0);
       HitList all;
       scene->all(ray, all);
       EXPECT_EQ(all.size, met);
       if (nearest < 0) continue;
       EXPECT_EQ(int(hit.primitive), nearest) << "trial " << trial;
-      EXPECT_NEAR(double(hit.distance), e[nearest].t, 2e-6 / e[nearest].cosine);
+      EXPECT_NEAR(double(hit.distance), e[nearest].t, 2e-6 / e[nearest].cosine) << structure;
       EXPECT_NEAR(double(hit.u), e[nearest].u, 1e-4 / e[nearest].cosine);
       EXPECT_NEAR(double(hit.v), e[nearest].v, 1e-4 / e[nearest].cosine);
       ray.maximum = float(e[nearest].t * 0.999);

@@ -5,7 +5,7 @@
 
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
-#include "support/component_test_support.h"
+#include "components/shaders/microfacet/film_interference.h"
 
 namespace etendue {
 namespace {
@@ -118,6 +118,19 @@ TEST(ThinFilmSlabs, AgreeWithCharacteristicMatrices) {
       }
     }
   }
+}
+
+// Between two glasses light tunnels through a gap in which it could not travel: all of it through none, hardly any through one
+// of a wavelength.
+TEST(ThinFilmSlabs, LightTunnelsThroughGaps) {
+  for (const double angle : {10.0, 41.0, 45.0, 60.0, 80.0})
+    for (const double gap : {0.0, 0.02, 0.1, 0.3, 1.0})
+      for (const double behind : {1.5, 1.7}) {
+        const double c = std::cos(angle * M_PI / 180), expected = film_reflectance(c, 1.5, 1, behind, gap);
+        const FilmFractions f = film_fractions(float(c), 1.5f, 1, float(behind), float(gap));
+        EXPECT_NEAR(double(f.reflected), expected, 1e-4) << angle << " " << gap << " " << behind;
+        EXPECT_NEAR(double(f.transmitted), 1 - expected, 1e-4) << angle << " " << gap << " " << behind;
+      }
 }
 
 // ---- glass ------------------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -64,6 +65,9 @@ class Process {
     const std::string in_folder = working_folder.empty() ? folder.path() : working_folder;
     id_ = fork();
     if (id_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // tests that are killed leave no program behind that renders for days
+      // Under nohup or in the background tests are told to ignore these, and the program would be as well.
+      for (const int ignored : {SIGHUP, SIGINT, SIGQUIT}) ::signal(ignored, SIG_DFL);
       if (out < 0 || err < 0) _exit(125);
       dup2(out, STDOUT_FILENO);
       dup2(err, STDERR_FILENO);
