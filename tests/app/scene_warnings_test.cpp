@@ -170,6 +170,33 @@ TEST(SceneWarnings, AFewOfAKindAndHowManyMore) {
   EXPECT_NE(shown.find("(and 6 more like this)"), std::string::npos) << shown;
 }
 
+TEST(SceneWarnings, MembersThatDoNotMatter) {
+  const std::string kind = "does not matter";
+  expect("Sphere { shader: HairShader {\n color: 0.1 } }\n" + sky, kind, {"HairShader.color", "'pigment' is color"}, "color: 0.1");
+  expect("Sphere { shader: Conductor { rotation: 0.2 } }\n" + sky, kind, {"Conductor.rotation", "'roughness_y' is given"},
+         "rotation: 0.2");
+  expect("Sphere { shader: Principled { coat_roughness: 0.4 } }\n" + sky, kind, {"'coat_weight' is not 0"}, "coat_roughness");
+  expect("Environment { emission: SkyEmission { time: \"2024-06-21T12:00:00Z\", sun_direction: [1, 2, 0] } }\n", kind,
+         {"'time' is not given"}, "sun_direction");
+  expect("Sphere { emission: DiffuseEmission { distance: 2 } }\n", kind, {"'illuminance' is not 0"}, "distance: 2");
+  // Within maps of maps, once for a part that is used twice.
+  expect("Sphere { shader: Lambertian { color: AddMap { first: RampMap { input: 0.5 } } } }\n" + sky, kind,
+         {"RampMap.input", "'along' is input"}, "input: 0.5");
+  expect("Sphere {" + matt + "}\n" + sky, kind, {"'lens_radius' is not 0"}, "focus_distance",
+         "PerspectiveCamera { from: [0, 0, 5], focus_distance: 3 }");
+}
+
+TEST(SceneWarnings, MembersThatMatterOrAreAsByDefault) {
+  for (const char* object :
+       {"Sphere { shader: HairShader { pigment: color, color: 0.1 } }\n",
+        "Sphere { shader: Conductor { rotation: 0.2, roughness_y: 0.4 } }\n", "Sphere { shader: Conductor { rotation: 0 } }\n",
+        "Sphere { shader: Principled { coat_weight: CheckerMap { first: 0, second: 0.1 }, coat_roughness: 0.4 } }\n",
+        "Sphere { shader: Principled { coat_roughness: 0 } }\n",
+        "Sphere { emission: DiffuseEmission { illuminance: 10, distance: 2 } }\n",
+        "Sphere { emission: DiffuseEmission { power: 10, distance: 1 } }\n"})
+    for (const SceneWarning& w : said(object + sky)) ADD_FAILURE() << object << w.text;
+}
+
 TEST(SceneWarnings, ReflectancesAboveOne) {
   const ImageFile bright("bright.exr", 2, 1, {0.2f, 0.2f, 0.2f, 0.5f, 3.5f, 0.5f});
   const ImageFile sound("sound.exr", 2, 1, {0.2f, 0.2f, 0.2f, 0.5f, 1, 0.5f});

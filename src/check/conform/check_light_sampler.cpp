@@ -127,8 +127,6 @@ class LightTrial {
   Ref<Scene> scene_;
 };
 
-}  // namespace
-
 void check_light_sampler(Trial& trial) {
   LightSampler& sampler = trial.part<LightSampler>();
   const Ref<Scene> dark = scene_of("EmbreeScene { objects: [Sphere {}] }");
@@ -140,4 +138,7 @@ void check_light_sampler(Trial& trial) {
   LightTrial(trial, sampler, varied).check();
 }
 
+const RegisterCheck<LightSampler> registered(check_light_sampler);
+
+}  // namespace
 }  // namespace etendue::conform

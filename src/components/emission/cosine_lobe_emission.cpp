@@ -21,11 +21,15 @@ class CosineLobeEmission final : public AxialEmission {
          "Light that falls off as a power of the cosine to the surface's normal, or to an axis: a diode, a reflector lamp. Its "
          "intensity falls to a half at the angle whose cosine is 2^(-1/n), with n the exponent, and n + 1 on a surface.",
          "Moreno & Sun 2008, Modeling the radiation pattern of LEDs")
+        .group("Light")
         .member<&CosineLobeEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
-                                          "radiance in the middle; only its shape counts when an amount is given");
+                                          "radiance in the middle; only its shape counts when an amount is given",
+                                          Meaning::radiance, soft(0.01, 1000), logarithmic);
     describe_amounts(d);
-    d.member<&CosineLobeEmission::exponent>("exponent", "1",
-                                            "the cosine's power, n; 0: the same radiance all over a hemisphere", range(0, 1e6))
+    d.group("Lobe")
+        .member<&CosineLobeEmission::exponent>("exponent", "1",
+                                               "the cosine's power, n; 0: the same radiance all over a hemisphere",
+                                               range(0, 1e6), soft(1, 1000), logarithmic)
         .member<&CosineLobeEmission::about>("about", "", "what the lobe is about; a Point, which has no normal, takes the axis",
                                             choices("normal", "axis"))
         .member<&CosineLobeEmission::axis>(

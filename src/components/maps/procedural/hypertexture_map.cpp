@@ -19,12 +19,14 @@ class HypertextureMap final : public FractalMap {
     d.summary("The density of a soft ball with a turbulent border, where a surface cuts it.",
               "Perlin & Hoffert 1989, \"Hypertexture\"");
     describe_fractal(d, "size of the largest bumps of the border")
+        .group("Ball")
         .member<&HypertextureMap::center>("center", "m", "centre of the ball")
         .member<&HypertextureMap::radius>("radius", "m", "radius where the density is a half before the border is disturbed",
-                                          more_than(0))
-        .member<&HypertextureMap::softness>("softness", "m", "width of the region where the density falls", more_than(0))
-        .member<&HypertextureMap::disturbance>("disturbance", "1",
-                                               "how far turbulence moves the border inwards, over the radius", at_least(0))
+                                          more_than(0), soft(0.01, 100), logarithmic)
+        .member<&HypertextureMap::softness>("softness", "m", "width of the region where the density falls", more_than(0),
+                                            soft(0.01, 100), logarithmic)
+        .member<&HypertextureMap::disturbance>(
+            "disturbance", "1", "how far turbulence moves the border inwards, over the radius", at_least(0), soft(0, 5))
         .member<&HypertextureMap::bias>("bias", "1", "what the density 1/2 becomes", range(0.01, 0.99))
         .member<&HypertextureMap::contrast>("contrast", "1", "Perlin's gain: above 1/2 the density falls faster in the middle",
                                             range(0.01, 0.99));

@@ -20,13 +20,15 @@ class Metaballs final : public ImplicitObject {
          "box "
          "the surface faces most, from 0 to 1 as on a Box.",
          "Wyvill, McPheeters & Wyvill 1986, \"Data structure for soft objects\"")
+        .group("Shape")
         .member<&Metaballs::centers>("centers", "m", "the middles of the balls", Effect::rebuild)
         .member<&Metaballs::radii>("radii", "m", "how far each ball reaches; one number: all reach as far", Effect::rebuild)
         .member<&Metaballs::strengths>("strengths", "1",
                                        "the density at the middle of each, negative to take away; one number: all "
                                        "are as strong",
                                        Effect::rebuild)
-        .member<&Metaballs::threshold>("threshold", "1", "the density at the surface", more_than(0), Effect::rebuild);
+        .member<&Metaballs::threshold>("threshold", "1", "the density at the surface", more_than(0), Effect::rebuild,
+                                       soft(0.01, 10), logarithmic);
   }
 
   void prepare() override {

@@ -15,6 +15,7 @@ class Box final : public PlacedObject {
          "goes "
          "along y and v along z, on +y along z and x, on +z along x and y; on those that face back u runs the other way.",
          "slabs: Kay & Kajiya 1986, \"Ray tracing complex scenes\"")
+        .group("Shape")
         .member<&Box::center>("center", "m", "its middle", Effect::rebuild)
         .member<&Box::size>("size", "m", "its edges", Effect::rebuild);
   }

@@ -52,6 +52,7 @@ class Ellipsoid final : public PlacedObject {
          "Heitz "
          "2017, \"Analytical calculation of the solid angle subtended by an arbitrarily positioned ellipsoid to a point "
          "source\"")
+        .group("Shape")
         .member<&Ellipsoid::center>("center", "m", "its centre", Effect::rebuild)
         .member<&Ellipsoid::radii>("radii", "m", "its half axes along x, y and z", Effect::rebuild);
   }

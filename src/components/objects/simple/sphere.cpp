@@ -16,8 +16,9 @@ class Sphere final : public SceneObject {
          "-z "
          "to that at +z.",
          "cone sampling: Shirley, Wang & Zimmerman 1996, \"Monte Carlo techniques for direct lighting calculations\"")
+        .group("Shape")
         .member<&Sphere::center>("center", "m", "its centre", Effect::rebuild)
-        .member<&Sphere::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild);
+        .member<&Sphere::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild, soft(0.01, 100), logarithmic);
   }
 
   void prepare() override {

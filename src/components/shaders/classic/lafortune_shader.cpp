@@ -162,12 +162,14 @@ class LafortuneShader final : public Shader {
          "Generalised cosine lobes over a Lambertian base, as fitted to measured materials: mirror-like, off-specular, "
          "anisotropic and retroreflective ones. Where all together could reflect more than arrives, all are scaled down.",
          "Lafortune, Foo, Torrance & Greenberg 1997, Non-linear approximation of reflectance functions")
-        .member<&LafortuneShader::color>("color", "1", "fraction of light reflected diffusely, per wavelength")
+        .member<&LafortuneShader::color>("color", "1", "fraction of light reflected diffusely, per wavelength",
+                                         Meaning::reflectance)
         .member<&LafortuneShader::coefficients>("coefficients", "1", "cx, cy, cz of each lobe; at most 8 lobes")
         .member<&LafortuneShader::exponents>("exponents", "1", "n of each lobe", range(0, 1e5))
-        .member<&LafortuneShader::lobe_colors>("lobe_colors", "1",
-                                               "what each lobe is multiplied by, per wavelength; 1 where none is given")
-        .member<&LafortuneShader::rotation>("rotation", "1", "by how many turns the lobes are rotated against u");
+        .member<&LafortuneShader::lobe_colors>(
+            "lobe_colors", "1", "what each lobe is multiplied by, per wavelength; 1 where none is given", Meaning::reflectance)
+        .member<&LafortuneShader::rotation>("rotation", "1", "by how many turns the lobes are rotated against u",
+                                            Meaning::number, soft(0, 1));
   }
 
   void prepare() override {

@@ -85,10 +85,12 @@ class PhongShader final : public Shader {
          "Energy-conserving Phong lobe over a Lambertian base. Where color and specular together exceed 1, both are scaled "
          "down to a sum of 1.",
          "Lafortune & Willems 1994, Using the modified Phong reflectance model for physically based rendering, eq. 6")
-        .member<&PhongShader::color>("color", "1", "fraction of light reflected diffusely, per wavelength")
+        .member<&PhongShader::color>("color", "1", "fraction of light reflected diffusely, per wavelength",
+                                     Meaning::reflectance)
         .member<&PhongShader::specular>("specular", "1",
-                                        "fraction of light reflected by the lobe at normal incidence, per wavelength")
-        .member<&PhongShader::exponent>("exponent", "1", "lobe sharpness", range(0, 1e6));
+                                        "fraction of light reflected by the lobe at normal incidence, per wavelength",
+                                        Meaning::reflectance)
+        .member<&PhongShader::exponent>("exponent", "1", "lobe sharpness", range(0, 1e6), soft(1, 10000), logarithmic);
   }
 
   void prepare() override {

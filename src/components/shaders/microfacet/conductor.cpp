@@ -126,13 +126,18 @@ class Conductor final : public Shader {
     d.summary("A metal, polished or rough, on both sides. It reflects as its complex refractive index says.",
               "Walter et al. 2007, Microfacet models for refraction through rough surfaces; Heitz 2014, Understanding the "
               "masking-shadowing function; Kulla & Conty 2017, Revisiting physically based shading at Imageworks")
-        .member<&Conductor::ior>("ior", "1", "complex index of refraction: metal(\"Au\"), or complex(n, k)")
-        .member<&Conductor::color>("color", "1", "what the reflectance is multiplied by, per wavelength")
+        .group("Metal")
+        .member<&Conductor::ior>("ior", "1", "complex index of refraction: metal(\"Au\"), or complex(n, k)", Meaning::index)
+        .member<&Conductor::color>("color", "1", "what the reflectance is multiplied by, per wavelength", Meaning::reflectance)
+        .group("Roughness")
         .member<&Conductor::roughness>("roughness", "1",
                                        "the alpha of the distribution of facets, along the surface's u direction unless "
-                                       "rotated (not its square root); below 0.001 polished")
-        .member<&Conductor::roughness_y>("roughness_y", "1", "alpha across that direction; by default the same")
-        .member<&Conductor::rotation>("rotation", "turn", "turns those directions, counter-clockwise")
+                                       "rotated (not its square root); below 0.001 polished",
+                                       Meaning::number, soft(0, 1))
+        .member<&Conductor::roughness_y>("roughness_y", "1", "alpha across that direction; by default the same",
+                                         Meaning::number, soft(0, 1))
+        .member<&Conductor::rotation>("rotation", "turn", "turns those directions, counter-clockwise", Meaning::number,
+                                      soft(0, 1), when("roughness_y"))
         .member<&Conductor::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
         .member<&Conductor::multiple_scattering>("multiple_scattering", "",
                                                  "whether light that meets more than one facet is counted, or lost");

@@ -92,13 +92,16 @@ class Dielectric final : public Shader {
               "Born & Wolf 1999, Principles of Optics, section 1.5; Walter et al. 2007, Microfacet models for refraction "
               "through rough surfaces; Kulla & Conty 2017, Revisiting physically based shading at Imageworks; nested bodies "
               "after Schmidt & Budge 2002")
-        .member<&Dielectric::ior>("ior", "1",
-                                  "index of refraction inside the object: a number, glass(\"N-BK7\"), or a spectrum")
+        .member<&Dielectric::ior>(
+            "ior", "1", "index of refraction inside the object: a number, glass(\"N-BK7\"), or a spectrum", Meaning::index)
         .member<&Dielectric::roughness>("roughness", "1",
                                         "the alpha of the distribution of facets, along the surface's u direction unless "
-                                        "rotated (not its square root); below 0.001 smooth")
-        .member<&Dielectric::roughness_y>("roughness_y", "1", "alpha across that direction; by default the same")
-        .member<&Dielectric::rotation>("rotation", "turn", "turns those directions, counter-clockwise")
+                                        "rotated (not its square root); below 0.001 smooth",
+                                        Meaning::number, soft(0, 1))
+        .member<&Dielectric::roughness_y>("roughness_y", "1", "alpha across that direction; by default the same",
+                                          Meaning::number, soft(0, 1))
+        .member<&Dielectric::rotation>("rotation", "turn", "turns those directions, counter-clockwise", Meaning::number,
+                                       soft(0, 1), when("roughness_y"))
         .member<&Dielectric::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
         .member<&Dielectric::multiple_scattering>(
             "multiple_scattering", "",

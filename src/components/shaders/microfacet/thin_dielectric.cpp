@@ -96,8 +96,10 @@ class ThinDielectric final : public Shader {
          "bounds the medium that this names as its interior, which has the index of what is around; without one, what is "
          "around goes on inside.",
          "Stokes 1862, On the intensity of the light reflected from or transmitted through a pile of plates")
-        .member<&ThinDielectric::ior>("ior", "1", "index of refraction: a number, glass(\"N-BK7\"), or a spectrum")
-        .member<&ThinDielectric::color>("color", "1", "fraction of light left after one passage along the normal");
+        .member<&ThinDielectric::ior>("ior", "1", "index of refraction: a number, glass(\"N-BK7\"), or a spectrum",
+                                      Meaning::index)
+        .member<&ThinDielectric::color>("color", "1", "fraction of light left after one passage along the normal",
+                                        Meaning::reflectance);
   }
 
   void prepare() override {

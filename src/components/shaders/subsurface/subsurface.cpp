@@ -112,11 +112,13 @@ class Subsurface final : public Shader {
          "walk needs a closed object; on others the diffusion profile is used.",
          "Christensen & Burley 2015, Approximate reflectance profiles for efficient subsurface scattering; Chiang, Kutz & "
          "Burley 2016, Practical and controllable subsurface scattering for production path tracing")
-        .member<&Subsurface::color>("color", "1", "fraction of the light let in that leaves again, per wavelength")
+        .member<&Subsurface::color>("color", "1", "fraction of the light let in that leaves again, per wavelength",
+                                    Meaning::reflectance)
         .member<&Subsurface::mean_free_path>(
             "mean_free_path", "m",
-            "how far light goes before it forgets its direction (transport mean free path), per wavelength")
-        .member<&Subsurface::ior>("ior", "1", "index of refraction: a number or a spectrum")
+            "how far light goes before it forgets its direction (transport mean free path), per wavelength",
+            Meaning::coefficient, soft(0.0001, 1), logarithmic)
+        .member<&Subsurface::ior>("ior", "1", "index of refraction: a number or a spectrum", Meaning::index)
         .member<&Subsurface::anisotropy>("anisotropy", "1",
                                          "mean cosine of the scattering angle; for random_walk, hardly changes the look",
                                          range(-0.95, 0.95))
