@@ -142,7 +142,7 @@ TEST(SceneWarnings, WhatTheCameraSees) {
   expect("Sphere { " + matt + " }\n" + sky, "sees nothing", {"looks from", "'to'"}, "[0, 0, 9]",
          "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }");
   EXPECT_TRUE(said(sky, "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }").empty());
-  EXPECT_TRUE(said("Sphere { center: [0, 0, 1000], radius: 0.01, " + matt + " }\n" + sky,
+  EXPECT_TRUE(said("Sphere { centre: [0, 0, 1000], radius: 0.01, " + matt + " }\n" + sky,
                    "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }")
                   .empty());
 }
@@ -159,7 +159,7 @@ TEST(SceneWarnings, ACameraInTheDark) {
 
 TEST(SceneWarnings, AFewOfAKindAndHowManyMore) {
   std::string objects;
-  for (int i = 0; i < 9; ++i) objects += fmt::format("Sphere {{ center: [{}, 0, 0], radius: 0.1 }}\n", 0.2 * i);
+  for (int i = 0; i < 9; ++i) objects += fmt::format("Sphere {{ centre: [{}, 0, 0], radius: 0.1 }}\n", 0.2 * i);
   const std::vector<SceneWarning> list = said(objects + sky);
   EXPECT_EQ(list.size(), 9u);
   testing::internal::CaptureStderr();
@@ -172,8 +172,9 @@ TEST(SceneWarnings, AFewOfAKindAndHowManyMore) {
 
 TEST(SceneWarnings, MembersThatDoNotMatter) {
   const std::string kind = "does not matter";
-  expect("Sphere { shader: HairShader {\n color: 0.1 } }\n" + sky, kind, {"HairShader.color", "'pigment' is color"}, "color: 0.1");
-  expect("Sphere { shader: Conductor { rotation: 0.2 } }\n" + sky, kind, {"Conductor.rotation", "'roughness_y' is given"},
+  expect("Sphere { shader: HairShader {\n color: 0.1 } }\n" + sky, kind, {"HairShader.color", "'pigment' is color"},
+         "color: 0.1");
+  expect("Sphere { shader: Conductor { rotation: 0.2 } }\n" + sky, kind, {"Conductor.rotation", "'roughness_v' is given"},
          "rotation: 0.2");
   expect("Sphere { shader: Principled { coat_roughness: 0.4 } }\n" + sky, kind, {"'coat_weight' is not 0"}, "coat_roughness");
   expect("Environment { emission: SkyEmission { time: \"2024-06-21T12:00:00Z\", sun_direction: [1, 2, 0] } }\n", kind,
@@ -189,7 +190,7 @@ TEST(SceneWarnings, MembersThatDoNotMatter) {
 TEST(SceneWarnings, MembersThatMatterOrAreAsByDefault) {
   for (const char* object :
        {"Sphere { shader: HairShader { pigment: color, color: 0.1 } }\n",
-        "Sphere { shader: Conductor { rotation: 0.2, roughness_y: 0.4 } }\n", "Sphere { shader: Conductor { rotation: 0 } }\n",
+        "Sphere { shader: Conductor { rotation: 0.2, roughness_v: 0.4 } }\n", "Sphere { shader: Conductor { rotation: 0 } }\n",
         "Sphere { shader: Principled { coat_weight: CheckerMap { first: 0, second: 0.1 }, coat_roughness: 0.4 } }\n",
         "Sphere { shader: Principled { coat_roughness: 0 } }\n",
         "Sphere { emission: DiffuseEmission { illuminance: 10, distance: 2 } }\n",

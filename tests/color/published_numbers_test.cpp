@@ -452,7 +452,7 @@ TEST(DiffusionNumbers, RoundsBelowABoundary) {
     }
 }
 
-// Light leaves a body by what its boundary lets out, normalised so that nothing is lost: (1 - F(c)) / (pi times its own mean).
+// Light leaves a body by what its boundary lets out, normalized so that nothing is lost: (1 - F(c)) / (pi times its own mean).
 TEST(DiffusionNumbers, ExitsAreNormalisedByTheirOwnMean) {
   for (const double eta : {1.3, 1.6}) {
     double mean = 0;

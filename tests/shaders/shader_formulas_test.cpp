@@ -112,7 +112,7 @@ struct Facets {
   }
 };
 
-/// Of amplitudes, for any complex index: |r|^2 averaged over both polarisations.
+/// Of amplitudes, for any complex index: |r|^2 averaged over both polarizations.
 double fresnel(double cosine, std::complex<double> n) {
   const std::complex<double> inside = std::sqrt(n * n - (1 - cosine * cosine));
   const double s = std::norm((cosine - inside) / (cosine + inside)),
@@ -141,7 +141,7 @@ TEST(ShaderFormulas, RoughConductor) {
     const std::vector<Setting> settings = {{"ior", complex_index(n.color(), k.color())},
                                            {"color", tint.color()},
                                            {"roughness", 0.45},
-                                           {"roughness_y", 0.2},
+                                           {"roughness_v", 0.2},
                                            {"rotation", 0.1},
                                            {"distribution", ggx ? "ggx" : "beckmann"}};
     const Ref<Shader> once = create<Shader>("Conductor", settings);
@@ -170,7 +170,7 @@ TEST(ShaderFormulas, RoughDielectric) {
     const Facets facets{ggx, 0.5, 0.25};
     const Ref<Shader> shader = create<Shader>("Dielectric", {{"ior", n.color()},
                                                              {"roughness", 0.5},
-                                                             {"roughness_y", 0.25},
+                                                             {"roughness_v", 0.25},
                                                              {"rotation", 0.3},
                                                              {"distribution", ggx ? "ggx" : "beckmann"}});
     const Wavelengths w = test::wavelengths(500);

@@ -19,7 +19,7 @@ namespace {
 constexpr const char* stage =
     "Job { camera: PerspectiveCamera { to: [0, 0, 1], fov: 60 }, image: ImageBuffer { width: 12, height: 12 }, "
     "renderer: PathTracer { samples: 4, max_depth: 6 }, scene: BruteForceScene { objects: [ "
-    "Sphere { center: [0.2, 0.1, 3], shader: Lambertian { color: 0.5 } }, "
+    "Sphere { centre: [0.2, 0.1, 3], shader: Lambertian { color: 0.5 } }, "
     "Rectangle { corner: [-4, -1, 0], edge_u: [0, 0, 9], edge_v: [9, 0, 0], "
     "shader: Lambertian { color: CheckerMap { repeat: [7, 7, 7] } } }, "
     "Rectangle { corner: [-1, 2.5, 2], edge_u: [1, 0, 0], edge_v: [0, 0, 1], emission: DiffuseEmission { radiance: 4 } }, "

@@ -5,7 +5,7 @@
 namespace etendue {
 namespace {
 
-// Profile f = cos(theta)^n = (1 - h)^n for h < 1 (AxialEmission), the generalised Lambertian source: n = 0 is a hemisphere of
+// Profile f = cos(theta)^n = (1 - h)^n for h < 1 (AxialEmission), the generalized Lambertian source: n = 0 is a hemisphere of
 // constant radiance, n = 1 what many a diode is sold as. Omega = 2 pi / (n + 1); about the normal of a surface leaves, per area
 // and M, K = integral of cos^(n + 1) dw = 2 pi / (n + 2) on each side. Half of the greatest radiance is left at
 // cos(theta) = 2^(-1/n).

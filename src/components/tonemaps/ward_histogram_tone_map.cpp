@@ -135,7 +135,7 @@ class WardHistogramToneMap final : public ExposedToneMap {
         .group("Curve")
         .member<&WardHistogramToneMap::ceiling>("ceiling", "",
                                                 "most contrast shown: human, what an eye sees; linear, that of the scene; "
-                                                "unlimited, histogram equalisation",
+                                                "unlimited, histogram equalization",
                                                 choices("human", "linear", "unlimited"), Effect::retone)
         .group("Display")
         .member<&WardHistogramToneMap::display_maximum>("display_maximum", "cd/m^2", "luminance of the display's white",

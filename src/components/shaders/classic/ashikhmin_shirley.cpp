@@ -114,7 +114,7 @@ class AshikhminShirley final : public Shader {
                                                Meaning::number, soft(1, 10000), logarithmic)
         .member<&AshikhminShirley::exponent_v>("exponent_v", "1", "the same across u", Meaning::number, soft(1, 10000),
                                                logarithmic)
-        .member<&AshikhminShirley::rotation>("rotation", "1", "by how many turns the pattern is rotated against u",
+        .member<&AshikhminShirley::rotation>("rotation", "turn", "by how many turns the pattern is rotated against u",
                                              Meaning::number, soft(0, 1));
   }
   void prepare() override {

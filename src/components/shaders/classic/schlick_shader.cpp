@@ -195,14 +195,14 @@ class SchlickShader final : public Shader {
         .member<&SchlickShader::isotropy>("isotropy", "1", "from 0.001 (scratches along u) to 1 (isotropic)", Meaning::number,
                                           soft(0.001, 1), logarithmic)
         .group("Layer below")
-        .member<&SchlickShader::base_color>("base_color", "1", "color of the layer below; without it there is one layer",
+        .member<&SchlickShader::base_color>("base_color", "1", "colour of the layer below; without it there is one layer",
                                             Meaning::reflectance)
         .member<&SchlickShader::base_roughness>("base_roughness", "1", "roughness of the layer below", Meaning::number,
                                                 soft(0, 1), when("base_color"))
         .member<&SchlickShader::base_isotropy>("base_isotropy", "1", "isotropy of the layer below", Meaning::number,
                                                soft(0.001, 1), logarithmic, when("base_color"))
         .group("Direction")
-        .member<&SchlickShader::rotation>("rotation", "1", "by how many turns the scratches are rotated against u",
+        .member<&SchlickShader::rotation>("rotation", "turn", "by how many turns the scratches are rotated against u",
                                           Meaning::number, soft(0, 1));
   }
   void prepare() override {

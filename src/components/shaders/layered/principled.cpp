@@ -111,7 +111,7 @@ void Principled::describe(Description<Principled>& d) {
        "Portsmouth et al. 2024, OpenPBR Surface specification 1.1, Academy Software Foundation")
       .group("Base")
       .member<&Principled::base_weight>("base_weight", "1", "factor of base_color", Meaning::number, soft(0, 1))
-      .member<&Principled::base_color>("base_color", "1", "color of the matt body; of metal, seen straight on",
+      .member<&Principled::base_color>("base_color", "1", "colour of the matt body; of metal, seen straight on",
                                        Meaning::reflectance, when("base_weight"))
       .member<&Principled::base_diffuse_roughness>("base_diffuse_roughness", "1", "of the matt body: 0 Lambertian, 1 like clay",
                                                    Meaning::number, soft(0, 1))
@@ -147,7 +147,7 @@ void Principled::describe(Description<Principled>& d) {
           "fraction of the matt body that has subsurface_color; of thin walls, what scatters "
           "light to both sides",
           Meaning::number, soft(0, 1))
-      .member<&Principled::subsurface_color>("subsurface_color", "1", "color of that fraction", Meaning::reflectance,
+      .member<&Principled::subsurface_color>("subsurface_color", "1", "colour of that fraction", Meaning::reflectance,
                                              when("subsurface_weight"))
       .member<&Principled::subsurface_scatter_anisotropy>("subsurface_scatter_anisotropy", "1",
                                                           "of thin walls: -1 all back, 0 as much to both sides, 1 all through",
@@ -169,12 +169,12 @@ void Principled::describe(Description<Principled>& d) {
       .group("Fuzz")
       .member<&Principled::fuzz_weight>("fuzz_weight", "1", "fraction of the surface that has fuzz, or dust, on top",
                                         Meaning::number, soft(0, 1))
-      .member<&Principled::fuzz_color>("fuzz_color", "1", "color of the fuzz", Meaning::reflectance, when("fuzz_weight"))
+      .member<&Principled::fuzz_color>("fuzz_color", "1", "colour of the fuzz", Meaning::reflectance, when("fuzz_weight"))
       .member<&Principled::fuzz_roughness>("fuzz_roughness", "1", "0 for upright fibres, 1 for dust", Meaning::number,
                                            soft(0, 1), when("fuzz_weight"))
       .group("Thin film")
       .member<&Principled::thin_film_weight>("thin_film_weight", "1",
-                                             "fraction of the base's surface that has a film, whose colors are interference",
+                                             "fraction of the base's surface that has a film, whose colours are interference",
                                              Meaning::number, soft(0, 1))
       .member<&Principled::thin_film_thickness>("thin_film_thickness", "nm", "of that film", Meaning::number, soft(50, 2000),
                                                 logarithmic, when("thin_film_weight"))

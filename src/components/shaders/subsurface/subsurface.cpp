@@ -5,7 +5,7 @@
 //     S = (1 - F(out)) A R(x, x') (1 - F(in)) / (c pi)     [1/(m^2 sr)],
 // where A R (by a profile, or by a random walk) is the fraction that gets from x to x', per area, and c = 1 - the mean of F
 // over diffuse light makes the last factor, times cos(in), integrate to 1 (Jensen et al. 2001, "A practical model for
-// subsurface light transport"; normalised as in Christensen & Burley 2015). Both ends are on the same side of the boundary, so
+// subsurface light transport"; normalized as in Christensen & Burley 2015). Both ends are on the same side of the boundary, so
 // no squared indices remain. A body of colour 1 returns all light: F + (1 - F) A = 1.
 //
 // To renderers the way in is specular transmission, since no light is let through in any other direction than by way of
