@@ -88,6 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"PlaceToneMap", "equal pixels are shown equal by a map that is not local"},
                       Fault{"UnclippedToneMap", "what is shown of a right picture is finite, and in [0, 1] if the map clips"},
                       Fault{"AlwaysPaintedShader", "what does not matter changes nothing"},
+                      Fault{"MisreadShader", "colours are asked for what they are said to be read as"},
                       Fault{"StandingOutput", "what is read back is what was written"},
                       Fault{"HastyOutput", "the file is written beside and put in place when it is whole"},
                       Fault{"LitteringOutput", "nothing is left beside the file"},
@@ -106,8 +107,9 @@ TEST(Conform, EveryInterfaceHasAWayToBeTried) {
   Registry::instance().load_plugin(ETENDUE_CONFORM_FAULTS_LIBRARY);
   const std::vector<std::string> checked = checked_interfaces();
   const auto has = [&](const std::string& name) { return std::ranges::find(checked, name) != checked.end(); };
-  for (const char* name : {"Shader", "VolumeShader", "Camera", "Filter", "Sampler", "EmissionShader", "ObjectMap", "SceneObject",
-                           "LightSampler", "Renderer", "ToneMap", "Output", "WavelengthSampler", "Importer", "Knob"})
+  for (const char* name :
+       {"Shader", "VolumeShader", "Camera", "Filter", "Sampler", "EmissionShader", "ObjectMap", "SceneObject", "LightSampler",
+        "Renderer", "ToneMap", "Output", "WavelengthSampler", "Importer", "Knob"})
     EXPECT_TRUE(has(name)) << name;
 }
 

@@ -191,5 +191,21 @@ class AlwaysPaintedShader final : public Shader {
 };
 const Register<AlwaysPaintedShader> always_painted;
 
+// ---- a reflectance that is asked for as something else ------------------------------------------------------------------
+class MisreadShader final : public Shader {
+ public:
+  static void describe(Description<MisreadShader>& d) {
+    d.summary("Asks for its reflectance as a coefficient.")
+        .member<&MisreadShader::color>("color", "1", "fraction of light it reflects", Meaning::reflectance);
+  }
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    return arena.make<Matt>(p, clamp(color->color(p, w, ColorUse::coefficient)[0], 0, 0.9f));
+  }
+  Lobes possible_lobes() const override { return diffuse_reflection; }
+
+  Ref<ObjectMap> color = constant(0.5f);
+};
+const Register<MisreadShader> misread;
+
 }  // namespace
 }  // namespace etendue

@@ -45,7 +45,8 @@ class Panel final : public Component {
 template <auto describe_members>
 std::string refusal() {
   using T = Panel<describe_members>;
-  static RegistrationNode node{typeid(T), typeid(Component), [](ClassInfo& info) {
+  static RegistrationNode node{typeid(T), typeid(Component),
+                               [](ClassInfo& info) {
                                  Description<T> d(info);
                                  T::describe(d);
                                  d.finish();
@@ -61,15 +62,15 @@ std::string refusal() {
   return "";
 }
 
-#define REFUSED(words, ...)                                                                                            \
-  do {                                                                                                                 \
-    const std::string said = refusal<[](auto& d) {                                                                     \
-      using T = std::remove_reference_t<decltype(d)>;                                                                  \
-      using P = typename PanelOf<T>::Type;                                                                             \
-      static_cast<void>(sizeof(P));                                                                                    \
-      __VA_ARGS__;                                                                                                     \
-    }>();                                                                                                              \
-    EXPECT_NE(said.find(words), std::string::npos) << #__VA_ARGS__ << "\nsaid: " << said;                               \
+#define REFUSED(words, ...)                                                               \
+  do {                                                                                    \
+    const std::string said = refusal<[](auto& d) {                                        \
+      using T = std::remove_reference_t<decltype(d)>;                                     \
+      using P = typename PanelOf<T>::Type;                                                \
+      static_cast<void>(sizeof(P));                                                       \
+      __VA_ARGS__;                                                                        \
+    }>();                                                                                 \
+    EXPECT_NE(said.find(words), std::string::npos) << #__VA_ARGS__ << "\nsaid: " << said; \
   } while (false)
 
 template <class D>
@@ -123,18 +124,20 @@ TEST(PanelFacts, groups_have_members_and_a_name) {
 TEST(PanelFacts, conditions_name_what_can_be) {
   REFUSED("there is no member 'z'", d.template member<&P::x>("x", "1", "x", when("z", true)));
   REFUSED("the member itself", d.template member<&P::x>("x", "1", "x", when("x", 1)));
-  REFUSED("no choice 'third'",
-          d.template member<&P::mode>("mode", "", "mode", choices("first", "second")).template member<&P::x>("x", "1", "x", when("mode", "third")));
-  REFUSED("it names all",
-          d.template member<&P::mode>("mode", "", "mode", choices("first", "second")).template member<&P::x>("x", "1", "x", when("mode", "first", "second")));
-  REFUSED("always holds something",
-          d.template member<&P::mode>("mode", "", "mode", choices("first", "second")).template member<&P::x>("x", "1", "x", when("mode")));
-  REFUSED("never 20", d.template member<&P::y>("y", "1", "y", range(0, 10)).template member<&P::x>("x", "1", "x", when("y", 20)));
+  REFUSED("no choice 'third'", d.template member<&P::mode>("mode", "", "mode", choices("first", "second"))
+                                   .template member<&P::x>("x", "1", "x", when("mode", "third")));
+  REFUSED("it names all", d.template member<&P::mode>("mode", "", "mode", choices("first", "second"))
+                              .template member<&P::x>("x", "1", "x", when("mode", "first", "second")));
+  REFUSED("always holds something", d.template member<&P::mode>("mode", "", "mode", choices("first", "second"))
+                                        .template member<&P::x>("x", "1", "x", when("mode")));
+  REFUSED("never 20",
+          d.template member<&P::y>("y", "1", "y", range(0, 10)).template member<&P::x>("x", "1", "x", when("y", 20)));
   REFUSED("always holds something",
           d.template member<&P::y>("y", "1", "y", more_than(0)).template member<&P::x>("x", "1", "x", when("y")));
   REFUSED("not true or false", d.template member<&P::y>("y", "1", "y").template member<&P::x>("x", "1", "x", when("y", true)));
   REFUSED("no number", d.template member<&P::flag>("flag", "", "f").template member<&P::x>("x", "1", "x", unless("flag", 1)));
-  REFUSED("must be written", d.template member<&P::flag>("flag", "", "f").template member<&P::x>("x", "1", "x", required, when("flag")));
+  REFUSED("must be written",
+          d.template member<&P::flag>("flag", "", "f").template member<&P::x>("x", "1", "x", required, when("flag")));
 }
 
 class Lamp final : public Component {
@@ -185,8 +188,8 @@ TEST(PanelFacts, stand_in_the_class_and_are_told) {
   EXPECT_EQ(schema["color"]["x-when"], json["members"][4]["when"]);
   EXPECT_EQ(schema["names"]["items"]["enum"].dump(), R"(["a","b"])");
   const std::string text = class_text(info);
-  for (const char* words : {"usually 0.01 to 10", "Matters only when 'on' is true and 'file' is not given.", "'mode' is second.",
-                            "'opening' is 0 or 90.", "'edge' is not 0."})
+  for (const char* words : {"usually 0.01 to 10", "Matters only when 'on' is true and 'file' is not given.",
+                            "'mode' is second.", "'opening' is 0 or 90.", "'edge' is not 0."})
     EXPECT_NE(text.find(words), std::string::npos) << words << "\n" << text;
 }
 
@@ -266,7 +269,8 @@ TEST(PanelFacts, numbers_without_ends_have_a_slider) {
 TEST(PanelFacts, colours_say_what_they_are_read_as) {
   for (const ClassInfo* info : built_in())
     for (const Member& m : info->members)
-      if (m.owner == info && info->name != "ConstantMap" && (m.kind == Kind::color || (m.component_class == "ObjectMap" && !is_of(*info, "ObjectMap"))))
+      if (m.owner == info && info->name != "ConstantMap" &&
+          (m.kind == Kind::color || (m.component_class == "ObjectMap" && !is_of(*info, "ObjectMap"))))
         EXPECT_NE(m.meaning, Meaning::plain) << info->name << "." << m.name;
 }
 

@@ -9,9 +9,9 @@
 #include <optional>
 #include <set>
 
+#include "check/conform/fixtures/fixtures.h"
 #include "describe/guard.h"
 #include "draw.h"
-#include "fixtures.h"
 
 namespace etendue::conform {
 namespace {

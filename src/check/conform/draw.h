@@ -4,8 +4,8 @@
 #include <random>
 #include <string>
 
+#include "check/conform/fixtures/fixtures.h"
 #include "etendue/describe/registry.h"
-#include "fixtures.h"
 
 namespace etendue::conform {
 

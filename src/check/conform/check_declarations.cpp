@@ -1,7 +1,9 @@
-// What is said of when a member matters is true: where it does not, another value changes nothing, to the last bit.
+// What is declared of members is true: where one does not matter, another value changes nothing, to the last bit; and a colour
+// is asked for what it is said to be read as.
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -181,12 +183,68 @@ class ConditionTrial {
   const Member& member_;
 };
 
-void check_conditions(Trial& trial) {
-  for (const Member& m : trial.part().class_info().members)
-    if (!m.conditions.empty()) ConditionTrial(trial, m).check();
+/// One half at all wavelengths, and notes what it was asked as.
+class NotingColor final : public SpectralFunction {
+ public:
+  Spectrum evaluate(const Wavelengths&, ColorUse use) const override {
+    asked |= 1u << unsigned(use);
+    return Spectrum(value);
+  }
+  /// Before rendering: for checks and sums of all kinds.
+  float at(float, ColorUse) const override { return value; }
+  std::string expression() const override { return fmt::format("{}", value); }
+  bool varies() const override { return false; }
+
+  float value = 0.5f;
+  mutable std::atomic<unsigned> asked = 0;
+};
+
+/// As what a colour of a meaning may be asked: bits of ColorUse.
+unsigned uses(Meaning meaning) {
+  switch (meaning) {
+    case Meaning::plain: return ~0u;
+    case Meaning::number: return 0;
+    case Meaning::reflectance: return 1u << unsigned(ColorUse::reflectance);
+    case Meaning::radiance: return 1u << unsigned(ColorUse::radiance);
+    case Meaning::coefficient:
+    case Meaning::index: return 1u << unsigned(ColorUse::coefficient);
+  }
+  return 0;
 }
 
-const RegisterCheck<Component> registered(check_conditions);
+void check_meaning(Trial& trial, const Member& m) {
+  const auto probe = make<NotingColor>();
+  if (m.meaning == Meaning::index) probe->value = 1.5f;
+  const Ref<Component> part = copy(trial.part());
+  try {
+    if (m.kind == Kind::color) {
+      set(*part, m.name, Value(Color(probe)));
+    } else {
+      const Ref<Component> map = Registry::instance().create("ConstantMap");
+      set(*map, "value", Value(Color(probe)));
+      set(*part, m.name, Value(map));
+    }
+    behaviour(part, trial);
+  } catch (...) {
+    return;  // not every part takes every colour
+  }
+  trial.expect((probe->asked & ~uses(m.meaning)) == 0, "colours are asked for what they are said to be read as", [&] {
+    constexpr const char* names[] = {"reflectance", "radiance", "coefficient"};
+    std::string asked;
+    for (unsigned i = 0; i < 3; ++i)
+      if (probe->asked & (1u << i)) asked += std::string(asked.empty() ? "" : ", ") + names[i];
+    return fmt::format("'{}', said to be read as {}, is asked as {}", m.name, name(m.meaning), asked);
+  });
+}
+
+void check_declarations(Trial& trial) {
+  for (const Member& m : trial.part().class_info().members) {
+    if (!m.conditions.empty()) ConditionTrial(trial, m).check();
+    if (m.meaning != Meaning::plain && !m.list) check_meaning(trial, m);
+  }
+}
+
+const RegisterCheck<Component> registered(check_declarations);
 
 }  // namespace
 }  // namespace etendue::conform
