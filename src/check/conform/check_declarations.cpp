@@ -12,6 +12,7 @@
 #include "describe/guard.h"
 #include "draw.h"
 #include "etendue/language/language.h"
+#include "etendue/object_map.h"
 #include "etendue/render/job.h"
 
 namespace etendue::conform {
@@ -109,9 +110,9 @@ std::string behaviour(const Ref<Component>& part, const Trial& trial) {
   return put(*job, part) ? rendered(*job) : "";
 }
 
-/// What another member may be changed to so that a condition no longer holds.
+/// What another member may be left at or changed to so that a condition does not hold.
 std::vector<Value> candidates(Trial& trial, const ClassInfo& info, const Member& of) {
-  std::vector<Value> all;
+  std::vector<Value> all = {of.get(trial.part(), of)};
   if (of.list) all.emplace_back(Value::List());
   if (!of.list && of.kind == Kind::boolean) all.insert(all.end(), {Value(true), Value(false)});
   if (!of.list && (of.kind == Kind::number || of.kind == Kind::integer)) all.emplace_back(Number{0});

@@ -30,8 +30,8 @@ class WavelengthTrial {
 
   void check() {
     draw();
+    if (usable_) find_support();
     if (!usable_) return;
-    find_support();
     for (size_t lane = 0; lane < size_t(spectrum_size); ++lane) check_lane(lane);
     check_white();
   }
@@ -68,6 +68,12 @@ class WavelengthTrial {
     for (const Wavelengths& w : drawn_)
       for (int k = 0; k < spectrum_size; ++k) low = std::min(low, double(w[k])), high = std::max(high, double(w[k]));
     discrete_ = distinct.size() <= most;
+    constexpr double narrowest = 5;  // [nm]: in less, floats are too far apart to tell
+    if (distinct.size() > 1 && high - low < narrowest) {
+      usable_ = false;
+      trial.not_tried("wavelengths follow the density", fmt::format("they lie within {:.3g} nm", high - low));
+      return;
+    }
     if (!discrete_) {
       constexpr int cells = 96;
       for (int i = 0; i < cells; ++i)
