@@ -9,7 +9,7 @@ class RemapMap final : public ObjectMap {
  public:
   static void describe(Description<RemapMap>& d) {
     d.summary("A map of which one range of values is laid onto another, wavelength by wavelength.")
-        .member<&RemapMap::input>("input", "1", "the map", Meaning::number)
+        .member<&RemapMap::input>("input", "1", "the map")
         .member<&RemapMap::from>("from", "1", "two values of the map …")
         .member<&RemapMap::to>("to", "1", "… and what they become; others in proportion")
         .member<&RemapMap::clamped>("clamped", "", "whether values outside of `from` become the nearer end of `to`");
