@@ -44,7 +44,7 @@ ETENDUE = """Job {{
 def conductor(n, k, alpha, alpha_y=None, distribution="ggx"):
     ours = f"Conductor {{ ior: complex({n}, {k}), roughness: {alpha}, distribution: {distribution}, multiple_scattering: false"
     theirs = {"type": "roughconductor", "eta": n, "k": k, "alpha_u": alpha, "alpha_v": alpha_y or alpha, "distribution": distribution}
-    return (ours + (f", roughness_y: {alpha_y}" if alpha_y else "") + " }", theirs,
+    return (ours + (f", roughness_v: {alpha_y}" if alpha_y else "") + " }", theirs,
             {"correlated": (distribution, alpha, alpha_y or alpha)})
 
 

@@ -57,7 +57,7 @@ scene: {structure} {{ objects: [ {objects} ] }} }}"""
 
 def box(where):
     edge = where.size(4)
-    return f"Box {{ center: {where.at(0, 0, 0)}, size: [{edge}, {edge}, {edge}] m, {MATTE} }}"
+    return f"Box {{ centre: {where.at(0, 0, 0)}, size: [{edge}, {edge}, {edge}] m, {MATTE} }}"
 
 
 def mesh(where):
@@ -70,9 +70,9 @@ def furnished(where):
     s = where.size
     moved = "translate(%s) * scale(%.17g)" % (where.at(0, 0, 0), where.scale)
     return f"""{box(where)}
-Sphere {{ center: {where.at(0.4, 0.5, 1.4)}, radius: {s(0.3)} m, emission: DiffuseEmission {{ radiance: 10 }} }}
-Sphere {{ center: {where.at(-0.7, 1, -0.6)}, radius: {s(0.5)} m, shader: Dielectric {{}} }}
-Ellipsoid {{ center: {where.at(0.9, 1.2, -1)}, radii: [{s(0.5)}, {s(0.4)}, {s(0.3)}] m, {MATTE} }}
+Sphere {{ centre: {where.at(0.4, 0.5, 1.4)}, radius: {s(0.3)} m, emission: DiffuseEmission {{ radiance: 10 }} }}
+Sphere {{ centre: {where.at(-0.7, 1, -0.6)}, radius: {s(0.5)} m, shader: Dielectric {{}} }}
+Ellipsoid {{ centre: {where.at(0.9, 1.2, -1)}, radii: [{s(0.5)}, {s(0.4)}, {s(0.3)}] m, {MATTE} }}
 Cylinder {{ transform: {moved} * translate(0.2, 0.4, -1.8), radius: 0.3, height: 0.7, shader: Conductor {{}} }}"""
 
 

@@ -17,7 +17,7 @@ struct LensSample {
   Vector3 direction;     ///< unit, from the scene point to the lens
   float distance = 0;    ///< [m]
   float density = 0;     ///< [1/sr] at the scene point; a pinhole: distance^2 / cos (a delta in area, converted)
-  float importance = 0;  ///< W_e [1/(m^2 sr)] of the connection, normalised as `Camera::importance`
+  float importance = 0;  ///< W_e [1/(m^2 sr)] of the connection, normalized as `Camera::importance`
   Point2 film;           ///< where on the film light from the point arrives
 };
 

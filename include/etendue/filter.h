@@ -12,7 +12,7 @@ class Filter : public Component {
   using Parent = Component;
   static void describe(Description<Filter>&);
 
-  /// Weight at an offset [pixels]; zero beyond the radius. Need not be normalised: the film divides by the sum.
+  /// Weight at an offset [pixels]; zero beyond the radius. Need not be normalized: the film divides by the sum.
   virtual float weight(float x, float y) const = 0;
   /// Half the width of the support [pixels].
   virtual float radius() const = 0;

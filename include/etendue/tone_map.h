@@ -17,7 +17,6 @@ class ToneMap : public Component {
   std::string color_space = "srgb";  ///< primaries and white of the result: a name known to the colour library
   std::string transfer = "srgb";     ///< encoding of the result: "srgb", "linear", "rec709", "gamma2.2", …
 
-  void prepare() override;
   /// From X Y Z (further channels are dropped) to R G B: the operator, then the RGB space, then clipping to [0, 1] when
   /// `clip`, then the transfer function.
   Image apply(const Image& xyz) const;

@@ -19,6 +19,8 @@ std::vector<SceneWarning> scene_warnings(const Job&);
 /// The parts of it: what of its objects has no effect, or is not as its material needs it; and what the camera sees.
 void warn_of_objects(const Job&, std::vector<SceneWarning>&);
 void warn_of_view(const Job&, std::vector<SceneWarning>&);
+/// Of a component and all it refers to: members that were written, differ from the default, and do not matter.
+void warn_of_members(const Component&, std::vector<SceneWarning>&);
 
 /// Of the picture so far: an output for display that is nearly all black or nearly all white, and by how much.
 std::vector<SceneWarning> picture_warnings(const Job&);

@@ -95,9 +95,11 @@ std::int64_t to_integer(const Value& v, const Member& m, std::int64_t low, std::
   return std::int64_t(x);
 }
 
-std::string to_string(const Value& v) {
-  if (const auto* s = v.as<std::string>()) return *s;
-  mismatch("a string", v);
+std::string to_string(const Value& v, const Member& m) {
+  const auto* s = v.as<std::string>();
+  if (!s) mismatch("a string", v);
+  if (!m.choices.empty()) static_cast<void>(to_choice(v, m));
+  return *s;
 }
 
 FilePath to_file(const Value& v) {

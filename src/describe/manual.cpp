@@ -53,6 +53,32 @@ std::string range_text(const Member& member) {
   return member.range ? member.range->text() : "";
 }
 
+/// The ends of its slider; "" without.
+std::string slider_text(const Member& member) {
+  return member.soft ? fmt::format("usually {:.6g} to {:.6g}", member.soft->low, member.soft->high) : "";
+}
+
+std::string meaning_text(const Member& member) {
+  switch (member.meaning) {
+    case Meaning::plain: break;
+    case Meaning::number: return " (a number)";
+    case Meaning::reflectance: return " (a reflectance)";
+    case Meaning::radiance: return " (of light)";
+    case Meaning::coefficient: return " (a coefficient)";
+    case Meaning::index: return " (an index of refraction)";
+  }
+  return {};
+}
+
+/// When it matters; "" for always.
+std::string condition_text(const ClassInfo& info, const Member& member) {
+  std::vector<std::string> parts;
+  for (const Condition& condition : member.conditions) parts.push_back(condition.text(info));
+  return parts.empty() ? "" : fmt::format("Matters only when {}.", fmt::join(parts, " and "));
+}
+
+std::string with_blank(const std::string& text) { return text.empty() ? text : " " + text; }
+
 /// Empty for a class that cannot be made: its children choose their own.
 std::string default_text(const ClassInfo& info, const Member& member) {
   if (member.required) return "must be given";
@@ -90,6 +116,31 @@ std::string type_link(const Member& member) {
   return fmt::format("{}[{}]({}.md)", member.list ? "list of " : "", member.component_class, member.component_class);
 }
 
+std::string member_row(const ClassInfo& info, const Member& member) {
+  std::string range = range_text(member);
+  if (member.soft) range += (range.empty() ? "" : "; ") + slider_text(member);
+  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", code(member.name), type_link(member) + meaning_text(member),
+                     unit_text(member), member.required ? "must be given" : cell(code(default_text(info, member))), cell(range),
+                     cell(sentence(member.text) + with_blank(condition_text(info, member))), name(member.effect));
+}
+
+/// A table for each group of members, in the order in which they were first described; first those of none.
+std::string members_tables(const ClassInfo& info) {
+  std::vector<std::string> groups;
+  if (std::ranges::any_of(info.members, [](const Member& m) { return m.group.empty(); })) groups.emplace_back();
+  for (const Member& member : info.members)
+    if (std::ranges::find(groups, member.group) == groups.end()) groups.push_back(member.group);
+  std::string text;
+  for (const std::string& group : groups) {
+    if (!text.empty()) text += "\n";
+    if (!group.empty()) text += "### " + group + "\n\n";
+    text += "| member | type | unit | default | range | what it is | an edit forces |\n|---|---|---|---|---|---|---|\n";
+    for (const Member& member : info.members)
+      if (member.group == group) text += member_row(info, member);
+  }
+  return text;
+}
+
 std::string page_text(const ClassInfo& info, const std::string& more) {
   std::string text = "# " + info.name + "\n\n" + sentence(info.summary) + "\n";
   if (!more.empty()) text += "\n" + more + "\n";
@@ -108,11 +159,7 @@ std::string page_text(const ClassInfo& info, const std::string& more) {
   if (info.members.empty()) {
     text += "None.\n";
   } else {
-    text += "| member | type | unit | default | range | what it is | an edit forces |\n|---|---|---|---|---|---|---|\n";
-    for (const Member& member : info.members)
-      text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", code(member.name), type_link(member), unit_text(member),
-                          member.required ? "must be given" : cell(code(default_text(info, member))), cell(range_text(member)),
-                          cell(sentence(member.text)), name(member.effect));
+    text += members_tables(info);
   }
   const auto made = makeable(info);
   if (std::ranges::any_of(made, [&](const ClassInfo* c) { return c != &info; })) {
@@ -138,13 +185,14 @@ std::string class_text(const ClassInfo& info) {
   size_t column = 0;
   for (const Member& member : info.members) column = std::max(column, width_of(member.name) + 4);
   for (const Member& member : info.members) {
-    std::string facts = type_text(member);
+    std::string facts = type_text(member) + meaning_text(member);
     if (!unit_text(member).empty()) facts += " [" + member.unit + "]";
     if (!range_text(member).empty()) facts += ", " + range_text(member);
+    if (member.soft) facts += ", " + slider_text(member);
     if (const std::string text_of_default = default_text(info, member); !text_of_default.empty())
       facts += (member.required ? "; " : "; default ") + text_of_default;
     text += padded("  " + member.name, column) + wrapped(facts, column) + "\n";
-    text += std::string(column, ' ') + wrapped(sentence(member.text), column) + "\n";
+    text += std::string(column, ' ') + wrapped(sentence(member.text) + with_blank(condition_text(info, member)), column) + "\n";
   }
 
   const auto below = makeable(info);

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "etendue/describe/description.h"
+#include "faults.h"
 #include "files/input_files.h"
 #include "guard.h"
 #include "plugin.h"
@@ -48,6 +49,11 @@ std::string_view name(Kind k) {
   return names[size_t(k)];
 }
 
+std::string_view name(Meaning m) {
+  constexpr std::array<std::string_view, 6> names = {"plain", "number", "reflectance", "radiance", "coefficient", "index"};
+  return names[size_t(m)];
+}
+
 std::string Range::text() const {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
   if (has_low && has_high)
@@ -85,26 +91,6 @@ Registry& Registry::instance() {
   static Registry* registry = new Registry;  // never destroyed: components of plugins may outlive main
   return *registry;
 }
-
-namespace {
-
-/// What is wrong with a description; empty when nothing is.
-std::string fault(const ClassInfo& info) {
-  if (info.summary.empty()) return "has no summary";
-  for (size_t i = 0; i < info.members.size(); ++i) {
-    const Member& m = info.members[i];
-    if (m.text.empty()) return "member '" + m.name + "' is not documented";
-    const bool number = m.kind == Kind::number || m.kind == Kind::vector2 || m.kind == Kind::vector3 || m.kind == Kind::point3;
-    if (number && m.unit.empty()) return "member '" + m.name + "' has no unit";
-    if (m.kind == Kind::choice && m.choices.empty()) return "member '" + m.name + "' does not name its choices";
-    for (size_t k = 0; k < i; ++k)
-      if (info.members[k].name == m.name) return "member '" + m.name + "' is described twice";
-  }
-  if (!info.literal.empty() && !info.find(info.literal)) return "has no member '" + info.literal + "' to stand for it";
-  return {};
-}
-
-}  // namespace
 
 void Registry::adopt() {
   if (!pending) return;

@@ -11,6 +11,28 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// A condition: the member, and what it is or is not, or whether it is given at all.
+Json condition_json(const Condition& condition) {
+  Json json;
+  json["member"] = condition.member;
+  if (condition.values.empty()) {
+    json["given"] = !condition.unless;
+    return json;
+  }
+  Json& values = json[condition.unless ? "is_not" : "is"] = Json::array();
+  for (const Condition::Wanted& wanted : condition.values) std::visit([&](const auto& x) { values.push_back(x); }, wanted);
+  return json;
+}
+
+/// What a panel needs to know of a member, beside its type and range; `prefix` is for keywords that are not the schema's own.
+void add_panel_facts(Json& json, const Member& member, const std::string& prefix) {
+  if (!member.group.empty()) json[prefix + "group"] = member.group;
+  if (member.meaning != Meaning::plain) json[prefix + "meaning"] = std::string(name(member.meaning));
+  if (member.soft) json[prefix + "slider"] = {member.soft->low, member.soft->high};
+  if (member.logarithmic) json[prefix + "logarithmic"] = true;
+  for (const Condition& condition : member.conditions) json[prefix + "when"].push_back(condition_json(condition));
+}
+
 Json member_json(const Member& member) {
   Json json;
   json["name"] = member.name;
@@ -25,6 +47,7 @@ Json member_json(const Member& member) {
     if (std::isfinite(member.range->high)) json["range"]["high"] = member.range->high;
   }
   if (!member.choices.empty()) json["choices"] = member.choices;
+  add_panel_facts(json, member, "");
   json["effect"] = std::string(name(member.effect));
   if (member.owner) json["declared_by"] = member.owner->name;
   json["text"] = member.text;
@@ -137,6 +160,7 @@ Json member_schema(const Member& member) {
   }
   json["description"] = member.text;
   if (!unit_text(member).empty()) json["x-unit"] = member.unit;
+  add_panel_facts(json, member, "x-");
   json["x-effect"] = std::string(name(member.effect));
   if (!member.required) json["default"] = value_json(member.default_value, member);
   return json;
@@ -238,7 +262,10 @@ std::string json_schema() {
       "-o "
       "FILE.json writes. The root is the Job. Numbers without a unit are in the unit of \"x-unit\". What a schema cannot say "
       "is "
-      "checked when the scene is read: that files are there, names known, and expressions right.";
+      "checked when the scene is read: that files are there, names known, and expressions right. For panels: members of one "
+      "\"x-group\" stand together; \"x-slider\" has the ends of a slider, in the member's unit, by ratios if "
+      "\"x-logarithmic\"; \"x-meaning\" is what a colour or map is read as; and a member matters only when all of \"x-when\" "
+      "hold.";
   schema.update(root_schema());
   schema["$defs"] = std::move(definitions);
   return schema.dump(2);

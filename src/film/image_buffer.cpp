@@ -29,7 +29,8 @@ void ImageBuffer::describe(Description<ImageBuffer>& d) {
                                   "excluded]; empty: the whole picture")
       .member<&ImageBuffer::layers>("layers", "",
                                     "further channels: of albedo, normal, depth, object (what camera paths meet first), "
-                                    "variance (of the mean of Y), samples (per pixel)")
+                                    "variance (of the mean of Y), samples (per pixel)",
+                                    known_layers())
       .member<&ImageBuffer::path_lengths>("path_lengths", "1",
                                           "further channels length_1.X, … by the number of segments of the paths that "
                                           "brought the light; the last holds all longer ones too",

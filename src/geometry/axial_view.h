@@ -26,7 +26,7 @@ struct PiecewiseLinear {
     for (int k = 0; k < pieces; ++k) sum += nodes[k] + nodes[k + 1];
     return sum / (2 * pieces);
   }
-  /// Not normalised.
+  /// Not normalized.
   double at(double x) const {
     x = std::clamp(x, 0.0, 1.0) * pieces;
     const int k = std::min(int(x), pieces - 1);

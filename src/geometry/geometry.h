@@ -41,7 +41,7 @@ inline Bounds3 endless_box() {
   return box;
 }
 
-/// The ray in the object's coordinates. The direction is not normalised, so that t stays the same.
+/// The ray in the object's coordinates. The direction is not normalized, so that t stays the same.
 inline Ray ray_into(const Transform& transform, const Ray& ray) {
   Ray local = ray;
   local.origin = transform.back(ray.origin);
@@ -49,7 +49,7 @@ inline Ray ray_into(const Transform& transform, const Ray& ray) {
   return local;
 }
 
-/// The object's normal for a normal outside (by the transpose of the matrix), not normalised.
+/// The object's normal for a normal outside (by the transpose of the matrix), not normalized.
 inline Normal3 normal_into(const Transform& transform, const Normal3& n) {
   const auto& m = transform.matrix();
   return {m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z};

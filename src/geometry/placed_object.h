@@ -19,7 +19,7 @@ struct OwnPoint {
 
 /// A ray in double: solvers work in these, for a float's rounding at a distance is that of the whole scene.
 struct DoubleRay {
-  double origin[3], direction[3];  ///< the direction is not normalised
+  double origin[3], direction[3];  ///< the direction is not normalized
   double maximum;
   explicit DoubleRay(const Ray& r)
       : origin{double(r.origin.x), double(r.origin.y), double(r.origin.z)},

@@ -43,7 +43,7 @@ struct ShearedRay {
   }
 };
 
-/// Weights of a triangle's corners where a ray goes through its plane, not normalised, and their sum. Inside, no two of the
+/// Weights of a triangle's corners where a ray goes through its plane, not normalized, and their sum. Inside, no two of the
 /// weights differ in sign; all are zero for a triangle seen edge on.
 template <class Number>
 struct CornerWeights {

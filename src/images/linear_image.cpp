@@ -24,12 +24,10 @@ auto reading(const std::string& path, Use use) {
 
 }  // namespace
 
-void check_transfer(const std::string& transfer) {
-  if (transfer == automatic_transfer) return;
-  std::vector<std::string> known = transfer_names();
-  known.push_back(automatic_transfer);
-  if (std::find(known.begin(), known.end(), transfer) == known.end())
-    throw Error("unknown transfer function '" + transfer + "'" + suggestion(transfer, known));
+std::vector<std::string> image_transfer_names() {
+  std::vector<std::string> names = transfer_names();
+  names.insert(names.begin(), automatic_transfer);
+  return names;
 }
 
 void check_channel(const std::string& path, const std::string& channel) {

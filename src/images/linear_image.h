@@ -9,8 +9,8 @@ namespace etendue {
 
 /// The transfer function a file's numbers are in, when `transfer` is "auto": "srgb" for integers, "linear" for floats.
 inline constexpr const char* automatic_transfer = "auto";
-/// Throws Error with a suggestion for an unknown name.
-void check_transfer(const std::string& transfer);
+/// "auto" and all transfer functions there are: what may be said of an image.
+std::vector<std::string> image_transfer_names();
 
 /// Throws Error for a file that has no such channel, saying which it has. "": all; else the name of a channel ("A", "depth.Z")
 /// or of a layer ("diffuse" for diffuse.R, diffuse.G and diffuse.B). A file that cannot be read at all passes.

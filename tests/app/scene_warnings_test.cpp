@@ -142,7 +142,7 @@ TEST(SceneWarnings, WhatTheCameraSees) {
   expect("Sphere { " + matt + " }\n" + sky, "sees nothing", {"looks from", "'to'"}, "[0, 0, 9]",
          "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }");
   EXPECT_TRUE(said(sky, "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }").empty());
-  EXPECT_TRUE(said("Sphere { center: [0, 0, 1000], radius: 0.01, " + matt + " }\n" + sky,
+  EXPECT_TRUE(said("Sphere { centre: [0, 0, 1000], radius: 0.01, " + matt + " }\n" + sky,
                    "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }")
                   .empty());
 }
@@ -159,7 +159,7 @@ TEST(SceneWarnings, ACameraInTheDark) {
 
 TEST(SceneWarnings, AFewOfAKindAndHowManyMore) {
   std::string objects;
-  for (int i = 0; i < 9; ++i) objects += fmt::format("Sphere {{ center: [{}, 0, 0], radius: 0.1 }}\n", 0.2 * i);
+  for (int i = 0; i < 9; ++i) objects += fmt::format("Sphere {{ centre: [{}, 0, 0], radius: 0.1 }}\n", 0.2 * i);
   const std::vector<SceneWarning> list = said(objects + sky);
   EXPECT_EQ(list.size(), 9u);
   testing::internal::CaptureStderr();
@@ -168,6 +168,34 @@ TEST(SceneWarnings, AFewOfAKindAndHowManyMore) {
   EXPECT_EQ(std::count(shown.begin(), shown.end(), '\n'), 3) << shown;
   EXPECT_NE(shown.find("scene.etd:6:1: warning: "), std::string::npos) << shown;
   EXPECT_NE(shown.find("(and 6 more like this)"), std::string::npos) << shown;
+}
+
+TEST(SceneWarnings, MembersThatDoNotMatter) {
+  const std::string kind = "does not matter";
+  expect("Sphere { shader: HairShader {\n color: 0.1 } }\n" + sky, kind, {"HairShader.color", "'pigment' is color"},
+         "color: 0.1");
+  expect("Sphere { shader: Conductor { rotation: 0.2 } }\n" + sky, kind, {"Conductor.rotation", "'roughness_v' is given"},
+         "rotation: 0.2");
+  expect("Sphere { shader: Principled { coat_roughness: 0.4 } }\n" + sky, kind, {"'coat_weight' is not 0"}, "coat_roughness");
+  expect("Environment { emission: SkyEmission { time: \"2024-06-21T12:00:00Z\", sun_direction: [1, 2, 0] } }\n", kind,
+         {"'time' is not given"}, "sun_direction");
+  expect("Sphere { emission: DiffuseEmission { distance: 2 } }\n", kind, {"'illuminance' is not 0"}, "distance: 2");
+  // Within maps of maps, once for a part that is used twice.
+  expect("Sphere { shader: Lambertian { color: AddMap { first: RampMap { input: 0.5 } } } }\n" + sky, kind,
+         {"RampMap.input", "'along' is input"}, "input: 0.5");
+  expect("Sphere {" + matt + "}\n" + sky, kind, {"'lens_radius' is not 0"}, "focus_distance",
+         "PerspectiveCamera { from: [0, 0, 5], focus_distance: 3 }");
+}
+
+TEST(SceneWarnings, MembersThatMatterOrAreAsByDefault) {
+  for (const char* object :
+       {"Sphere { shader: HairShader { pigment: color, color: 0.1 } }\n",
+        "Sphere { shader: Conductor { rotation: 0.2, roughness_v: 0.4 } }\n", "Sphere { shader: Conductor { rotation: 0 } }\n",
+        "Sphere { shader: Principled { coat_weight: CheckerMap { first: 0, second: 0.1 }, coat_roughness: 0.4 } }\n",
+        "Sphere { shader: Principled { coat_roughness: 0 } }\n",
+        "Sphere { emission: DiffuseEmission { illuminance: 10, distance: 2 } }\n",
+        "Sphere { emission: DiffuseEmission { power: 10, distance: 1 } }\n"})
+    for (const SceneWarning& w : said(object + sky)) ADD_FAILURE() << object << w.text;
 }
 
 TEST(SceneWarnings, ReflectancesAboveOne) {

@@ -149,8 +149,32 @@ INSTANTIATE_TEST_SUITE_P(
                       Fault{"SolarizingToneMap", "what is brighter is not shown darker"},
                       Fault{"HalfExposedToneMap", "an exposure of one stop less halves what goes in"},
                       Fault{"PlaceToneMap", "equal pixels are shown equal by a map that is not local"},
-                      Fault{"UnclippedToneMap", "what is shown of a right picture is finite, and in [0, 1] if the map clips"}),
-    [](const auto& each) { return std::string(each.param.class_name); });
+                      Fault{"UnclippedToneMap", "what is shown of a right picture is finite, and in [0, 1] if the map clips"},
+                      Fault{"AlwaysPaintedShader", "what does not matter changes nothing"},
+                      Fault{"MisreadShader", "colours are asked for what they are said to be read as"},
+                      Fault{"StandingOutput", "what is read back is what was written"},
+                      Fault{"HastyOutput", "the file is written beside and put in place when it is whole"},
+                      Fault{"LitteringOutput", "nothing is left beside the file"},
+                      Fault{"SilentOutput", "an Error names the path that cannot be written"},
+                      Fault{"UltravioletWavelengths", "wavelengths lie in [360, 830] nm"},
+                      Fault{"OverstatedWavelengths", "densities integrate to 1"},
+                      Fault{"OverstatedWavelengths", "the mean colour of a constant spectrum is its colour"},
+                      Fault{"ReddishWavelengths", "wavelengths follow the density"},
+                      Fault{"ThrowingImporter", "a file that cannot be read is an Error, and nothing else is thrown"},
+                      Fault{"NamelessImporter", "an Error names the file"},
+                      Fault{"FickleImporter", "the same file gives the same components, or the same error"},
+                      Fault{"LooseKnob", "a knob turns back as far as it turned"}),
+    [](const auto& each) { return std::string(each.param.class_name) + "_" + std::to_string(each.index); });
+
+TEST(Conform, EveryInterfaceHasAWayToBeTried) {
+  Registry::instance().load_plugin(ETENDUE_CONFORM_FAULTS_LIBRARY);
+  const std::vector<std::string> checked = checked_interfaces();
+  const auto has = [&](const std::string& name) { return std::ranges::find(checked, name) != checked.end(); };
+  for (const char* name :
+       {"Shader", "VolumeShader", "Camera", "Filter", "Sampler", "EmissionShader", "ObjectMap", "SceneObject", "LightSampler",
+        "Renderer", "ToneMap", "Output", "WavelengthSampler", "Importer", "Knob"})
+    EXPECT_TRUE(has(name)) << name;
+}
 
 TEST(Conform, OutcomesDependOnTheSeedAlone) {
   const auto text = [](int threads, std::uint64_t seed) {

@@ -173,5 +173,39 @@ class GrazingShader final : public MattShader<GrazingScatter> {
 };
 const Register<GrazingShader> grazing;
 
+// ---- a member that matters although it is said not to -------------------------------------------------------------------
+class AlwaysPaintedShader final : public Shader {
+ public:
+  static void describe(Description<AlwaysPaintedShader>& d) {
+    d.summary("Has its paint even when it says that there is none.")
+        .member<&AlwaysPaintedShader::painted>("painted", "", "whether there is paint")
+        .member<&AlwaysPaintedShader::paint>("paint", "1", "fraction of light it reflects", range(0.2, 1), when("painted"));
+  }
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths&, Arena& arena) const override {
+    return arena.make<Matt>(p, paint);
+  }
+  Lobes possible_lobes() const override { return diffuse_reflection; }
+
+  bool painted = false;
+  float paint = 0.7f;
+};
+const Register<AlwaysPaintedShader> always_painted;
+
+// ---- a reflectance that is asked for as something else ------------------------------------------------------------------
+class MisreadShader final : public Shader {
+ public:
+  static void describe(Description<MisreadShader>& d) {
+    d.summary("Asks for its reflectance as a coefficient.")
+        .member<&MisreadShader::color>("color", "1", "fraction of light it reflects", Meaning::reflectance);
+  }
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    return arena.make<Matt>(p, clamp(color->color(p, w, ColorUse::coefficient)[0], 0, 0.9f));
+  }
+  Lobes possible_lobes() const override { return diffuse_reflection; }
+
+  Ref<ObjectMap> color = constant(0.5f);
+};
+const Register<MisreadShader> misread;
+
 }  // namespace
 }  // namespace etendue

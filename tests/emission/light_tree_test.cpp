@@ -25,7 +25,7 @@ std::string lamps(int count) {
                         : i % 4 == 1 ? "back"
                                      : "front");
   }
-  return text + R"(Sphere { center: [2, 2, 1], radius: 0.2, emission: DiffuseEmission { radiance: 3 } }
+  return text + R"(Sphere { centre: [2, 2, 1], radius: 0.2, emission: DiffuseEmission { radiance: 3 } }
     Point { position: [-1, 2, 2], emission: DiffuseEmission { radiance: 0.5 } }
     Disc { radius: 0.5, transform: translate([0, -2, 2]), emission: DiffuseEmission { radiance: 2, sides: back } }
     Environment { emission: DiffuseEmission { radiance: 0.05, sides: both } }

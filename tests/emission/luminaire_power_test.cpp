@@ -26,7 +26,7 @@ const Luminaire luminaires[] = {
     {"Torus", "Torus { radius: 0.6 m, tube_radius: 0.25 m, transform: rotate(30, \"x\")", false},
     {"BezierPatches", "BezierPatches { transform: scale(1.2, 0.7, 0.5)", false},
     {"Csg",
-     "Difference { operands: [Box {}, Sphere { center: [0.5, -0.5, 0.5] m, radius: 0.45 m }], transform: rotate(20, \"z\")",
+     "Difference { operands: [Box {}, Sphere { centre: [0.5, -0.5, 0.5] m, radius: 0.45 m }], transform: rotate(20, \"z\")",
      false},
     {"Metaballs", "Metaballs { transform: scale(0.6)", false},
     {"DisplacedMesh",

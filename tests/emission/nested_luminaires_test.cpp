@@ -22,7 +22,7 @@ Ref<Scene> scene_of(const std::string& objects, const std::string& structure = "
   return test::prepared_as<Scene>(structure + " { objects: [ " + objects + " ] }");
 }
 
-const char* const ball = "Sphere { center: [0.3, 0, 0] m, radius: 0.5 m, emission: DiffuseEmission { radiance: 1 } }";
+const char* const ball = "Sphere { centre: [0.3, 0, 0] m, radius: 0.5 m, emission: DiffuseEmission { radiance: 1 } }";
 const char* const plate =
     "Rectangle { corner: [-0.5, -0.3, 0.2] m, edge_u: [1, 0, 0] m, edge_v: [0, 0.7, 0.2] m, "
     "emission: DiffuseEmission { radiance: 1, sides: both } }";
@@ -129,7 +129,7 @@ TEST(NestedLuminaires, EachPlaceHasItsOwn) {
       Instance { scene: lamps, transform: translate(6, 0, 0), shader: Lambertian {} } ] }
     Job { camera: PerspectiveCamera {}, scene: EmbreeScene { objects: [
       Instance { scene: row }, Instance { scene: row, transform: translate(0, 3, 0), shader: Lambertian { color: 0.2 } },
-      Instance { scene: row, transform: translate(0, 6, 0) }, Sphere { center: [0, 0, 9], radius: 0.1, emission: DiffuseEmission {} } ] } })";
+      Instance { scene: row, transform: translate(0, 6, 0) }, Sphere { centre: [0, 0, 9], radius: 0.1, emission: DiffuseEmission {} } ] } })";
   const Ref<Job> job = load_job_text(three, "test.etd");
   prepare_tree(*job);
   const Scene& scene = *job->scene;

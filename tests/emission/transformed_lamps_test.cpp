@@ -23,7 +23,7 @@ const std::vector<Place> places = {{"as it is", "scale(1)"},
                                    {"mirrored", "translate(0.1, 0, 0) * rotate(25, \"x\") * scale(-0.9, 1.3, 0.7)"},
                                    {"sheared", "matrix(1, 0.6, 0, 0, 0, 1.2, 0.4, 0, -0.3, 0, 0.8, 0)"}};
 
-const std::vector<const char*> shapes = {"Sphere { radius: 0.8, center: [0.1, 0.2, 0]",
+const std::vector<const char*> shapes = {"Sphere { radius: 0.8, centre: [0.1, 0.2, 0]",
                                          "Disc { radius: 0.9",
                                          "Annulus { radius: 1, inner_radius: 0.4, sweep: 250",
                                          "Cone { radius: 0.9, top_radius: 0.3, height: 1.1",

@@ -21,8 +21,8 @@ Ref<Job> room(const std::string& renderer, const Ref<Filter>& filter) {
         scene: BruteForceScene { objects: [
           Rectangle { corner: [-2, -1, -2] m, edge_u: [0, 0, 4] m, edge_v: [4, 0, 0] m,
                       shader: Lambertian { color: CheckerMap { repeat: [5, 5, 5] } } }
-          Sphere { center: [-0.7, -0.4, 0] m, radius: 0.6 m, shader: Dielectric { ior: 1.5 } }
-          Sphere { center: [0.8, -0.4, 0.2] m, radius: 0.6 m, shader: PhongShader { color: 0.3, specular: 0.5, exponent: 40 } }
+          Sphere { centre: [-0.7, -0.4, 0] m, radius: 0.6 m, shader: Dielectric { ior: 1.5 } }
+          Sphere { centre: [0.8, -0.4, 0.2] m, radius: 0.6 m, shader: PhongShader { color: 0.3, specular: 0.5, exponent: 40 } }
           Rectangle { corner: [-0.5, 1.5, -0.5] m, edge_u: [1, 0, 0] m, edge_v: [0, 0, 1] m, shader: Lambertian { color: 0.5 }
                       emission: DiffuseEmission { radiance: 4, sides: both } }
           Point { transform: translate(0, 1 m, -2 m), emission: DiffuseEmission { radiance: 3 } }

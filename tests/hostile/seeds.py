@@ -25,7 +25,7 @@ def scene(objects, extra=""):
     return (
         f"{extra}Job {{ camera: PerspectiveCamera {{ from: [0, 0, 5], to: [0, 0, 0] }}\n"
         " image: ImageBuffer { width: 4, height: 4 }, renderer: PathTracer { samples: 1, max_depth: 3 }\n"
-        f" scene: BruteForceScene {{ objects: [ {objects}, Sphere {{ center: [0, 3, 3], emission: DiffuseEmission {{}} }} ] }} }}\n"
+        f" scene: BruteForceScene {{ objects: [ {objects}, Sphere {{ centre: [0, 3, 3], emission: DiffuseEmission {{}} }} ] }} }}\n"
     ).encode()
 
 

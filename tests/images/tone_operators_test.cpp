@@ -385,7 +385,7 @@ Job {
     image: ImageBuffer { width: 24, height: 24 }
     scene: BruteForceScene { objects: [
         Sphere { shader: Lambertian { color: 0.5 } }
-        Sphere { center: [0, 5, -3] m, emission: DiffuseEmission { radiance: 2e-5 } }
+        Sphere { centre: [0, 5, -3] m, emission: DiffuseEmission { radiance: 2e-5 } }
     ] }
     outputs: [ PngOutput {}, TgaOutput {}, ExrOutput {}, NpyOutput {}, HdrOutput {} ]
 })",

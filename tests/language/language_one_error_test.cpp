@@ -9,7 +9,7 @@ namespace etendue::language_test {
 namespace {
 
 constexpr const char* ball =
-    R"(glass_ball = Sphere { center: [0, 0.5, 0] m, radius: 50 cm, shader: Dielectric { ior: glass("N-BK7") } }
+    R"(glass_ball = Sphere { centre: [0, 0.5, 0] m, radius: 50 cm, shader: Dielectric { ior: glass("N-BK7") } }
 param samples = 2 * (64 + 64)
 
 Job {
@@ -19,7 +19,7 @@ Job {
     scene:    BvhScene { objects: [
         glass_ball
         Disc { radius: 5 m, transform: rotate(-90, "x"), shader: Lambertian { color: srgb("#c08050") } }
-        Sphere { center: [2, 4, 1] m, radius: 0.5 m, emission: DiffuseEmission { radiance: blackbody(3000 K), power: 6 kW } }
+        Sphere { centre: [2, 4, 1] m, radius: 0.5 m, emission: DiffuseEmission { radiance: blackbody(3000 K), power: 6 kW } }
         Environment { emission: DiffuseEmission { radiance: 0.1 * illuminant("D65") } }
     ] }
     tone_map: SchlickToneMap {}

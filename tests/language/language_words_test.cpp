@@ -107,6 +107,10 @@ TEST(Words, OfMembers) {
   EXPECT_EQ(said("Sphere { toWorld: 1 }"), " Sphere has no member 'toWorld' (Mitsuba's word; here it is 'transform')");
   EXPECT_EQ(said("Sphere { to_world: 1 }"), " Sphere has no member 'to_world' (Mitsuba's word; here it is 'transform')");
   EXPECT_EQ(said("Sphere { radus: 1 }"), " Sphere has no member 'radus' (did you mean 'radius'?)");
+  // Names that were others once.
+  EXPECT_EQ(said("Sphere { center: [0, 0, 0] }"), " Sphere has no member 'center' (here it is 'centre')");
+  EXPECT_EQ(said("Metaballs { centers: [[0, 0, 0]] }"), " Metaballs has no member 'centers' (here it is 'centres')");
+  EXPECT_EQ(said("Conductor { roughness_y: 0.1 }"), " Conductor has no member 'roughness_y' (here it is 'roughness_v')");
   EXPECT_EQ(said("PathTracer { spp: 1 }"), " PathTracer has no member 'spp' (here it is 'samples')");
   EXPECT_EQ(said("PathTracer { maxDepth: 1 }"), " PathTracer has no member 'maxDepth' (did you mean 'max_depth'?)");
   EXPECT_EQ(said("PathTracer { rr_depth: 1 }"),

@@ -61,7 +61,7 @@ TEST(Csg, BallsHaveTheVolumesAndAreasOfTheirLens) {
                         Case{"Difference", ball - lens, 4 * M_PI}}) {
     SCOPED_TRACE(c.name);
     const auto object =
-        solid(c.name + " { operands: [ Sphere { center: [-0.6, 0, 0] m }, Sphere { center: [0.6, 0, 0] m } ] }");
+        solid(c.name + " { operands: [ Sphere { centre: [-0.6, 0, 0] m }, Sphere { centre: [0.6, 0, 0] m } ] }");
     const Mean found = volume(*object, 1.7, 1);
     EXPECT_NEAR(found.value(), c.volume, 5 * found.error());
     EXPECT_NEAR(double(object->area(0)), c.area, 2e-3 * c.area);
@@ -97,8 +97,8 @@ TEST(Csg, ADrilledBoxHasWallsThatFaceTheHole) {
 // rounding decides which of two faces in one place is nearer.
 TEST(Csg, CoincidentFacesLeaveNoGapsAndStopNoRays) {
   const std::string place = "transform: translate(300, -200, 100) * rotate(33, [1, 2, 3])";
-  const auto object = solid("Union { operands: [ Box { center: [-0.5, 0, 0] m, " + place + " }, Box { center: [0.7, 0, 0] m, " +
-                            "size: [1.4, 1, 1] m, " + place + " }, Box { center: [0.3, 0, 0] m, size: [0.5, 1, 1] m, " + place +
+  const auto object = solid("Union { operands: [ Box { centre: [-0.5, 0, 0] m, " + place + " }, Box { centre: [0.7, 0, 0] m, " +
+                            "size: [1.4, 1, 1] m, " + place + " }, Box { centre: [0.3, 0, 0] m, size: [0.5, 1, 1] m, " + place +
                             " * rotate(90, \"x\") } ] }");
   Random random(4);
   const Transform t = solid("Box { " + place + " }")->transform.still();
@@ -126,9 +126,9 @@ TEST(Csg, CoincidentFacesLeaveNoGapsAndStopNoRays) {
 TEST(Csg, NestedSolidsHoldThePointsOfTheirFormula) {
   const auto object = solid(
       "Difference { transform: translate(1, 2, 3) * scale([1.5, -1, 0.5]), operands: [\n"
-      "  Union { operands: [ Sphere {}, Box { center: [1, 0, 0] m } ] },\n"
-      "  Intersection { operands: [ Sphere { center: [0.5, 0.5, 0] m, radius: 0.7 m }, Box { size: [1, 4, 4] m } ] },\n"
-      "  Difference { operands: [ Sphere { center: [0, -0.8, 0] m, radius: 0.5 m }, Sphere { center: [0, -0.8, 0] m, radius: "
+      "  Union { operands: [ Sphere {}, Box { centre: [1, 0, 0] m } ] },\n"
+      "  Intersection { operands: [ Sphere { centre: [0.5, 0.5, 0] m, radius: 0.7 m }, Box { size: [1, 4, 4] m } ] },\n"
+      "  Difference { operands: [ Sphere { centre: [0, -0.8, 0] m, radius: 0.5 m }, Sphere { centre: [0, -0.8, 0] m, radius: "
       "0.3 m } ] } ] }");
   const auto ball = [](const Point3& p, const Point3& c, float r) { return distance(p, c) < r; };
   const auto box = [](const Point3& p, const Point3& c, const Vector3& size) {
@@ -174,7 +174,7 @@ TEST(Csg, OperandsMoveWithinTheSolid) {
 
 // Points by area are spread evenly when weighted by their densities: on the ball of a hollow, and on each wall.
 TEST(Csg, DensitiesByAreaGiveTheAreaOfEachPart) {
-  const auto object = solid("Difference { operands: [ Box {}, Sphere { center: [0, 0, 0.5] m, radius: 0.4 m } ] }");
+  const auto object = solid("Difference { operands: [ Box {}, Sphere { centre: [0, 0, 0.5] m, radius: 0.4 m } ] }");
   Random random(6);
   Mean bowl, top;
   for (int i = 0; i < 20000; ++i) {
@@ -189,7 +189,7 @@ TEST(Csg, DensitiesByAreaGiveTheAreaOfEachPart) {
   EXPECT_NEAR(top.value(), 1 - M_PI * 0.16, 5 * top.error());
 
   // Balls that lie apart, of which lines along the axes often find none.
-  const auto balls = solid("Union { operands: [ Sphere {}, Sphere { center: [3, 3, 3] m, radius: 0.5 m } ] }");
+  const auto balls = solid("Union { operands: [ Sphere {}, Sphere { centre: [3, 3, 3] m, radius: 0.5 m } ] }");
   Mean small;
   for (int i = 0; i < 20000; ++i) {
     const SurfaceSample s = balls->sample_area(random.pair(), 0);
@@ -202,7 +202,7 @@ TEST(Csg, DensitiesByAreaGiveTheAreaOfEachPart) {
 TEST(Csg, SurfacesHaveTheShaderOfTheirOperandUnlessTheSolidHasItsOwn) {
   const std::string operands =
       "operands: [ Intersection { operands: [ Box { shader: Lambertian { color: 0.2 } }, Sphere { radius: 0.6 m, shader: "
-      "Lambertian { color: 0.4 } } ] }, Sphere { center: [0, 0, 0.5] m, radius: 0.3 m, shader: Lambertian { color: 0.6 } } ] }";
+      "Lambertian { color: 0.4 } } ] }, Sphere { centre: [0, 0, 0.5] m, radius: 0.3 m, shader: Lambertian { color: 0.6 } } ] }";
   const auto albedo = [](const SceneObject& object, const Vector3& towards) {
     const Ray r = ray(Point3{} - 3 * towards, towards);
     Hit hit;

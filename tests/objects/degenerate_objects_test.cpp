@@ -190,7 +190,7 @@ TEST(DegenerateObjects, WithoutAreaAreRefusedWhereTheyStand) {
 }
 
 TEST(DegenerateObjects, PartsThatMeanNothingAreLeftOut) {
-  EXPECT_EQ(error_of("Metaballs { centers: [[0, 0, 0], [0, 0, 0], [0, 0, 0]] m }"), "");  // all in one place
+  EXPECT_EQ(error_of("Metaballs { centres: [[0, 0, 0], [0, 0, 0], [0, 0, 0]] m }"), "");  // all in one place
   EXPECT_EQ(error_of("Curve { points: [[0, 0, 0], [0, 0, 0], [0, 0, 1], [0, 0, 1]] m }"), "");
   EXPECT_EQ(error_of("Curve { points: [[0, 0, 0], [0, 0, 1], [5, 5, 5], [5, 5, 5]] m, counts: [2, 2] }"), "");
   EXPECT_EQ(

@@ -12,7 +12,7 @@ namespace {
 const std::string plane = "InfinitePlane { shader: Lambertian { color: 0.5 } }\n",
                   sun = "Distant { direction: [0.8, 0, -0.6], emission: DiffuseEmission { radiance: 10 } }\n",
                   sky = "Environment { emission: DiffuseEmission { radiance: 2 } }\n",
-                  ball = "Sphere { center: [0, 0, 0.3], radius: 0.3, shader: Lambertian { color: 0.6 } }\n";
+                  ball = "Sphere { centre: [0, 0, 0.3], radius: 0.3, shader: Lambertian { color: 0.6 } }\n";
 
 // Where nothing but the plane reflects, its radiance is rho E / pi: rho L under a sky of radiance L, and rho S cos / pi under
 // a sun whose irradiance across is S. Seen are its parts at 2 to 30 and at 2000 radii of the scene, of which there is none but

@@ -114,11 +114,11 @@ std::vector<Ref<SceneObject>> each_object(const Where& w) {
   for (const char* name : {"Cylinder", "Tube", "Torus", "Disc", "Annulus", "Cone", "Sphere", "Box", "Rectangle"})
     all.push_back(make_object(name, {}, placed));
   Members centred = ellipsoid;
-  centred.emplace_back("center", value(w.at(0.1, 0.2, 0)));
+  centred.emplace_back("centre", value(w.at(0.1, 0.2, 0)));
   all.push_back(make_object("Ellipsoid", centred));
   all.push_back(make_object("Ellipsoid", ellipsoid, moving(to, to * on * Transform::rotate(1, {0, 1, 1}))));
   all.push_back(
-      make_object("Metaballs", {{"centers", value({w.at(-0.3, 0, 0), w.at(0.3, 0.1, 0)})}, {"radii", Value(Numbers{{s}})}}));
+      make_object("Metaballs", {{"centres", value({w.at(-0.3, 0, 0), w.at(0.3, 0.1, 0)})}, {"radii", Value(Numbers{{s}})}}));
   all.push_back(make_object("Curve", {{"points", value({w.at(-0.9, 0, -0.5), w.at(0, 0.3, 0.2), w.at(0.6, 0, 0.7)})},
                                       {"radius", Value(Numbers{{0.2 * s}})}}));
   all.push_back(make_object("BezierPatches", {{"points", value(net)}}));
@@ -145,10 +145,10 @@ TEST(FarAwayObjects, AreThoseAtTheOrigin) {
 std::vector<Ref<SceneObject>> things(const Where& w, double shift = 0) {
   const double s = w.scale;
   const auto cube = [&](const DoublePoint3& at, double edge) {
-    return make_object("Box", {{"center", value(at)}, {"size", value(DoublePoint3{edge * s, edge * s, edge * s})}});
+    return make_object("Box", {{"centre", value(at)}, {"size", value(DoublePoint3{edge * s, edge * s, edge * s})}});
   };
   const auto ball = [&](const DoublePoint3& at, double radius) {
-    return make_object("Sphere", {{"center", value(at)}, {"radius", value(radius * s)}});
+    return make_object("Sphere", {{"centre", value(at)}, {"radius", value(radius * s)}});
   };
   const auto to = [&](double a, double b, double c) { return Transform::translate(w.at(a, b, c) - DoublePoint3{}); };
   const Value operands(Value::List{Value(Ref<Component>(cube(w.at(shift + 0.6, 1.1, 0.5), 0.4))),
@@ -200,9 +200,9 @@ Ref<SceneObject> room(int kind, const Where& w) {
   const AnimatedTransform turned = w.placed() * Transform::rotate(0.57, {1, 2, 3});
   const Value edges = value(DoublePoint3{4, 4, 4});
   if (kind == 0)
-    return make_object("Box", {{"center", value(w.at(0, 0, 0))}, {"size", value(DoublePoint3{4 * s, 4 * s, 4 * s})}});
+    return make_object("Box", {{"centre", value(w.at(0, 0, 0))}, {"size", value(DoublePoint3{4 * s, 4 * s, 4 * s})}});
   if (kind == 1) return make_object("Box", {{"size", edges}}, turned);
-  if (kind == 2) return make_object("Sphere", {{"center", value(w.at(0, 0, 0))}, {"radius", value(3 * s)}});
+  if (kind == 2) return make_object("Sphere", {{"centre", value(w.at(0, 0, 0))}, {"radius", value(3 * s)}});
   const Where own = kind == 3 ? w : Where{};
   std::vector<DoublePoint3> corners;
   for (const int z : {-2, 2})

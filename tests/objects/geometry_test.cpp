@@ -270,7 +270,7 @@ TEST(Objects, LeavingRaysDoNotReturn) {
           const Transform there = Transform::translate(size * random.direction()) * place * Transform::rotate(1, {0, 1, 0});
           const AnimatedTransform moving({{0, place}, {1, there}});
           for (const AnimatedTransform& t : {AnimatedTransform(place), moving}) {
-            test("Sphere", {{"center", {0.2, 0, 0}}}, false, t);
+            test("Sphere", {{"centre", {0.2, 0, 0}}}, false, t);
             test("Disc", {}, true, t);
             test("Rectangle", {}, true, t);
             test("Polygon", l_shape_settings(), true, t);

@@ -67,7 +67,7 @@ std::vector<Form> forms() {
           // Two cones of slope 1, cut by a cube: over the square [-1, 1]^2 both, sqrt(2) times the disc.
           {"double cone", object("Quadric", also(cone, open)), 2 * M_PI * std::sqrt(2.0)},
           {"half space", object("Quadric", {{"squares", {0, 0, 0}}, {"linear", {0, 0, 1}}, {"constant", 0.0}}), 16},
-          {"one ball", object("Metaballs", {{"centers", {0, 0, 0}}}), 4 * M_PI * single * single},
+          {"one ball", object("Metaballs", {{"centres", {0, 0, 0}}}), 4 * M_PI * single * single},
           {"torus", object("ImplicitSurface"), 4 * pi2 * 0.65 * 0.3},
           {"ball of a formula", object("ImplicitSurface", {{"formula", std::string("sqrt(x*x + y*y + z*z) - 0.8")}}),
            4 * M_PI * 0.64}};
@@ -120,7 +120,7 @@ TEST(Implicit, ClosedSolidsAreCrossedInPairsWithinWhichTheirVolumeLies) {
   const Solid solids[] = {
       {object("Quadric", {{"squares", {1, 0, 1}}, {"constant", -0.25}}), M_PI / 2},
       {object("Quadric", {{"squares", {1, 1, -1}}, {"constant", 0.0}}), 2 * M_PI / 3},
-      {object("Metaballs", {{"centers", {0, 0, 0}}}), 4 * M_PI / 3 * lone * lone * lone},
+      {object("Metaballs", {{"centres", {0, 0, 0}}}), 4 * M_PI / 3 * lone * lone * lone},
       {object("ImplicitSurface"), 2 * M_PI * M_PI * 0.65 * 0.09},
       {object("ImplicitSurface", {{"formula", std::string("max(abs(x), max(abs(y), abs(z))) - 0.7")}}), 2.744},
       {object("SignedDistanceGrid", {{"resolution", {2, 2, 2}}, {"distances", {-1, -1, -1, -1, 1, 1, 1, 1}}}), 4}};
@@ -150,7 +150,7 @@ TEST(Implicit, SmallLargeAndFarOnesAreFoundAndLeft) {
         SCOPED_TRACE(name + std::to_string(scale) + " " + std::to_string(off));
         std::vector<Setting> settings;
         if (name == std::string("ImplicitSurface")) settings = {{"formula", std::string("x*x + y*y + z*z - 0.8")}};
-        if (name == std::string("Metaballs")) settings = {{"centers", {0, 0, 0}}};
+        if (name == std::string("Metaballs")) settings = {{"centres", {0, 0, 0}}};
         const Point3 middle = Point3{} + off * scale * Vector3{1, -0.7f, 0.4f};
         const Ref<SceneObject> o =
             object(name, settings, Transform::translate(middle - Point3{}) * Transform::scale({scale, scale, scale}));
@@ -182,7 +182,7 @@ TEST(Implicit, NothingThinIsMissed) {
       object("ImplicitSurface", {{"formula", std::string("abs(x - 0.31234 + 0.05*sin(3*y)) - 0.0005")}});
   const Ref<SceneObject> plate =
       object("Quadric", {{"squares", {1, 0, 0}}, {"linear", {-0.6, 0, 0}}, {"constant", 0.09 - 1e-6}});
-  const Ref<SceneObject> seed = object("Metaballs", {{"centers", {0, 0, 0}}, {"threshold", 0.999}});
+  const Ref<SceneObject> seed = object("Metaballs", {{"centres", {0, 0, 0}}, {"threshold", 0.999}});
   for (int i = 0; i < 2000; ++i) {
     const Point3 to{random.between(-0.2f, 0.2f), random.between(-0.9f, 0.9f), random.between(-0.9f, 0.9f)};
     EXPECT_EQ(crossings(*sheet, ray(to - 3 * Vector3{1, 0, 0}, {1, 0, 0})).size(), 2u);

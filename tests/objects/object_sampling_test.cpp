@@ -31,7 +31,7 @@ std::vector<Case> cases() {
     list.push_back({what + " moving", object(what, settings, moving), 0.4f});
     list.push_back({what + " moving mirrored", object(what, settings, mirrored_moving), 0.7f});
   };
-  add("Sphere", {{"radius", 0.8}, {"center", {0.1, 0, 0}}});
+  add("Sphere", {{"radius", 0.8}, {"centre", {0.1, 0, 0}}});
   add("Disc", {});
   add("Rectangle", {});
   add("Rectangle", slanted);

@@ -81,7 +81,7 @@ const UvCase uv_cases[] = {
      {0.5f, 0.5f}},
     {"Quadric { low: [-2, -2, -2], high: [2, 2, 2] }", {0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}, {0.65f, 0.5f}},
     // What was taken away is seen from behind: u runs backwards.
-    {"Difference { operands: [ Box { size: [8, 8, 8] }, Box { center: [0, 0, 4], size: [4, 4, 4] } ] }",
+    {"Difference { operands: [ Box { size: [8, 8, 8] }, Box { centre: [0, 0, 4], size: [4, 4, 4] } ] }",
      {-1, 1, 2},
      {0, 0, 1},
      {0.25f, 0.75f}},
@@ -128,7 +128,7 @@ Point2 brightest(const std::string& camera, const std::string& objects, int size
 
 TEST(Orientation, RightInAPictureIsTheViewingDirectionTimesUp) {
   const auto lamp = [](const char* where) {
-    return fmt::format("Sphere {{ center: {}, radius: 0.2, emission: DiffuseEmission {{ radiance: 1 }} }}\n", where);
+    return fmt::format("Sphere {{ centre: {}, radius: 0.2, emission: DiffuseEmission {{ radiance: 1 }} }}\n", where);
   };
   for (const std::string camera : {"PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], fov: 40 deg }",
                                    "OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 3.6 }"}) {

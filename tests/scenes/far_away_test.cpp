@@ -78,10 +78,10 @@ std::vector<std::pair<std::string, std::string>> rooms(const Where& w) {
       "6], "
       "[3, 0, 4], [3, 4, 7]]";
   const std::string s = w.size(4);
-  return {{"box", fmt::format("Box {{ center: {} m, size: [{}, {}, {}] m, {} }}", w.at(0, 0, 0), s, s, s, matte)},
+  return {{"box", fmt::format("Box {{ centre: {} m, size: [{}, {}, {}] m, {} }}", w.at(0, 0, 0), s, s, s, matte)},
           {"turned box",
            fmt::format("Box {{ size: [4, 4, 4] m, transform: {} * rotate(33 deg, [1, 2, 3]), {} }}", w.placed(), matte)},
-          {"sphere", fmt::format("Sphere {{ center: {} m, radius: {} m, {} }}", w.at(0, 0, 0), w.size(3), matte)},
+          {"sphere", fmt::format("Sphere {{ centre: {} m, radius: {} m, {} }}", w.at(0, 0, 0), w.size(3), matte)},
           {"mesh", fmt::format("TriangleMesh {{ positions: [{}] m, {}, {} }}", corners, triangles, matte)},
           {"placed mesh",
            fmt::format("TriangleMesh {{ positions: {}, {}, transform: {}, {} }}", cube, triangles, w.placed(), matte)},
@@ -89,7 +89,7 @@ std::vector<std::pair<std::string, std::string>> rooms(const Where& w) {
            fmt::format("SubdivisionSurface {{ levels: 3, positions: [{}] m, indices: [0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, "
                        "2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7], {} }}",
                        corners, matte)},
-          {"solid", fmt::format("Difference {{ operands: [ Box {{ center: {} m, size: [{}, {}, {}] m }}, Box {{ center: {} m, "
+          {"solid", fmt::format("Difference {{ operands: [ Box {{ centre: {} m, size: [{}, {}, {}] m }}, Box {{ centre: {} m, "
                                 "size: [{}, {}, {}] m }} ], {} }}",
                                 w.at(0, 0, 0), w.size(5), w.size(5), w.size(5), w.at(0, 0, 0), s, s, s, matte)}};
 }
@@ -146,10 +146,10 @@ TEST(FarAway, ClosedRoomsAreDarkForAllRenderers) {
 std::string furnished(const Where& w) {
   const std::string s = w.size(4);
   return fmt::format(
-      "Box {{ center: {} m, size: [{}, {}, {}] m, shader: Lambertian {{ color: 0.6 }} }}\n"
-      "Sphere {{ center: {} m, radius: {} m, emission: DiffuseEmission {{ radiance: 10 }} }}\n"
-      "Sphere {{ center: {} m, radius: {} m, shader: Dielectric {{}} }}\n"
-      "Ellipsoid {{ center: {} m, radii: [{}, {}, {}] m, shader: Lambertian {{ color: 0.3 }} }}\n"
+      "Box {{ centre: {} m, size: [{}, {}, {}] m, shader: Lambertian {{ color: 0.6 }} }}\n"
+      "Sphere {{ centre: {} m, radius: {} m, emission: DiffuseEmission {{ radiance: 10 }} }}\n"
+      "Sphere {{ centre: {} m, radius: {} m, shader: Dielectric {{}} }}\n"
+      "Ellipsoid {{ centre: {} m, radii: [{}, {}, {}] m, shader: Lambertian {{ color: 0.3 }} }}\n"
       "Cylinder {{ transform: {}, radius: 0.3, height: 0.7, shader: Conductor {{}} }}\n"
       "Rectangle {{ corner: {} m, edge_u: [{}, 0, 0] m, edge_v: [0, {}, 0] m, shader: Lambertian {{ color: CheckerMap {{ "
       "repeat: "
@@ -190,10 +190,10 @@ TEST(FarAway, PicturesAreThoseAtTheOriginForAllRenderers) {
 // What is modelled far from its own origin and brought back, once and twice, and through two scenes.
 TEST(FarAway, NestedScenesBringBackWhatIsFarFromTheirOwnOrigin) {
   const std::string renderer = "PathTracer { samples: 32, max_depth: 6 }";
-  const std::string lamp = "Sphere { center: [0.4, 0.5, 1.4] m, radius: 0.3 m, emission: DiffuseEmission { radiance: 10 } }\n";
+  const std::string lamp = "Sphere { centre: [0.4, 0.5, 1.4] m, radius: 0.3 m, emission: DiffuseEmission { radiance: 10 } }\n";
   const auto ball = [&](const Where& w, double x) {
     return fmt::format(
-        "Box {{ center: {} m, size: [0.5, 0.5, 0.5] m, {} }}, Sphere {{ center: {} m, radius: 0.3 m, {} }}, TriangleMesh {{ "
+        "Box {{ centre: {} m, size: [0.5, 0.5, 0.5] m, {} }}, Sphere {{ centre: {} m, radius: 0.3 m, {} }}, TriangleMesh {{ "
         "positions: "
         "[{}, {}, {}] m, triangles: [[0, 1, 2]], {} }}",
         w.at(x, 1, 0), matte, w.at(x, 0.8, 0.5), matte, w.at(x, 1, 0.4), w.at(x + 0.5, 1, 0.4), w.at(x, 1, 0.9), matte);
@@ -223,7 +223,7 @@ TEST(FarAway, NestedScenesBringBackWhatIsFarFromTheirOwnOrigin) {
 TEST(FarAway, ScenesShareObjects) {
   const auto picture = [](double distance) {
     const Where w = away(distance);
-    const std::string shared = fmt::format("ball = Sphere {{ center: {} m, radius: 0.4 m, {} }}\n", w.at(-0.6, 0.8, 0), matte);
+    const std::string shared = fmt::format("ball = Sphere {{ centre: {} m, radius: 0.4 m, {} }}\n", w.at(-0.6, 0.8, 0), matte);
     return render(
         shared +
         job_at(w, "PathTracer { samples: 32, max_depth: 4 }", "BvhScene",
@@ -266,7 +266,7 @@ TEST(FarAway, ReplayTellsTheWorldsCoordinates) {
 TEST(FarAway, DescriptionsKeepTheirDoubles) {
   const std::string text =
       "Job { camera: PerspectiveCamera { from: [10000000.123, 0.1, -0.3] m, to: [1e7, 5, 0.7] m }\n"
-      "scene: BvhScene { objects: [ Sphere { center: [12345678.901234, 0.1, 1] m, transform: translate(20000000.3, 0.2, 0.1) "
+      "scene: BvhScene { objects: [ Sphere { centre: [12345678.901234, 0.1, 1] m, transform: translate(20000000.3, 0.2, 0.1) "
       "}\n"
       "TriangleMesh { positions: [[1e7, 0, 0], [10000000.001, 0, 0], [1e7, 0.001, 0]] m, triangles: [[0, 1, 2]] }\n"
       "Box { transform: keyframes(0 s, translate(10000000.7, 0, 0), 1 s, translate(10000001.9, 0, 0)) } ] } }";

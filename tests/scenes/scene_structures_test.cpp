@@ -229,7 +229,7 @@ TEST(SceneStructures, AllHitsOfAShortRay) {
     std::vector<Ref<SceneObject>> objects;
     for (int i = 0; i < 3; ++i) objects.push_back(object("TriangleMesh", cube_settings()));
     objects.push_back(object("Disc", {{"radius", 20}}, Transform::translate({0, 0, 1})));
-    objects.push_back(object("Sphere", {{"center", {0, 0, 2}}}));
+    objects.push_back(object("Sphere", {{"centre", {0, 0, 2}}}));
     Random random(5);
     for (int i = 0; i < 400; ++i)
       objects.push_back(object("Sphere", {{"radius", 0.01}}, Transform::translate(3 * random.direction())));

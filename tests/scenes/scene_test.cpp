@@ -155,7 +155,7 @@ TEST(Scene, NestedPointsAreInTheOuterCoordinates) {
   for (const char* structure : {"BruteForceScene", "EmbreeScene"}) {
     const Transform outer = random.placement(3, 2, 2) * Transform::scale({1, 1.5f, -1}),
                     middle = random.placement(1, 0.5f, 0.5f);
-    const std::vector<Setting> sphere{{"center", {0.5, 0, 0}}};
+    const std::vector<Setting> sphere{{"centre", {0.5, 0, 0}}};
     const Ref<Scene> deep = scene(structure, {scene(structure, {scene(structure, {object("Sphere", sphere)}, middle)}, outer)});
     const Ref<Scene> flat = scene(structure, {object("Sphere", sphere, outer * middle)});
     int hits = 0;

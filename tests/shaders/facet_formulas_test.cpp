@@ -48,7 +48,7 @@ TEST(ShaderFormulas, RoughConductor) {
     const std::vector<Setting> settings = {{"ior", complex_index(n.color(), k.color())},
                                            {"color", tint.color()},
                                            {"roughness", 0.45},
-                                           {"roughness_y", 0.2},
+                                           {"roughness_v", 0.2},
                                            {"rotation", 0.1},
                                            {"distribution", ggx ? "ggx" : "beckmann"}};
     const Ref<Shader> once = create<Shader>("Conductor", settings);
@@ -77,7 +77,7 @@ TEST(ShaderFormulas, RoughDielectric) {
     const Facets facets{ggx, 0.5, 0.25};
     const Ref<Shader> shader = create<Shader>("Dielectric", {{"ior", n.color()},
                                                              {"roughness", 0.5},
-                                                             {"roughness_y", 0.25},
+                                                             {"roughness_v", 0.25},
                                                              {"rotation", 0.3},
                                                              {"distribution", ggx ? "ggx" : "beckmann"}});
     const Wavelengths w = test::wavelengths(500);

@@ -1,4 +1,4 @@
-// HairShader: its lobes' normalisation, energy, sampling, absorption, and values of another implementation.
+// HairShader: its lobes' normalization, energy, sampling, absorption, and values of another implementation.
 
 #include "components/shaders/hair/hair.h"
 #include "etendue/describe/color.h"

@@ -155,7 +155,7 @@ TEST(Conductor, CompensatedLosesNothing) {
       for (const double angle : {0.0, 40.0, 70.0, 86.0}) {
         const Color index = complex_index(flat_spectrum(0.01f), flat_spectrum(99));
         const Ref<Shader> shader =
-            create<Shader>("Conductor", {{"ior", index}, {"roughness", x}, {"roughness_y", y}, {"distribution", kind}});
+            create<Shader>("Conductor", {{"ior", index}, {"roughness", x}, {"roughness_v", y}, {"distribution", kind}});
         Arena arena;
         const Scatter& s = *shader->bind(test::surface_point(), test::wavelengths(), arena);
         const Vector3 out = at_angle(s.frame(), angle);
@@ -240,7 +240,7 @@ TEST(ThinDielectric, AllReflectionsInside) {
   for (const double angle : {20.0, 56.3, 80.0, 130.0}) {
     const Vector3 out = at_angle(s.frame(), angle);
     EXPECT_NEAR(s.albedo(out)[0], 1, 1e-6);
-    // Against the sum of ten passages, each polarisation for itself.
+    // Against the sum of ten passages, each polarization for itself.
     float behind = 0;
     const PolarizedReflectance r = fresnel_dielectric_polarized(std::abs(s.cosine(out)), 1.5f, behind);
     double transmitted = 0;

@@ -157,14 +157,14 @@ TEST_P(TiltedNormals, CarryTheSameFromBothEnds) {
 
 // The picture of a lamp's light on tilted normals, by paths from both ends: importance is the adjoint of what is seen.
 TEST(TiltedNormals, LookTheSameToAllRenderers) {
-  const std::string lamp = "Sphere { center: [0.5, 3, 2.5], radius: 0.7, emission: DiffuseEmission { radiance: 20 } }";
+  const std::string lamp = "Sphere { centre: [0.5, 3, 2.5], radius: 0.7, emission: DiffuseEmission { radiance: 20 } }";
   for (const std::string normals : {"folded", "clipped"})
     for (const White& white : {whites[0], whites[3], whites[5]}) {
       const std::string mode = ", shading_normals: " + normals;
       const std::string shader = white.text;
       const std::string objects =
           smooth_ball(3, "transform: translate(-1.1, 0, 0), shader: " + shader + mode) +
-          "\nSphere { center: [1.1, 0, 0], shader: BumpShader { shader: " + shader +
+          "\nSphere { centre: [1.1, 0, 0], shader: BumpShader { shader: " + shader +
           ", height: NoiseMap { size: 0.3 m }, scale: 0.3 }" + mode +
           " }\nDisc { radius: 3, transform: translate(0, -1, 0) * rotate(-90, \"x\"), shader: Lambertian { color: 0.6 } }\n" +
           lamp;

@@ -20,7 +20,7 @@ inline std::string ball_text(const std::string& renderer = "PathTracer { max_dep
          "\n camera: PerspectiveCamera { from: [0, 0, -4] m, to: [0, 0, 0] m, fov: 40 deg }\n" +
          " image: ImageBuffer { height: 1, " + image + " }\n scene: BruteForceScene { objects: [\n" +
          "  Sphere { radius: 1 m, shader: Lambertian { color: " + ball + " } }\n" +
-         "  Sphere { center: [0, 2, -1] m, radius: 0.5 m, emission: DiffuseEmission { radiance: 5 } }\n ] }\n" + rest + "}\n";
+         "  Sphere { centre: [0, 2, -1] m, radius: 0.5 m, emission: DiffuseEmission { radiance: 5 } }\n ] }\n" + rest + "}\n";
 }
 
 inline Ref<Job> job_of(const std::string& text, int samples) {

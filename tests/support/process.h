@@ -72,6 +72,8 @@ class Process {
       dup2(out, STDOUT_FILENO);
       dup2(err, STDERR_FILENO);
       if (chdir(in_folder.c_str()) != 0) _exit(125);
+      // Tests that run under nohup would hand on that hanging up is ignored, and a render sent SIGHUP would never end.
+      ::signal(SIGHUP, SIG_DFL);
       execv(program.c_str(), argv.data());
       _exit(126);
     }

@@ -14,7 +14,7 @@ inline const char* const floor_disc =
     R"(Disc { radius: 5 m, transform: translate(0, -1 m, 0) * rotate(-90, "x"), shader: Lambertian { color: 0.6 } })";
 inline const char* const glass_ball = R"(Sphere { radius: 1 m, shader: Dielectric { ior: glass("N-SF11") } })";
 inline const char* const round_lamp =
-    "Sphere { center: [1, 3, 0] m, radius: 0.3 m, emission: DiffuseEmission { radiance: 50 } }";
+    "Sphere { centre: [1, 3, 0] m, radius: 0.3 m, emission: DiffuseEmission { radiance: 50 } }";
 
 inline std::string objects(const std::vector<std::string>& parts) {
   std::string text;

@@ -67,10 +67,10 @@ inline std::string room() {
     Rectangle { corner: [-2,-1,-2], edge_u: [4,0,0], edge_v: [0,3,0], shader: Lambertian { color: rgb(0.2, 0.5, 0.8) } }
     Rectangle { corner: [-2,-1,-2], edge_u: [0,3,0], edge_v: [0,0,4], shader: PhongShader { color: 0.3, specular: 0.3, exponent: 5 } }
     Rectangle { corner: [2,-1,-2], edge_u: [0,3,0], edge_v: [0,0,4], shader: PerfectSpecular { color: 0.9 } }
-    Sphere { center: [-0.7,-0.4,-0.5], radius: 0.6, shader: Dielectric { ior: glass("N-SF11") } }
-    Sphere { center: [0.8,-0.5,-0.6], radius: 0.5, shader: PhongShader { color: 0.1, specular: 0.8, exponent: 200 } }
+    Sphere { centre: [-0.7,-0.4,-0.5], radius: 0.6, shader: Dielectric { ior: glass("N-SF11") } }
+    Sphere { centre: [0.8,-0.5,-0.6], radius: 0.5, shader: PhongShader { color: 0.1, specular: 0.8, exponent: 200 } }
     Rectangle { corner: [-0.5,1.9,-0.5], edge_u: [1,0,0], edge_v: [0,0,1], emission: DiffuseEmission { radiance: 4 } }
-    Sphere { center: [1.2,0.8,-1], radius: 0.4, emission: DiffuseEmission { radiance: 4 } }
+    Sphere { centre: [1.2,0.8,-1], radius: 0.4, emission: DiffuseEmission { radiance: 4 } }
     Environment { emission: DiffuseEmission { radiance: 0.3, sides: both } })";
 }
 inline const std::string room_camera = "PerspectiveCamera { from: [0,0.3,4], to: [0,-0.2,0], up: [0,1,0], fov: 45 deg }";

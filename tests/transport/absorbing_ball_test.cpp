@@ -209,7 +209,7 @@ TEST(AbsorbingBall, WithALampInside) {
   const std::string floor =
       "Rectangle { corner: [-5, -5, 0], edge_u: [10, 0, 0], edge_v: [0, 10, 0], shader: Lambertian { color: 1 } }\n";
   const std::string ball = fmt::format(
-      "Sphere {{ center: [0, 0, 2], radius: 0.8, shader: PassThrough {{}}, interior: HomogeneousVolume {{ "
+      "Sphere {{ centre: [0, 0, 2], radius: 0.8, shader: PassThrough {{}}, interior: HomogeneousVolume {{ "
       "absorption: {} }} }}\n",
       slope);
   const std::string camera = "OrthographicCamera { from: [0, 0, 0.9], to: [0, 0, 0], up: [0, 1, 0], width: 0.02 }";
@@ -242,7 +242,7 @@ TEST(AbsorbingBall, WithALampInside) {
     }
     return sum;
   });
-  const std::string lamp = "Sphere { center: [0, 0, 2], radius: 0.25, emission: DiffuseEmission { radiance: 1 } }";
+  const std::string lamp = "Sphere { centre: [0, 0, 2], radius: 0.25, emission: DiffuseEmission { radiance: 1 } }";
   for (const Way& way : {Way{"PathTracer { max_depth: 2 }", 64},
                          {"BidirectionalPathTracer { max_depth: 2 }", 64},
                          {"PathTracer { max_depth: 2, heuristic: balance }", 64}})

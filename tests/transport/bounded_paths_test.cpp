@@ -45,7 +45,7 @@ std::string sheets(const std::string& walls) {
 const char* const glass =
     "Sphere { radius: 10 m, shader: PerfectSpecular { color: 1 } }\n"
     "Sphere { radius: 1 m, shader: Dielectric { ior: 1.5 } }\n"
-    "Sphere { center: [2, 0, 0] m, radius: 1 m, shader: Dielectric { ior: 1.5 } }\n"
+    "Sphere { centre: [2, 0, 0] m, radius: 1 m, shader: Dielectric { ior: 1.5 } }\n"
     "Point { transform: translate(0, 5 m, 0), emission: DiffuseEmission { radiance: 1 } }";
 
 struct Endless {
@@ -65,14 +65,14 @@ std::vector<Endless> endless() {
        "Environment { emission: DiffuseEmission { radiance: 1 } }"},
       {"walks from both ends", "BidirectionalPathTracer { samples: 1, max_depth: 20000 }",
        "Sphere { radius: 10 m, shader: Lambertian { color: 1 } }\n"
-       "Sphere { radius: 1 m, center: [5, 0, 0] m, emission: DiffuseEmission { radiance: 1 }, shader: Lambertian { color: 1 } "
+       "Sphere { radius: 1 m, centre: [5, 0, 0] m, emission: DiffuseEmission { radiance: 1 }, shader: Lambertian { color: 1 } "
        "}"},
       {"walks from both ends through sheets", "BidirectionalPathTracer { samples: 1, max_depth: 20000 }",
        sheets("Sphere { radius: 10 m, shader: Lambertian { color: 1 } }\n"
-              "Sphere { radius: 1 m, center: [7, 0, 0] m, emission: DiffuseEmission { radiance: 1 } }\n")},
+              "Sphere { radius: 1 m, centre: [7, 0, 0] m, emission: DiffuseEmission { radiance: 1 } }\n")},
       {"walks from luminaires", "LightTracer { samples: 1000000, max_depth: 20000 }",
        "Sphere { radius: 10 m, shader: Lambertian { color: 1 } }\n"
-       "Sphere { radius: 1 m, center: [5, 0, 0] m, emission: DiffuseEmission { radiance: 1 }, shader: Lambertian { color: 1 } "
+       "Sphere { radius: 1 m, centre: [5, 0, 0] m, emission: DiffuseEmission { radiance: 1 }, shader: Lambertian { color: 1 } "
        "}"},
       {"a tree of glass", "WhittedRenderer { samples: 1, max_depth: 64 }", glass},
       {"a tree of rays",

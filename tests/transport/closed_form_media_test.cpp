@@ -74,7 +74,7 @@ std::vector<Row> media_and_glass_rows() {
   // A furnace is one whatever floats in it.
   rows.push_back({"R01_FurnaceWithFog", "PerspectiveCamera { from: [-0.5, 0, 0], to: [1, 0, 0], fov: 90 }",
                   "Sphere { radius: 1, shader: Lambertian { color: 0.5 }, emission: DiffuseEmission { radiance: 1, sides: "
-                  "back } }\nSphere { center: [0.4, 0, 0], radius: 0.5, shader: PassThrough {}, interior: HomogeneousVolume { "
+                  "back } }\nSphere { centre: [0.4, 0, 0], radius: 0.5, shader: PassThrough {}, interior: HomogeneousVolume { "
                   "scattering: 2 } }",
                   2, three(24, 12, 96)});
 

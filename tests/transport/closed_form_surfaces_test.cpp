@@ -126,14 +126,14 @@ std::vector<Row> surface_rows() {
                   all({8, 48, 8, 8, 768, 4, 8, 0})});
 
   rows.push_back({"R08_Sphere", pinhole("[0, 0.2, 0.5]", "[0, 0, 0]"),
-                  plate(1, 0, matt) + "Sphere { center: [0, 0, 3], radius: 1, emission: " + glow + " }", 0.349066 / exact_pi,
+                  plate(1, 0, matt) + "Sphere { centre: [0, 0, 3], radius: 1, emission: " + glow + " }", 0.349066 / exact_pi,
                   all({8, 0, 8, 8, 0, 4, 8, 0})});
   // A shell around the sphere has the row's irradiance everywhere.
   rows.push_back({"R08_SphereInAShell", "PerspectiveCamera { from: [0, 0, 1.2], to: [0, 0, 3], fov: 120 }",
                   "Sphere { radius: 3, " + matt + " }\nSphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }",
                   1.0 / 9, all({8, 256, 8, 12, 512, 4, 8, 0})});
   rows.push_back({"R09_HalfASphere", pinhole("[0, 0.2, 0.5]", "[0, 0, 0]"),
-                  "Disc { radius: 0.1, " + matt + " }\nSphere { center: [3, 0, 0], radius: 1, emission: " + glow + " }",
+                  "Disc { radius: 0.1, " + matt + " }\nSphere { centre: [3, 0, 0], radius: 1, emission: " + glow + " }",
                   irradiance_beside_sphere(3) / exact_pi, all({32, 0, 32, 32, 0, 24, 32, 0})});
   rows.push_back({"R09_HalfASphereOverASquare", square("[0, 0, 5]", "[0, 0, 0]", 6),
                   plate(3, 0, matt) + "Sphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }", sphere_on_a_floor(),

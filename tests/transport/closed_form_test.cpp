@@ -91,13 +91,13 @@ TEST(ClosedForm, IrradianceOfRectangle) {
 TEST(ClosedForm, IrradianceOfSphere) {
   const std::string objects =
       std::string("Rectangle { corner: [-1,-1,0], edge_u: [2,0,0], edge_v: [0,2,0], shader: Lambertian { color: 1 } }\n") +
-      "Sphere { center: [0,0,3], radius: 1, emission: " + unit_emission + " }";
+      "Sphere { centre: [0,0,3], radius: 1, emission: " + unit_emission + " }";
   expect_value(measure(job_text(path_tracer(2, 4096), pinhole("[0, 0.2, 0.5]", "[0,0,0]"), 8, objects)), 0.349066 / double(pi));
 }
 
 TEST(ClosedForm, IrradianceOfSphereHalfBelowTheHorizon) {
   const std::string objects = std::string("Disc { radius: 0.1, shader: Lambertian { color: 1 } }\n") +
-                              "Sphere { center: [3,0,0], radius: 1, emission: " + unit_emission + " }";
+                              "Sphere { centre: [3,0,0], radius: 1, emission: " + unit_emission + " }";
   expect_value(measure(job_text(path_tracer(2, 8192), pinhole("[0, 0.2, 0.5]", "[0,0,0]"), 8, objects)), 0.025567 / double(pi));
 }
 

@@ -32,9 +32,9 @@ std::vector<Setup> direct_light_setups() {
            " }\nRectangle { corner: [-1,-1,1], edge_u: [2,0,0], edge_v: [0,2,0], emission: " + lit + " }",
        1.740840 / double(pi)},
       {"sphere", pinhole("[0,0.2,0.5]", "[0,0,0]"),
-       "Disc { radius: 1, " + matt + " }\nSphere { center: [0,0,3], radius: 1, emission: " + lit + " }", 0.349066 / double(pi)},
+       "Disc { radius: 1, " + matt + " }\nSphere { centre: [0,0,3], radius: 1, emission: " + lit + " }", 0.349066 / double(pi)},
       {"half a sphere", pinhole("[0,0.2,0.5]", "[0,0,0]"),
-       "Disc { radius: 0.1, " + matt + " }\nSphere { center: [3,0,0], radius: 1, emission: " + lit + " }",
+       "Disc { radius: 0.1, " + matt + " }\nSphere { centre: [3,0,0], radius: 1, emission: " + lit + " }",
        0.025567 / double(pi)},
   };
 }
@@ -114,7 +114,7 @@ TEST(DirectRenderer, BothStrategiesTogetherVaryLessThanEach) {
     Rectangle { corner: [-2,-1,0], edge_u: [2,0,0], edge_v: [0,2,0], shader: PhongShader { color: 0, specular: 0.5, exponent: 2000 } }
     Rectangle { corner: [0,-1,0], edge_u: [2,0,0], edge_v: [0,2,0], shader: Lambertian { color: 0.5 } }
     Rectangle { corner: [-4,-4,2], edge_u: [0,8,0], edge_v: [3.99,0,0], emission: DiffuseEmission { radiance: 1 } }
-    Sphere { center: [1,0,1.6], radius: 0.05, emission: DiffuseEmission { radiance: 1000 } })";
+    Sphere { centre: [1,0,1.6], radius: 0.05, emission: DiffuseEmission { radiance: 1000 } })";
   const std::string camera = "OrthographicCamera { from: [0,0,1.5], to: [0,0,0], up: [0,1,0], width: 2 }";
   const auto error = [&](const std::string& strategy, int light, int shader) {
     return measure(job_text(fmt::format("DirectRenderer {{ strategy: {}, light_samples: {}, shader_samples: {}, samples: 64, "

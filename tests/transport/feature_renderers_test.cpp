@@ -82,9 +82,9 @@ TEST(FeatureRenderer, ShowsExactValues) {
 
 TEST(FeatureRenderer, TellsObjectsAndPrimitivesApart) {
   const std::string objects = R"(
-    Sphere { center: [-1,1,0], radius: 0.4 }
+    Sphere { centre: [-1,1,0], radius: 0.4 }
     Rectangle { corner: [0.5,0.5,0], edge_u: [1,0,0], edge_v: [0,1,0] }
-    BruteForceScene { objects: [ Sphere { center: [-1,-1,0], radius: 0.4 }, Sphere { center: [1,-1,0], radius: 0.4 } ] })";
+    BruteForceScene { objects: [ Sphere { centre: [-1,-1,0], radius: 0.4 }, Sphere { centre: [1,-1,0], radius: 0.4 } ] })";
   const std::string camera = "OrthographicCamera { from: [0,0,5], to: [0,0,0], up: [0,1,0], width: 4 }";
   Ready object(job_text("FeatureRenderer { feature: object }", camera, 2, objects));
   // Pixels show the objects' middles when the sample falls there: compare some samples that met something.

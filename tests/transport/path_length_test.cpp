@@ -58,18 +58,18 @@ std::vector<LengthCase> length_cases() {
        1,
        std::exp(-1.0),
        down,
-       lamp + "Box { center: [0, 0, 1], size: [4, 4, 1], shader: PassThrough {}, interior: HomogeneousVolume { absorption: 1 } "
+       lamp + "Box { centre: [0, 0, 1], size: [4, 4, 1], shader: PassThrough {}, interior: HomogeneousVolume { absorption: 1 } "
               "}\n",
        {"PathTracer { samples: 64", "BidirectionalPathTracer { samples: 64"}},
       // The boundary of the inner body means nothing inside one of higher priority.
       {"HiddenByPriority", 3, (1 - r) * (1 - r), down,
-       lamp + "Box { center: [0, 0, 1], size: [6, 6, 1], priority: 1, shader: Dielectric { ior: 1.5 } }\n"
-              "Box { center: [0, 0, 1], size: [2, 2, 0.5], shader: Dielectric { ior: 2 } }\n",
+       lamp + "Box { centre: [0, 0, 1], size: [6, 6, 1], priority: 1, shader: Dielectric { ior: 1.5 } }\n"
+              "Box { centre: [0, 0, 1], size: [2, 2, 0.5], shader: Dielectric { ior: 2 } }\n",
        eyes},
       {"InAMirror", 2, 1, "OrthographicCamera { from: [0, 0, -0.5], to: [0, 0, 5], up: [0, 1, 0], width: 0.1 }",
        lamp + sheet("PerfectSpecular {}", 1), eyes},
       {"ThroughGlass", 3, (1 - r) * (1 - r), down,
-       lamp + "Box { center: [0, 0, 1], size: [6, 6, 1], shader: Dielectric { ior: 1.5 } }\n", eyes},
+       lamp + "Box { centre: [0, 0, 1], size: [6, 6, 1], shader: Dielectric { ior: 1.5 } }\n", eyes},
       {"DirectLight", 2, 0.5, under, plate + sun, with_matt},
       {"DirectLightThroughAHole", 2, 0.25, under,
        plate + sun + sheet("MaskShader { shader: Lambertian { color: 0 }, opacity: 0.5 }"), with_matt},
@@ -79,7 +79,7 @@ std::vector<LengthCase> length_cases() {
        0.5 * std::exp(-1.0),
        under,
        plate + sun +
-           "Box { center: [0, 0, 2], size: [9, 9, 1], shader: PassThrough {}, interior: HomogeneousVolume { absorption: 1 } "
+           "Box { centre: [0, 0, 2], size: [9, 9, 1], shader: PassThrough {}, interior: HomogeneousVolume { absorption: 1 } "
            "}\n",
        {"PathTracer { samples: 16", "BidirectionalPathTracer { samples: 64", "LightTracer { samples: 65536"}},
       // Light scattered once by a thin layer of albedo 1 and depth t: (1 - exp(-2 t)) / (8 pi) of the sun's irradiance pi.

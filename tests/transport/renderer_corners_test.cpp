@@ -138,7 +138,7 @@ TEST(RendererCorners, OcclusionOfALimitedDistance) {
 TEST(RendererCorners, DepthPastHiddenBoundaries) {
   const std::string objects =
       "Sphere { radius: 3, shader: Dielectric {}, interior: HomogeneousVolume { absorption: 0.1 }, priority: 2 }\n"
-      "Sphere { center: [0, 0, 1], radius: 0.5, shader: Dielectric {}, interior: HomogeneousVolume { absorption: 0.1 }, "
+      "Sphere { centre: [0, 0, 1], radius: 0.5, shader: Dielectric {}, interior: HomogeneousVolume { absorption: 0.1 }, "
       "priority: 1 }";
   const std::string camera = "PerspectiveCamera { from: [0, 0, 0], to: [0, 0, 1], up: [0, 1, 0], fov: 0.01 }";
   const Vector3 depth = Ready(job_text("FeatureRenderer { feature: depth }", camera, 2, objects)).rgb(0, 0);
@@ -149,7 +149,7 @@ TEST(RendererCorners, DepthPastHiddenBoundaries) {
 // optical thickness 1 under a beam, seen straight on. Paths of 2 segments hold all light scattered once.
 TEST(RendererCorners, DepthInFog) {
   const std::string slab =
-      "Box { center: [0, 0, -0.5], size: [400, 400, 1], shader: PassThrough {}, interior: HomogeneousVolume { scattering: 1 } "
+      "Box { centre: [0, 0, -0.5], size: [400, 400, 1], shader: PassThrough {}, interior: HomogeneousVolume { scattering: 1 } "
       "}\n";
   const std::string beam = "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: 1 } }";
   const std::string above = "OrthographicCamera { from: [0, 0, 1], to: [0, 0, 0], up: [0, 1, 0], width: 0.1 }";

@@ -48,7 +48,7 @@ TEST(SimpleRenderers, DispersionDropsSecondaryWavelengthsInItsBranchAlone) {
 TEST(SimpleRenderers, AreNotDisturbedBySurfacesThatAreNotThere) {
   const std::string sheets = R"(
     Rectangle { corner: [-20,-20,0.4], edge_u: [40,0,0], edge_v: [0,40,0], shader: PassThrough {} }
-    Sphere { center: [0,0,0.3], radius: 4, shader: PassThrough {} }
+    Sphere { centre: [0,0,0.3], radius: 4, shader: PassThrough {} }
     )";
   const std::string area = "Rectangle { corner: [-1,-1,1], edge_u: [2,0,0], edge_v: [0,2,0], emission: " + lit + " }";
   const std::string point = "Point { position: [0,0,2], emission: DiffuseEmission { radiance: 4 } }";

@@ -23,7 +23,7 @@ struct Pane {
   double reflected, transmitted;
 };
 
-/// Of a clear pane, by Stokes' sums for each polarisation: R' = 2 R / (1 + R), T' = (1 - R) / (1 + R), with Fresnel's R.
+/// Of a clear pane, by Stokes' sums for each polarization: R' = 2 R / (1 + R), T' = (1 - R) / (1 + R), with Fresnel's R.
 Pane pane(double cosine, double n) {
   const double inside = std::sqrt(1 - (1 - cosine * cosine) / (n * n));
   const double s = (cosine - n * inside) / (cosine + n * inside), p = (n * cosine - inside) / (n * cosine + inside);
@@ -80,7 +80,7 @@ TEST(ThinMedia, AnAbsorbingSlabOnAndOffTheNormal) {
 TEST(ThinMedia, SunThroughColouredPanes) {
   const double sine = 0.6, cosine = 0.8;
   const std::string objects = fmt::format(
-      "Box {{ center: [0, 0, 1], size: [7, 7, 0.5], shader: ThinDielectric {{ ior: 1, color: 0.8 }}, interior: "
+      "Box {{ centre: [0, 0, 1], size: [7, 7, 0.5], shader: ThinDielectric {{ ior: 1, color: 0.8 }}, interior: "
       "HomogeneousVolume {{ absorption: 1.2 }} }}\n"
       "Rectangle {{ corner: [-2, -2, 0], edge_u: [4, 0, 0], edge_v: [0, 4, 0], shader: Lambertian {{ color: 0.5 }} }}\n"
       "Distant {{ direction: [{}, 0, {}], emission: DiffuseEmission {{ radiance: 3.14159265 }} }}\n",

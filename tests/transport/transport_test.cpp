@@ -74,7 +74,7 @@ TEST(Transport, LuminairesThatLightPassesThrough) {
 TEST(Transport, OpenSheetsInFogChangeNothing) {
   const std::string fog =
       "Sphere { radius: 2, shader: PassThrough {}, interior: HomogeneousVolume { scattering: 0.5 } }\n"
-      "Sphere { center: [0, 1, 0], radius: 0.2, emission: DiffuseEmission { radiance: 10 } }\n";
+      "Sphere { centre: [0, 1, 0], radius: 0.2, emission: DiffuseEmission { radiance: 10 } }\n";
   const std::string sheet =
       "Rectangle { corner: [-1, 0.3, -1], edge_u: [2, 0, 0], edge_v: [0, 0, 2], shader: PassThrough {} }\n";
   const Estimate without = estimate(path, 256, camera, fog);
@@ -112,8 +112,8 @@ TEST(Transport, DepthIsMeasuredFromTheCameraThroughBoundaries) {
 // Hair is not reciprocal, and light that goes through a round hair passes its wall on one way only: walks from lamps carry the
 // adjoint. One lamp is behind, so that most of what is seen went through, and one in a hair.
 TEST(Transport, HairFromBothEnds) {
-  const std::string behind = "Sphere { center: [1.2, 1.6, 0.9], radius: 0.5, emission: DiffuseEmission { radiance: 10 } }\n";
-  const std::string within = "Sphere { center: [0.3, -0.4, 0], radius: 0.12, emission: DiffuseEmission { radiance: 10 } }\n";
+  const std::string behind = "Sphere { centre: [1.2, 1.6, 0.9], radius: 0.5, emission: DiffuseEmission { radiance: 10 } }\n";
+  const std::string within = "Sphere { centre: [0.3, -0.4, 0], radius: 0.12, emission: DiffuseEmission { radiance: 10 } }\n";
   const std::string wall = "Rectangle { corner: [-3, -3, 2], edge_u: [6, 0, 0], edge_v: [0, 6, 0], shader: Lambertian {} }\n";
   const std::string hair =
       "radius: [0.25], shader: HairShader { pigment: absorption, absorption: 0.1, longitudinal_roughness: 0.5, "

@@ -21,8 +21,8 @@ TEST(WhittedRenderer, PlaneUnderLightsWithoutExtent) {
   const float root = std::sqrt(0.5f);
   expect_flat(value(all), 0.159155f * (1 + root + 6 * root / 8));
   // In the shadow of something, and of an area light, nothing.
-  expect_flat(value(distant(1, 0, -1) + "\nSphere { center: [-1,0,1], radius: 0.1 }"), 0);
-  expect_flat(value("Sphere { center: [0,3,3], radius: 1, emission: " + lit + " }"), 0);
+  expect_flat(value(distant(1, 0, -1) + "\nSphere { centre: [-1,0,1], radius: 0.1 }"), 0);
+  expect_flat(value("Sphere { centre: [0,3,3], radius: 1, emission: " + lit + " }"), 0);
 }
 
 TEST(WhittedRenderer, LambertSphereFromAfar) {  // the mean over its disc is (2/3) [sin a + (pi - a) cos a] / pi^2
@@ -73,9 +73,9 @@ TEST(WhittedRenderer, MirrorsShowLitSurfaces) {
 // refracted keep their wavelengths.
 TEST(WhittedRenderer, AgreesWithThePathTracerAmongMirrorsAndGlass) {
   const std::string objects = R"(
-    Sphere { center: [0,0,0], radius: 1, shader: Dielectric { ior: glass("N-SF11") } }
-    Sphere { center: [0.2,0.1,0.1], radius: 0.4, priority: 1, shader: Dielectric { ior: glass("N-BK7") } }
-    Sphere { center: [1.5,0,-1], radius: 0.7, shader: PerfectSpecular { color: rgb(0.9, 0.6, 0.3) } }
+    Sphere { centre: [0,0,0], radius: 1, shader: Dielectric { ior: glass("N-SF11") } }
+    Sphere { centre: [0.2,0.1,0.1], radius: 0.4, priority: 1, shader: Dielectric { ior: glass("N-BK7") } }
+    Sphere { centre: [1.5,0,-1], radius: 0.7, shader: PerfectSpecular { color: rgb(0.9, 0.6, 0.3) } }
     Rectangle { corner: [-3,-3,-3], edge_u: [6,0,0], edge_v: [0,6,0], emission: DiffuseEmission { radiance: rgb(1, 0.2, 2) } }
     Environment { emission: DiffuseEmission { radiance: 0.5, sides: both } })";
   const std::string camera = "PerspectiveCamera { from: [0,0,4], to: [0,0,0], up: [0,1,0], fov: 40 deg }";

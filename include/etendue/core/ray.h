@@ -11,7 +11,7 @@ class SceneObject;
 class MediumStack;
 
 /// Points on a ray are origin + t * direction for t in (0, maximum). The direction has unit length in the scene a
-/// renderer sees; inside objects and nested scenes it is transformed, not normalised, so that t stays the same.
+/// renderer sees; inside objects and nested scenes it is transformed, not normalized, so that t stays the same.
 struct Ray {
   Point3 origin;
   Vector3 direction;

@@ -50,7 +50,7 @@ class Transform {
     return {m_[0] * v.x + m_[1] * v.y + m_[2] * v.z, m_[4] * v.x + m_[5] * v.y + m_[6] * v.z,
             m_[8] * v.x + m_[9] * v.y + m_[10] * v.z};
   }
-  /// Not normalised; keeps the side the normal points to even under mirroring.
+  /// Not normalized; keeps the side the normal points to even under mirroring.
   Normal3 operator()(const Normal3& n) const {
     const auto& i = inverse_;
     return {i[0] * n.x + i[4] * n.y + i[8] * n.z, i[1] * n.x + i[5] * n.y + i[9] * n.z, i[2] * n.x + i[6] * n.y + i[10] * n.z};

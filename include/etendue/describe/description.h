@@ -2,6 +2,7 @@
 // How a class says what its members are, once: parser, saver, command line, schema, manual and tests derive from it.
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,10 +20,42 @@ inline Range more_than(double low) { return {low, std::numeric_limits<double>::i
 /// Marks a member that must be written.
 struct Required {};
 inline constexpr Required required{};
-/// Names for the values of an enum, in order: choices("both", "front") for values 0 and 1.
+/// Names for the values of an enum, in order: choices("both", "front") for values 0 and 1. Of a string, or of each in a list
+/// of strings: all that may be written.
 template <class... S>
 std::vector<std::string> choices(S... names) {
   return {std::string(names)...};
+}
+
+/// The ends of a slider: soft(0.01, 10). They lie within the range, and say what is usual, not what is allowed.
+inline SoftRange soft(double low, double high) { return {low, high}; }
+/// Marks a number whose sizes are compared by ratios: a distance, an exponent. Its slider is logarithmic.
+struct Logarithmic {};
+inline constexpr Logarithmic logarithmic{};
+namespace detail {
+template <class V>
+Condition::Wanted wanted(V value) {
+  if constexpr (std::is_same_v<V, bool>)
+    return value;
+  else if constexpr (std::is_arithmetic_v<V>)
+    return double(value);
+  else
+    return std::string(value);
+}
+}  // namespace detail
+
+/// A member that matters only when another has one of these values: when("pigment", "color"), when("sun", true). Without
+/// values: when("file"), when the other holds anything but nothing (false, 0, "", [], none, a map that is 0 everywhere). All
+/// conditions of a member must hold. A scene that sets a member that does not matter is told so: what is said here must be
+/// true for every value of all other members.
+template <class... V>
+Condition when(std::string member, V... values) {
+  return {std::move(member), {detail::wanted(values)...}, false};
+}
+/// The opposite: unless("file") when no file is given.
+template <class... V>
+Condition unless(std::string member, V... values) {
+  return {std::move(member), {detail::wanted(values)...}, true};
 }
 
 // ---- conversion between C++ types and values ----------------------------------------------------------------------
@@ -33,7 +66,7 @@ namespace detail {
 bool to_bool(const Value&);
 double to_number(const Value&, const Member&);
 std::int64_t to_integer(const Value&, const Member&, std::int64_t low, std::int64_t high);
-std::string to_string(const Value&);
+std::string to_string(const Value&, const Member&);
 FilePath to_file(const Value&);
 int to_choice(const Value&, const Member&);
 void to_numbers(const Value&, const Member&, double* out, int count);
@@ -88,7 +121,7 @@ struct Convert<T> {
 template <>
 struct Convert<std::string> {
   static constexpr Kind kind = Kind::string;
-  static void read(const Value& v, const Member&, std::string& out) { out = to_string(v); }
+  static void read(const Value& v, const Member& m, std::string& out) { out = to_string(v, m); }
   static Value write(const std::string& v, const Member&) { return Value(v); }
 };
 
@@ -266,8 +299,24 @@ class Description {
     return *this;
   }
 
+  /// Throws for a group without members; called when the class has been described.
+  void finish() const {
+    if (opened_ && opened_->members == info_.members.size()) throw Error("group '" + opened_->name + "' has no members");
+  }
+
+  /// Members that follow, up to the next group, stand together in a panel, under this name.
+  Description& group(std::string name) {
+    finish();
+    if (name.empty()) throw Error("a group has no name");
+    for (const Member& m : info_.members)
+      if (m.owner == &info_ && m.group == name) throw Error("group '" + name + "' is opened twice");
+    opened_ = {std::move(name), info_.members.size()};
+    return *this;
+  }
+
   /// A member: its name in files, its unit ("1" for a pure number, "" for what is no number), what it is, and any of
-  /// range(), at_least(), more_than(), choices(), required, Effect. The member holds its value in this unit.
+  /// range(), at_least(), more_than(), soft(), logarithmic, choices(), when(), unless(), required, Effect, Meaning. The member
+  /// holds its value in this unit.
   template <auto P, class... Options>
   Description& member(std::string name, std::string unit, std::string text, Options... options) {
     using Type = typename detail::PointerTo<P>::Type;
@@ -280,6 +329,7 @@ class Description {
     m.in_double = std::is_same_v<Type, DoublePoint3> || std::is_same_v<Type, std::vector<DoublePoint3>>;
     m.component_class = detail::referred_class<detail::Referee<Type>>();
     m.owner = &info_;
+    if (opened_) m.group = opened_->name;
     m.get = [](const Component& c, const Member& self) {
       return detail::Convert<Type>::write(static_cast<const T&>(c).*P, self);
     };
@@ -302,8 +352,17 @@ class Description {
   static void option(Member& m, Effect e) { m.effect = e; }
   static void option(Member& m, Required) { m.required = true; }
   static void option(Member& m, std::vector<std::string> names) { m.choices = std::move(names); }
+  static void option(Member& m, SoftRange r) { m.soft = r; }
+  static void option(Member& m, Logarithmic) { m.logarithmic = true; }
+  static void option(Member& m, Meaning meaning) { m.meaning = meaning; }
+  static void option(Member& m, Condition c) { m.conditions.push_back(std::move(c)); }
 
+  struct Opened {
+    std::string name;
+    size_t members = 0;  ///< described before it
+  };
   ClassInfo& info_;
+  std::optional<Opened> opened_;
 };
 
 // ---- registration -------------------------------------------------------------------------------------------------
@@ -346,6 +405,7 @@ class Register {
   static void describe(ClassInfo& info) {
     Description<T> d(info);
     T::describe(d);
+    d.finish();
   }
   static inline RegistrationNode node_{typeid(T), parent_type<T>(), describe, factory(), nullptr};
 };

@@ -12,11 +12,13 @@ namespace etendue {
 
 /// A JSON Schema (draft 2020-12) of every class known, plugins included. A component is an object whose "class" names
 /// its class; its members follow by name. `$defs` holds one definition for each class that can be made, and
-/// "<Interface>.any" for what may stand where an interface is expected. Numbers are in the unit of "x-unit".
+/// "<Interface>.any" for what may stand where an interface is expected. Numbers are in the unit of "x-unit". What a panel needs
+/// besides are "x-group", "x-slider" (its ends), "x-logarithmic", "x-meaning", "x-when" (conditions, all of which must hold for
+/// the member to matter: {"member": …, "is": […]}, or "is_not", or "given") and "x-effect".
 std::string json_schema();
 
-/// A class as a JSON object: name, parent, summary, source, provider, members (type, unit, default, range, choices, text,
-/// what an edit forces) and the classes that can be made of it.
+/// A class as a JSON object: name, parent, summary, source, provider, members (type, unit, default, range, slider, choices,
+/// meaning, group, when it matters, text, what an edit forces) and the classes that can be made of it.
 std::string class_json(const ClassInfo&);
 /// All classes, by name, as a JSON array of such objects.
 std::string classes_json();

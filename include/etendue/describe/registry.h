@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <typeindex>
+#include <variant>
 #include <vector>
 
 #include "etendue/describe/component.h"
@@ -28,6 +29,35 @@ struct Range {
     return (open_low ? x > low : x >= low || float(x) >= float(low)) && (x <= high || float(x) <= float(high));
   }
   std::string text() const;
+};
+
+/// Where a slider for a member ends, in the member's unit: what is usual. More may be written, as far as the Range goes.
+struct SoftRange {
+  double low = 0, high = 0;
+};
+
+/// What a colour, or a map that stands for one, is read as.
+enum class Meaning : std::uint8_t {
+  plain,        ///< whoever uses it says
+  number,       ///< of a map: only its scalar counts (a roughness, a share, a height)
+  reflectance,  ///< a fraction of light, from 0 to 1, per wavelength
+  radiance,     ///< emitted light, or its spectrum's shape
+  coefficient,  ///< per wavelength, not negative, of any size: of absorption, of scattering; a distance for each wavelength
+  index,        ///< of refraction
+};
+std::string_view name(Meaning);
+
+/// What another member of the same component must hold for a member to matter.
+struct Condition {
+  using Wanted = std::variant<bool, double, std::string>;
+  std::string member;
+  /// One of these, numbers in that member's unit. None: anything but false, 0, "", an empty list, none or a map that is 0
+  /// everywhere.
+  std::vector<Wanted> values;
+  bool unless = false;  ///< the opposite
+  bool holds(const Component&) const;
+  /// "'pigment' is color or melanin", "'file' is not given"
+  std::string text(const ClassInfo&) const;
 };
 
 enum class Kind : std::uint8_t {
@@ -56,10 +86,15 @@ struct Member {
   bool in_double = false;  ///< its numbers are places in double; else they are floats
   Effect effect = Effect::rerender;
   std::optional<Range> range;
-  std::vector<std::string> choices;
-  std::string component_class;       ///< the interface a `component` member refers to
-  const ClassInfo* owner = nullptr;  ///< the class that declares it
-  Value default_value;               ///< of a default-constructed object; none for abstract classes
+  std::optional<SoftRange> soft;
+  bool logarithmic = false;          ///< a slider goes by ratios, not by differences
+  std::vector<std::string> choices;  ///< of a choice, a string or the strings of a list: all there are
+  Meaning meaning = Meaning::plain;
+  std::string group;                  ///< members of one group stand together in a panel; "" for the first of a class
+  std::vector<Condition> conditions;  ///< all must hold for the member to matter; see `matters`
+  std::string component_class;        ///< the interface a `component` member refers to
+  const ClassInfo* owner = nullptr;   ///< the class that declares it
+  Value default_value;                ///< of a default-constructed object; none for abstract classes
 
   Value (*get)(const Component&, const Member&) = nullptr;
   /// Converts and stores; throws Error without checking who asks. Call `set` below instead.
@@ -115,6 +150,9 @@ Value get(const Component&, std::string_view member);
 /// Checks type, unit, range and choices and sets a member; the one way by which anything is ever set. Numbers without a
 /// unit are in the member's unit. Throws Error with value.location.
 void set(Component&, std::string_view member, const Value&);
+
+/// Whether a member's value makes any difference while the component's other members are what they are.
+bool matters(const Component&, const Member&);
 
 /// A deep copy: every member copied, shared parts shared in the copy as well.
 Ref<Component> copy(const Component&);

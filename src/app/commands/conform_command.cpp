@@ -18,7 +18,7 @@ namespace {
 
 struct ConformOptions {
   std::vector<std::string> classes, plugins;
-  bool quick = false, thorough = false, parts = false;
+  bool quick = false, thorough = false, parts = false, interfaces = false;
   int drawn = 3, threads = 0;
   std::uint64_t seed = 1;
   std::string report;
@@ -41,6 +41,7 @@ void ConformOptions::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "Draw other parts and samples")->capture_default_str()->type_name("N");
   command.add_option("--report", report, "Write all outcomes as an HTML page")->type_name("FILE");
   command.add_flag("--parts", parts, "Print the parts that were tried");
+  command.add_flag("--interfaces", interfaces, "Only list the interfaces, and which of them have checks of their own");
   command.add_option("--threads", threads, "Threads to use; 0: all cores")
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""));
@@ -94,8 +95,20 @@ void print(const std::vector<conform::Outcome>& outcomes, bool parts) {
   fmt::print("{} classes, {} checks passed, {} failed, {} not tried\n", classes.size(), all.passed, all.failed, all.not_tried);
 }
 
+/// All interfaces, and by what parts of them are tried.
+int list_interfaces() {
+  const std::vector<std::string> checked = conform::checked_interfaces();
+  for (const ClassInfo* info : Registry::instance().all()) {
+    if (info->parent) continue;
+    const bool own = std::ranges::find(checked, info->name) != checked.end();
+    fmt::print("{:20} {}\n", info->name, own ? "checked as a component and by its own checks" : "checked as a component");
+  }
+  return exit_status::done;
+}
+
 int run_conform(const ConformOptions& options) {
   for (const std::string& plugin : options.plugins) Registry::instance().load_plugin(plugin);
+  if (options.interfaces) return list_interfaces();
   if (!options.report.empty()) {
     OutputFiles files;
     files.add(options.report, {intern("--report"), 0, 0});

@@ -75,7 +75,7 @@ constexpr Example examples[] = {
      "RampMap { along: input, input: NoiseMap { size: 0.3 m }, positions: [0.3, 0.5, 0.7], colors: [srgb(0.1, 0.1, 0.5), 0.9, "
      "srgb(0.6, 0.1, 0.05)] }"},
     {"TransformedMap", "TransformedMap { map: WoodMap { size: 0.25 m }, transform: rotate(60 deg, \"x\") }"},
-    {"HypertextureMap", "HypertextureMap { first: 0.05, second: 0.9, center: [0, -0.5, 0.5] m, radius: 1 m }"},
+    {"HypertextureMap", "HypertextureMap { first: 0.05, second: 0.9, centre: [0, -0.5, 0.5] m, radius: 1 m }"},
     {"AttributeMap", ""},
     {"OperandShader", ""},
     {"PassThrough", ""},
@@ -118,7 +118,7 @@ constexpr const char* floor_and_lamps = R"(
 constexpr const char* close_camera =
     "PerspectiveCamera { from: [0.6, -5.4, 2.6], to: [0, 0, 0.85], up: [0, 0, 1], fov: 30 deg }";
 constexpr const char* path_tracer = "PathTracer { max_depth: 24 }";
-constexpr const char* ball = "Sphere { center: [0, 0, 1.001] m, shader: part }";
+constexpr const char* ball = "Sphere { centre: [0, 0, 1.001] m, shader: part }";
 
 /// A room with a lamp, a ball of glass and a dull one: for renderers, cameras and tone maps.
 constexpr const char* room = R"(
@@ -129,15 +129,15 @@ constexpr const char* room = R"(
         Rectangle { corner: [1, -1, 0] m, edge_u: [0, 0, 2] m, edge_v: [0, 2, 0] m, shader: Lambertian { color: srgb(0.1, 0.4, 0.1) } }
         Rectangle { corner: [-0.25, -0.25, 1.98] m, edge_u: [0, 0.5, 0] m, edge_v: [0.5, 0, 0] m
                     emission: DiffuseEmission { radiance: 14 } }
-        Sphere { center: [0.45, -0.3, 0.36] m, radius: 0.35 m, shader: Dielectric {} }
-        Sphere { center: [-0.4, 0.3, 0.45] m, radius: 0.44 m, shader: Plastic { color: 0.3 } })";
+        Sphere { centre: [0.45, -0.3, 0.36] m, radius: 0.35 m, shader: Dielectric {} }
+        Sphere { centre: [-0.4, 0.3, 0.45] m, radius: 0.44 m, shader: Plastic { color: 0.3 } })";
 constexpr const char* room_camera = "PerspectiveCamera { from: [0, -4.6, 1], to: [0, 0, 1], up: [0, 0, 1], fov: 32 deg }";
 
 /// A corner of white walls in front of which lamps are tried.
 constexpr const char* walls = R"(
         Rectangle { corner: [-4, -4, 0] m, edge_u: [8, 0, 0] m, edge_v: [0, 8, 0] m, shader: Lambertian { color: 0.6 } }
         Rectangle { corner: [-4, 1, 0] m, edge_u: [8, 0, 0] m, edge_v: [0, 0, 5] m, shader: Lambertian { color: 0.6 } }
-        Sphere { center: [-0.7, -0.2, 0.35] m, radius: 0.35 m, shader: Lambertian { color: 0.4 } })";
+        Sphere { centre: [-0.7, -0.2, 0.35] m, radius: 0.35 m, shader: Lambertian { color: 0.4 } })";
 constexpr const char* wall_camera =
     "PerspectiveCamera { from: [0.8, -6.5, 2.2], to: [0, 0, 1.15], up: [0, 0, 1], fov: 34 deg }";
 
@@ -146,7 +146,7 @@ std::string lamp_objects(const ClassInfo& info, const EmissionShader& emission) 
   if (emission.only_at_infinity())
     return fmt::format(
         "Environment {{ emission: part }}\n        Rectangle {{ corner: [-8, -8, 0] m, edge_u: [16, 0, 0] m, edge_v: "
-        "[0, 16, 0] m, shader: Lambertian {{ color: 0.5 }} }}\n        Sphere {{ center: [0, 0, 1] m, shader: "
+        "[0, 16, 0] m, shader: Lambertian {{ color: 0.5 }} }}\n        Sphere {{ centre: [0, 0, 1] m, shader: "
         "Conductor {{}} }}");
   if (info.name == "IesEmission") return std::string("Point { position: [0, 0.3, 2.2] m, emission: part }") + walls;
   for (const char* name : {"ProjectorEmission", "SpotEmission"})
@@ -170,7 +170,7 @@ std::optional<std::string> object_scene(const SceneObject& object) {
   if (object.unbounded())
     return scene_text(
         path_tracer, close_camera, "NoToneMap {}",
-        fmt::format("Instance {{ scene: EmbreeScene {{ objects: [ part ] }}, shader: {} }}\n        Sphere {{ center: "
+        fmt::format("Instance {{ scene: EmbreeScene {{ objects: [ part ] }}, shader: {} }}\n        Sphere {{ centre: "
                     "[0, 0, 1] m, shader: Conductor {{}} }}\n        Environment {{ emission: DiffuseEmission {{ "
                     "radiance: 1 }} }}",
                     shader));
@@ -227,11 +227,11 @@ std::optional<PictureScene> picture_of(const ClassInfo& info, const conform::Fix
   else if (is("ObjectMap"))
     picture.description =
         scene_text(path_tracer, close_camera, as_it_is,
-                   std::string("Sphere { center: [0, 0, 1] m, shader: Lambertian { color: part } }") + floor_and_lamps);
+                   std::string("Sphere { centre: [0, 0, 1] m, shader: Lambertian { color: part } }") + floor_and_lamps);
   else if (is("VolumeShader"))
     picture.description =
         scene_text(path_tracer, close_camera, as_it_is,
-                   std::string("Sphere { center: [0, 0, 1.001] m, shader: PassThrough {}, interior: part }") + floor_and_lamps);
+                   std::string("Sphere { centre: [0, 0, 1.001] m, shader: PassThrough {}, interior: part }") + floor_and_lamps);
   else if (is("EmissionShader"))
     picture.description =
         // A beam without width is found from its own end alone.

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "check/conform/fixtures.h"
+#include "check/conform/fixtures/fixtures.h"
 #include "etendue/describe/registry.h"
 
 namespace etendue {

@@ -147,8 +147,9 @@ class CameraTrial {
   float time_ = 0;
 };
 
-}  // namespace
-
 void check_camera(Trial& trial) { CameraTrial(trial, trial.part<Camera>()).check(); }
 
+const RegisterCheck<Camera> registered(check_camera);
+
+}  // namespace
 }  // namespace etendue::conform

@@ -221,8 +221,6 @@ void check_files(Trial& trial) {
   }
 }
 
-}  // namespace
-
 void check_component(Trial& trial) {
   check_saving(trial);
   check_copying(trial);
@@ -231,4 +229,7 @@ void check_component(Trial& trial) {
   check_files(trial);
 }
 
+const RegisterCheck<Component> registered(check_component);
+
+}  // namespace
 }  // namespace etendue::conform

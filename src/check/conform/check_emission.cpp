@@ -301,8 +301,6 @@ class EmissionTrial {
   std::array<float, spectrum_size> lowest_, highest_{};
 };
 
-}  // namespace
-
 void check_emission(Trial& trial) {
   EmissionShader& emission = trial.part<EmissionShader>();
   if (!emission.only_at_infinity())
@@ -312,4 +310,7 @@ void check_emission(Trial& trial) {
   if (emission.knows_incident()) around.check_incident();
 }
 
+const RegisterCheck<EmissionShader> registered(check_emission);
+
+}  // namespace
 }  // namespace etendue::conform

@@ -7,6 +7,8 @@
 
 namespace etendue::conform {
 
+namespace {
+
 void check_filter(Trial& trial) {
   const Filter& filter = trial.part<Filter>();
   const float radius = filter.radius();
@@ -41,4 +43,7 @@ void check_filter(Trial& trial) {
   }
 }
 
+const RegisterCheck<Filter> registered(check_filter);
+
+}  // namespace
 }  // namespace etendue::conform

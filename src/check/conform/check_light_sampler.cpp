@@ -16,14 +16,14 @@ constexpr const char* varied = R"(EmbreeScene { objects: [
   Rectangle { transform: translate([0, 0, 2]), emission: DiffuseEmission { radiance: 3 } }
   Rectangle { transform: translate([3, 0, 1]), emission: DiffuseEmission { radiance: 0.1, sides: both } }
   Rectangle { transform: translate([-2, 1, -1]), emission: DiffuseEmission { radiance: 1, sides: back } }
-  Sphere { center: [1, 2, 0], radius: 0.3, emission: DiffuseEmission { radiance: 20 } }
-  Sphere { center: [-20, 5, 3], radius: 0.01, emission: DiffuseEmission { radiance: 1e4 } }
+  Sphere { centre: [1, 2, 0], radius: 0.3, emission: DiffuseEmission { radiance: 20 } }
+  Sphere { centre: [-20, 5, 3], radius: 0.01, emission: DiffuseEmission { radiance: 1e4 } }
   Disc { transform: translate([0, -3, 0]), emission: CosineLobeEmission { radiance: 2 } }
   Point { position: [-1, -1, 1], emission: DiffuseEmission { radiance: 0.5 } }
   Point { position: [2, -1, 3], emission: SpotEmission { radiance: 5 } }
   Distant { direction: [1, -1, -2], emission: DiffuseEmission { radiance: 0.01 } }
   Environment { emission: EnvironmentEmission { radiance: 0.2 } }
-  Sphere { center: [4, 4, 4], radius: 0.5, emission: DiffuseEmission { radiance: 0 } }
+  Sphere { centre: [4, 4, 4], radius: 0.5, emission: DiffuseEmission { radiance: 0 } }
   TriangleMesh { positions: [[-3, -3, 0], [-2, -3, 0], [-3, -2, 1]], triangles: [[0, 1, 2]],
                  emission: DiffuseEmission { radiance: 4, sides: both } }
 ] })";
@@ -127,8 +127,6 @@ class LightTrial {
   Ref<Scene> scene_;
 };
 
-}  // namespace
-
 void check_light_sampler(Trial& trial) {
   LightSampler& sampler = trial.part<LightSampler>();
   const Ref<Scene> dark = scene_of("EmbreeScene { objects: [Sphere {}] }");
@@ -140,4 +138,7 @@ void check_light_sampler(Trial& trial) {
   LightTrial(trial, sampler, varied).check();
 }
 
+const RegisterCheck<LightSampler> registered(check_light_sampler);
+
+}  // namespace
 }  // namespace etendue::conform

@@ -189,8 +189,9 @@ class MapTrial {
   Ref<SceneObject> square_;
 };
 
-}  // namespace
-
 void check_object_map(Trial& trial) { MapTrial(trial, trial.part<ObjectMap>()).check(); }
 
+const RegisterCheck<ObjectMap> registered(check_object_map);
+
+}  // namespace
 }  // namespace etendue::conform

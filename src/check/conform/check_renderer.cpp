@@ -84,8 +84,6 @@ std::string check_scene(Trial& trial, const KnownScene& known) {
   return {};
 }
 
-}  // namespace
-
 void check_renderer(Trial& trial) {
   const Renderer& part = trial.part<Renderer>();
   if (typeid(part) == typeid(Renderer)) return;  // the interface itself renders nothing
@@ -101,4 +99,7 @@ void check_renderer(Trial& trial) {
   if (tried == 0) trial.not_tried("pictures of known value", "of all of them the renderer says that it misses " + missed);
 }
 
+const RegisterCheck<Renderer> registered(check_renderer);
+
+}  // namespace
 }  // namespace etendue::conform

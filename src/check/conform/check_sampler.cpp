@@ -120,8 +120,6 @@ void check_spread(Trial& trial, const Sampler& sampler) {
   }
 }
 
-}  // namespace
-
 void check_sampler(Trial& trial) {
   const Sampler& sampler = trial.part<Sampler>();
   check_range(trial, sampler);
@@ -130,4 +128,7 @@ void check_sampler(Trial& trial) {
   check_spread(trial, sampler);
 }
 
+const RegisterCheck<Sampler> registered(check_sampler);
+
+}  // namespace
 }  // namespace etendue::conform

@@ -187,8 +187,6 @@ bool too_near(const ObjectTrial& o, const Point3& from) {
   return cosine < 0.02f;
 }
 
-}  // namespace
-
 void check_scene_object(Trial& trial) {
   const SceneObject& object = trial.part<SceneObject>();
   if (object.unbounded()) {  // it has no area, no size and no points to choose
@@ -219,4 +217,7 @@ void check_scene_object(Trial& trial) {
   check_moved(o);
 }
 
+const RegisterCheck<SceneObject> registered(check_scene_object);
+
+}  // namespace
 }  // namespace etendue::conform

@@ -160,8 +160,6 @@ void check_dispersion(Trial& trial, const Shader& shader, const BoundShader& bou
   }
 }
 
-}  // namespace
-
 void check_shader(Trial& trial) {
   Shader& shader = trial.part<Shader>();
   const Ref<SceneObject> carrier = carrier_of(shader);
@@ -181,4 +179,7 @@ void check_shader(Trial& trial) {
   }
 }
 
+const RegisterCheck<Shader> registered(check_shader);
+
+}  // namespace
 }  // namespace etendue::conform

@@ -181,8 +181,9 @@ class ToneMapTrial {
   const RgbSpace& space_;
 };
 
-}  // namespace
-
 void check_tone_map(Trial& trial) { ToneMapTrial(trial, trial.part<ToneMap>()).check(); }
 
+const RegisterCheck<ToneMap> registered(check_tone_map);
+
+}  // namespace
 }  // namespace etendue::conform

@@ -150,8 +150,6 @@ void check_free_flight(Trial& trial, const VolumeShader& volume) {
   }
 }
 
-}  // namespace
-
 void check_volume(Trial& trial) {
   const VolumeShader& volume = trial.part<VolumeShader>();
   check_coefficients(trial, volume);
@@ -159,4 +157,7 @@ void check_volume(Trial& trial) {
   check_free_flight(trial, volume);
 }
 
+const RegisterCheck<VolumeShader> registered(check_volume);
+
+}  // namespace
 }  // namespace etendue::conform

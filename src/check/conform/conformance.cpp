@@ -3,26 +3,44 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <mutex>
 #include <optional>
+#include <set>
 
+#include "check/conform/fixtures/fixtures.h"
 #include "describe/guard.h"
 #include "draw.h"
 
 namespace etendue::conform {
 namespace {
 
-/// Which interface is checked how. A class is checked by all rows it is a kind of.
+// Zero before any constructor runs, so that nodes can enlist in any order.
+constinit CheckNode* first_check = nullptr;
+
+/// A check, with the interface that it is for; null: for every component.
 struct InterfaceCheck {
-  const char* interface;
+  const ClassInfo* interface;
   void (*check)(Trial&);
 };
-constexpr InterfaceCheck interface_checks[] = {
-    {"Shader", check_shader},        {"VolumeShader", check_volume},      {"Camera", check_camera},
-    {"Filter", check_filter},        {"Sampler", check_sampler},          {"EmissionShader", check_emission},
-    {"ObjectMap", check_object_map}, {"SceneObject", check_scene_object}, {"LightSampler", check_light_sampler},
-    {"Renderer", check_renderer},    {"ToneMap", check_tone_map},
-};
+
+int depth(const ClassInfo* info) { return info ? 1 + depth(info->parent) : 0; }
+
+/// All that are registered: what holds of more classes first, then by name, then as they were registered.
+std::vector<InterfaceCheck> interface_checks() {
+  std::vector<InterfaceCheck> checks;
+  for (const CheckNode* node = first_check; node; node = node->next) {
+    const bool of_all = node->interface == typeid(Component);
+    const ClassInfo* info = of_all ? nullptr : Registry::instance().find(std::type_index(node->interface));
+    if (of_all || info) checks.insert(checks.begin(), {info, node->check});
+  }
+  std::ranges::stable_sort(checks, [](const InterfaceCheck& a, const InterfaceCheck& b) {
+    return std::pair(depth(a.interface), a.interface ? a.interface->name : "") <
+           std::pair(depth(b.interface), b.interface ? b.interface->name : "");
+  });
+  return checks;
+}
 
 std::vector<const ClassInfo*> chosen(const std::vector<std::string>& names) {
   const Registry& registry = Registry::instance();
@@ -64,9 +82,8 @@ std::vector<Outcome> try_part(const ClassInfo& info, int part, const Options& op
     return {{info.name, part == 0 ? "with defaults" : "with random members", drawn.text,
              "no part could be made: " + drawn.refused, Result::not_tried}};
   Trial trial(*drawn.part, drawn.text, part == 0, fixtures, options.effort, random());
-  run(trial, check_component, "component");
-  for (const InterfaceCheck& row : interface_checks)
-    if (info.is_a(*Registry::instance().find(row.interface))) run(trial, row.check, row.interface);
+  for (const InterfaceCheck& row : interface_checks())
+    if (!row.interface || info.is_a(*row.interface)) run(trial, row.check, row.interface ? row.interface->name : "component");
   return trial.outcomes();
 }
 
@@ -94,10 +111,33 @@ void Trial::not_tried(const std::string& check, const std::string& why) {
   o.detail = why;
 }
 
+std::string Trial::folder() const {
+  std::string pattern = fixtures_->folder() + "/trial-XXXXXX";
+  if (folder_.empty()) {
+    if (!mkdtemp(pattern.data())) throw Error("cannot make a temporary folder '" + pattern + "'");
+    folder_ = pattern;
+  }
+  return folder_;
+}
+
+void enlist(CheckNode& node) noexcept {
+  node.next = first_check;
+  first_check = &node;
+}
+
+void delist(CheckNode& node) noexcept {
+  for (CheckNode** link = &first_check; *link; link = &(*link)->next)
+    if (*link == &node) {
+      *link = node.next;
+      return;
+    }
+}
+
 std::vector<std::string> checked_interfaces() {
-  std::vector<std::string> names;
-  for (const InterfaceCheck& row : interface_checks) names.emplace_back(row.interface);
-  return names;
+  std::set<std::string> names;
+  for (const InterfaceCheck& row : interface_checks())
+    if (row.interface) names.insert(row.interface->name);
+  return {names.begin(), names.end()};
 }
 
 std::vector<Outcome> conform(const Options& options) {

@@ -44,6 +44,21 @@ class Drawer {
     return c;
   }
 
+  /// Of lists too: of any length.
+  Value any_value(const ClassInfo& info, const Member& m) {
+    if (m.kind == Kind::file) {
+      const std::string path = fixtures_->file_for(info, m);
+      return path.empty() || m.list ? Value() : Value(FilePath{path, ""});
+    }
+    if (!m.list) return value_for(m, 1);
+    if (m.kind == Kind::component) return component_list(m, 1);
+    Numbers n;
+    n.width = m.kind == Kind::vector2 ? 2 : m.kind == Kind::integer || m.kind == Kind::number ? 1 : 3;
+    for (size_t i = size_t(n.width) * (1 + index(4)); i > 0; --i)
+      n.values.push_back(m.kind == Kind::integer ? whole_number(m) : number(m, plain_default(m, 0)));
+    return m.kind == Kind::string ? Value() : Value(std::move(n));
+  }
+
  private:
   double uniform() { return double((*random_)() >> 11) * 0x1p-53; }
   double between(double a, double b) { return a + (b - a) * uniform(); }
@@ -76,7 +91,9 @@ class Drawer {
       case Kind::transform: return Value(transform());
       case Kind::component: return component_for(m, depth);
       case Kind::string:
-      case Kind::file: return {};  // nothing is known of which are valid
+        if (!m.choices.empty()) return Value(m.choices[index(m.choices.size())]);
+        return {};  // nothing is known of which are valid
+      case Kind::file: return {};
     }
     return {};
   }
@@ -238,6 +255,10 @@ Drawn default_part(const ClassInfo& info, const Fixtures& fixtures, std::mt19937
       if (first.refused.empty()) first = drawn;
     }
   return first;
+}
+
+Value draw_value(const ClassInfo& info, const Member& m, const Fixtures& fixtures, std::mt19937_64& random) {
+  return Drawer(fixtures, random).any_value(info, m);
 }
 
 Drawn part_with_files(const ClassInfo& info, const Fixtures& fixtures, std::mt19937_64& random) {

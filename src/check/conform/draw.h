@@ -4,8 +4,8 @@
 #include <random>
 #include <string>
 
+#include "check/conform/fixtures/fixtures.h"
 #include "etendue/describe/registry.h"
-#include "fixtures.h"
 
 namespace etendue::conform {
 
@@ -21,6 +21,9 @@ Drawn default_part(const ClassInfo&, const Fixtures&, std::mt19937_64&);
 /// With random members: numbers over their ranges, ends included, choices, colours, transforms, and other components in turn.
 /// What `prepare` refuses is drawn again.
 Drawn draw_part(const ClassInfo&, const Fixtures&, std::mt19937_64&);
+
+/// A random value for one member, which its class may refuse; none: nothing is known of what fits.
+Value draw_value(const ClassInfo&, const Member&, const Fixtures&, std::mt19937_64&);
 
 /// With defaults and a sample file for each member that names one.
 Drawn part_with_files(const ClassInfo&, const Fixtures&, std::mt19937_64&);

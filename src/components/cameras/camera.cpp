@@ -6,13 +6,14 @@ namespace etendue {
 
 void Camera::describe(Description<Camera>& d) {
   d.summary("Where a picture is taken from, and how (a sensor).")
-      .member<&Camera::shutter_open>("shutter_open", "s", "time at which the shutter opens")
-      .member<&Camera::shutter_close>("shutter_close", "s", "time at which the shutter closes; not before it opens")
+      .group("Shutter")
+      .member<&Camera::shutter_open>("shutter_open", "s", "time at which the shutter opens", soft(0, 1))
+      .member<&Camera::shutter_close>("shutter_close", "s", "time at which the shutter closes; not before it opens", soft(0, 1))
       .member<&Camera::shutter_opening>(
           "shutter_opening", "s", "how long it takes to open all the way, from shutter_open on; its opening grows linearly",
-          at_least(0))
+          at_least(0), soft(0, 1))
       .member<&Camera::shutter_closing>("shutter_closing", "s", "how long it takes to close all the way, until shutter_close",
-                                        at_least(0));
+                                        at_least(0), soft(0, 1));
 }
 
 // The opening over time is a trapezium of height 1. With the ramps a and b and the whole time T its area is T - (a + b) / 2;

@@ -12,13 +12,15 @@ class OrthographicCamera final : public Camera {
  public:
   static void describe(Description<OrthographicCamera>& d) {
     d.summary("A camera whose rays are parallel. Right in the picture is the viewing direction times up.")
+        .group("Placement")
         .member<&OrthographicCamera::from>("from", "m", "the middle of the film")
         .member<&OrthographicCamera::to>("to", "m", "a point in the middle of the picture")
         .member<&OrthographicCamera::up>("up", "1", "a direction that points upwards in the picture")
         .member<&OrthographicCamera::transform>(
             "transform", "", "moves and turns the camera as from, to and up have placed it; may change with time")
+        .group("View")
         .member<&OrthographicCamera::width>("width", "m", "width of what is seen; the height follows from the picture's shape",
-                                            more_than(0));
+                                            more_than(0), soft(0.01, 100), logarithmic);
   }
 
   std::optional<DoublePoint3> place() const override { return transform.written(shutter_open)(from); }

@@ -25,18 +25,22 @@ class PerspectiveCamera final : public Camera {
   static void describe(Description<PerspectiveCamera>& d) {
     d.summary("A camera with a pinhole or a thin lens. Right in the picture is the viewing direction times up.",
               "Kolb, Mitchell & Hanrahan 1995, A realistic camera model for computer graphics, section 2 (thin lens)")
+        .group("Placement")
         .member<&PerspectiveCamera::from>("from", "m", "where the camera is")
         .member<&PerspectiveCamera::to>("to", "m", "a point in the middle of the picture")
         .member<&PerspectiveCamera::up>("up", "1", "a direction that points upwards in the picture")
         .member<&PerspectiveCamera::transform>(
             "transform", "", "moves and turns the camera as from, to and up have placed it; may change with time")
-        .member<&PerspectiveCamera::fov>("fov", "deg", "angle of view", Range{0, 179, true})
+        .group("View")
+        .member<&PerspectiveCamera::fov>("fov", "deg", "angle of view", Range{0, 179, true}, soft(10, 120))
         .member<&PerspectiveCamera::fov_axis>("fov_axis", "", "the side of the picture the angle of view is measured across",
                                               choices("smaller", "larger", "width", "height"))
+        .group("Lens")
         .member<&PerspectiveCamera::lens_radius>("lens_radius", "m", "radius of the lens; 0: a pinhole, all is sharp",
-                                                 at_least(0))
+                                                 at_least(0), soft(0.0005, 0.1), logarithmic)
         .member<&PerspectiveCamera::focus_distance>(
-            "focus_distance", "m", "distance of the plane of sharp focus, along the axis; 0: at the point `to`", at_least(0));
+            "focus_distance", "m", "distance of the plane of sharp focus, along the axis; 0: at the point `to`", at_least(0),
+            soft(0.1, 100), logarithmic, when("lens_radius"));
   }
 
   std::optional<DoublePoint3> place() const override { return transform.written(shutter_open)(from); }

@@ -21,10 +21,13 @@ class CollimatedEmission final : public AxialEmission {
          "A beam like a laser's: the same radiance within a small cone about the surface's normal, or about an axis, and none "
          "beyond. Its divergence is not zero, so that its densities are finite and every renderer can deal with it; those that "
          "start at the light do so best.")
+        .group("Light")
         .member<&CollimatedEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
-                                          "radiance within the beam; only its shape counts when an amount is given");
+                                          "radiance within the beam; only its shape counts when an amount is given",
+                                          Meaning::radiance, soft(0.01, 1000), logarithmic);
     describe_amounts(d);
-    d.member<&CollimatedEmission::divergence>("divergence", "deg", "half of the cone's angle", range(1e-3, 10))
+    d.group("Beam")
+        .member<&CollimatedEmission::divergence>("divergence", "deg", "half of the cone's angle", range(1e-3, 10), logarithmic)
         .member<&CollimatedEmission::about>("about", "", "what the beam is about; a Point, which has no normal, takes the axis",
                                             choices("normal", "axis"))
         .member<&CollimatedEmission::axis>("axis", "1",

@@ -5,7 +5,7 @@
 namespace etendue {
 namespace {
 
-// Profile f = cos(theta)^n = (1 - h)^n for h < 1 (AxialEmission), the generalised Lambertian source: n = 0 is a hemisphere of
+// Profile f = cos(theta)^n = (1 - h)^n for h < 1 (AxialEmission), the generalized Lambertian source: n = 0 is a hemisphere of
 // constant radiance, n = 1 what many a diode is sold as. Omega = 2 pi / (n + 1); about the normal of a surface leaves, per area
 // and M, K = integral of cos^(n + 1) dw = 2 pi / (n + 2) on each side. Half of the greatest radiance is left at
 // cos(theta) = 2^(-1/n).
@@ -21,11 +21,15 @@ class CosineLobeEmission final : public AxialEmission {
          "Light that falls off as a power of the cosine to the surface's normal, or to an axis: a diode, a reflector lamp. Its "
          "intensity falls to a half at the angle whose cosine is 2^(-1/n), with n the exponent, and n + 1 on a surface.",
          "Moreno & Sun 2008, Modeling the radiation pattern of LEDs")
+        .group("Light")
         .member<&CosineLobeEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
-                                          "radiance in the middle; only its shape counts when an amount is given");
+                                          "radiance in the middle; only its shape counts when an amount is given",
+                                          Meaning::radiance, soft(0.01, 1000), logarithmic);
     describe_amounts(d);
-    d.member<&CosineLobeEmission::exponent>("exponent", "1",
-                                            "the cosine's power, n; 0: the same radiance all over a hemisphere", range(0, 1e6))
+    d.group("Lobe")
+        .member<&CosineLobeEmission::exponent>("exponent", "1",
+                                               "the cosine's power, n; 0: the same radiance all over a hemisphere",
+                                               range(0, 1e6), soft(1, 1000), logarithmic)
         .member<&CosineLobeEmission::about>("about", "", "what the lobe is about; a Point, which has no normal, takes the axis",
                                             choices("normal", "axis"))
         .member<&CosineLobeEmission::axis>(

@@ -14,8 +14,10 @@ class DiffuseEmission final : public ShapedEmission {
  public:
   static void describe(Description<DiffuseEmission>& d) {
     d.summary("Light that leaves with the same radiance in all directions.", "Lambert 1760, Photometria")
+        .group("Light")
         .member<&DiffuseEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
-                                       "radiance per wavelength; only its shape counts when an amount is given");
+                                       "radiance per wavelength; only its shape counts when an amount is given",
+                                       Meaning::radiance, soft(0.01, 1000), logarithmic);
     describe_amounts(d);
   }
 

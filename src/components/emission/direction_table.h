@@ -15,7 +15,7 @@ namespace etendue {
 class DirectionTable {
  public:
   /// Borders in degrees, increasing: `polar` within [0, 180], `azimuth` over at most 360. `importance` of a row and column need
-  /// not be normalised. Beyond the borders the density is 0.
+  /// not be normalized. Beyond the borders the density is 0.
   void build(const std::vector<double>& polar, const std::vector<double>& azimuth,
              const std::function<double(size_t row, size_t column)>& importance);
 

@@ -25,38 +25,36 @@ class EnvironmentEmission final : public EmissionShader {
  public:
   static void describe(Description<EnvironmentEmission>& d) {
     d.summary("Light that arrives from infinitely far away, from an image in longitude and latitude or of a map.")
+        .group("Light")
         .member<&EnvironmentEmission::file>("file", "",
                                             "the image, in longitude and latitude: its middle is seen along +z of the object, "
                                             "its top along +y, its left and right "
                                             "edges along -z, the middle of its left half along +x; none: `radiance` is used")
         .member<&EnvironmentEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
-                                           "radiance when there is no image; maps see (u, v) of the direction, v upwards")
-        .member<&EnvironmentEmission::scale>("scale", "1", "multiplies the radiance", at_least(0))
+                                           "radiance when there is no image; maps see (u, v) of the direction, v upwards",
+                                           Meaning::radiance, soft(0.01, 1000), logarithmic, unless("file"))
+        .group("Amount")
+        .member<&EnvironmentEmission::scale>("scale", "1", "multiplies the radiance", at_least(0), soft(0.01, 100), logarithmic,
+                                             unless("illuminance"))
         .member<&EnvironmentEmission::lux>(
             "illuminance", "lx", "on a plane that faces +y of the object, instead of what the scale gives; 0: not asked for",
-            at_least(0))
-        .member<&EnvironmentEmission::color_space>("color_space", "", "primaries and white of the image's RGB")
+            at_least(0), soft(1, 100000), logarithmic)
+        .group("Image")
+        .member<&EnvironmentEmission::color_space>("color_space", "", "primaries and white of the image's RGB",
+                                                   rgb_space_names(), when("file"))
         .member<&EnvironmentEmission::transfer>("transfer", "",
-                                                "how its numbers are encoded; auto: srgb for integers, linear for floats");
+                                                "how its numbers are encoded; auto: srgb for integers, linear for floats",
+                                                image_transfer_names(), when("file"));
   }
 
   void prepare() override {
     image_ = {};
     importance_.clear();
     total_ = 0;
-    if (!map) fail("radiance", "a map or a colour is needed");
-    constant_map_ = bool(map->constant());
+    if (!map && file.empty()) fail("radiance", "a map or a colour is needed");
+    constant_map_ = map && map->constant();
     factor_ = scale;
-    try {
-      space_ = &rgb_space(color_space);
-    } catch (const Error& e) {
-      fail("color_space", e.what());
-    }
-    try {
-      check_transfer(transfer);
-    } catch (const Error& e) {
-      fail("transfer", e.what());
-    }
+    space_ = &rgb_space(color_space);
     if (file.empty()) {
       if (lux > 0) ask_for(map_illuminance());
       return;

@@ -30,10 +30,14 @@ class IesEmission final : public ShapedEmission {
          "emits "
          "to the front only is left out.",
          "ANSI/IESNA LM-63-02, Standard file format for the electronic transfer of photometric data")
+        .group("Light")
         .member<&IesEmission::file>("file", "", "the .ies file", required)
-        .member<&IesEmission::map>("color", "1", "the spectrum's shape; the same everywhere");
+        .member<&IesEmission::map>("color", "1", "the spectrum's shape; the same everywhere", Meaning::radiance);
     describe_amounts(d);
-    d.member<&IesEmission::multiplier>("multiplier", "1", "multiplies the file's candelas", at_least(0))
+    d.group("Lamp")
+        .member<&IesEmission::multiplier>("multiplier", "1", "multiplies the file's candelas", at_least(0), soft(0.01, 100),
+                                          logarithmic, unless("power"), unless("luminous_flux"), unless("luminous_intensity"),
+                                          unless("illuminance"))
         .member<&IesEmission::axis>("axis", "1",
                                     "of a Point: where vertical angle 0 of type C points, or the beam of types A and B, in the "
                                     "object's own coordinates; of any length. On a surface the normal takes its place")
@@ -61,7 +65,7 @@ class IesEmission final : public ShapedEmission {
     const double luminance =
         integrate_spectrum(Quantity::flux, [&](float lambda) { return colour->at(lambda, ColorUse::radiance); });
     if (!(luminance > 0)) fail("color", "is black to the eye, so it cannot have the shape of a lamp's spectrum");
-    const double factor = ies_.tilt_factor(double(tilt)) * double(multiplier);
+    const double factor = ies_.tilt_factor(double(tilt)) * (amount_asked() ? 1 : double(multiplier));
     per_candela_ = float(factor / luminance);
     flux_ = ies_.lumens() * factor / luminance;
     front_ = front_lumens() * factor / luminance;

@@ -27,29 +27,22 @@ class ProjectorEmission final : public ShapedEmission {
          "An image, projected through a pinhole: for a Point, whose transform turns it. In the object's own coordinates light "
          "leaves along +z, with the image's top towards +y and its right towards -x, as seen from behind; look_at() points it. "
          "On a screen across its axis a white image is evenly white. Outside of the image is no light.")
+        .group("Image")
         .member<&ProjectorEmission::file>("file", "", "the image", required)
         .member<&ProjectorEmission::fov>("fov", "deg", "angle across the image", Range{0, 170, true})
         .member<&ProjectorEmission::fov_axis>("fov_axis", "", "the side of the image the angle is measured across",
                                               choices("smaller", "larger", "width", "height"))
-        .member<&ProjectorEmission::image_scale>("scale", "1",
-                                                 "multiplies the image; 1: white is an intensity of 1 in the axis", at_least(0))
-        .member<&ProjectorEmission::color_space>("color_space", "", "primaries and white of the image's RGB")
-        .member<&ProjectorEmission::transfer>("transfer", "",
-                                              "how its numbers are encoded; auto: srgb for integers, linear for floats");
+        .member<&ProjectorEmission::image_scale>(
+            "scale", "1", "multiplies the image; 1: white is an intensity of 1 in the axis", at_least(0), soft(0.01, 1000),
+            logarithmic, unless("power"), unless("luminous_flux"), unless("luminous_intensity"), unless("illuminance"))
+        .member<&ProjectorEmission::color_space>("color_space", "", "primaries and white of the image's RGB", rgb_space_names())
+        .member<&ProjectorEmission::transfer>(
+            "transfer", "", "how its numbers are encoded; auto: srgb for integers, linear for floats", image_transfer_names());
     describe_amounts(d);
   }
 
   void prepare() override {
-    try {
-      space_ = &rgb_space(color_space);
-    } catch (const Error& e) {
-      fail("color_space", e.what());
-    }
-    try {
-      check_transfer(transfer);
-    } catch (const Error& e) {
-      fail("transfer", e.what());
-    }
+    space_ = &rgb_space(color_space);
     try {
       image_ = read_linear_image(file.resolved(), transfer);
     } catch (const Error& e) {

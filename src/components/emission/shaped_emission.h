@@ -45,20 +45,24 @@ class ShapedEmission : public EmissionShader {
   /// The members for amounts.
   template <class T>
   static void describe_amounts(Description<T>& d) {
-    d.template member<&T::watts>("power", "W",
-                                 "power of each object that has this emission, from its whole area, between 360 and 830 nm; 0: "
-                                 "as the radiance says",
-                                 at_least(0))
-        .template member<&T::lumens>("luminous_flux", "lm", "the same in lumens; 0: not asked for", at_least(0))
+    d.group("Amount")
+        .template member<&T::watts>(
+            "power", "W",
+            "power of each object that has this emission, from its whole area, between 360 and 830 nm; 0: "
+            "as the radiance says",
+            at_least(0), soft(0.1, 10000), logarithmic)
+        .template member<&T::lumens>("luminous_flux", "lm", "the same in lumens; 0: not asked for", at_least(0),
+                                     soft(1, 100000), logarithmic)
         .template member<&T::candelas>("luminous_intensity", "cd",
                                        "of each object along its axis (its mean normal where the emission has none; of a "
                                        "closed object the mean over all directions); 0: not asked for",
-                                       at_least(0))
+                                       at_least(0), soft(1, 100000), logarithmic)
         .template member<&T::lux>("illuminance", "lx",
                                   "on a surface across that axis at `distance`, if nothing is between; from infinity, on a "
                                   "plane that faces the light, or upwards; 0: not asked for",
-                                  at_least(0))
-        .template member<&T::distance>("distance", "m", "from the middle of the object, for `illuminance`", more_than(0));
+                                  at_least(0), soft(1, 100000), logarithmic)
+        .template member<&T::distance>("distance", "m", "from the middle of the object, for `illuminance`", more_than(0),
+                                       soft(0.1, 100), logarithmic, when("illuminance"));
   }
 
   /// Checks the amounts and the map, called `name` in files. Derived classes call it last.

@@ -27,23 +27,26 @@ class SkyEmission final : public EmissionShader {
          "Hosek & Wilkie 2012, An analytic model for full spectral sky-dome radiance; 2013, Adding a solar-radiance function "
          "to "
          "the Hosek-Wilkie skylight model; the sun's place: Astronomical Almanac")
+        .group("Place of the sun")
         .member<&SkyEmission::to_sun>("sun_direction", "1",
-                                      "from the ground towards the sun, of any length; used without a time")
+                                      "from the ground towards the sun, of any length; used without a time", unless("time"))
         .member<&SkyEmission::time>(
             "time", "", "universal time, \"2024-06-21T12:00:00Z\": the sun stands where it does then, seen from the place")
-        .member<&SkyEmission::latitude>("latitude", "deg", "of the place, north of the equator", range(-90, 90))
-        .member<&SkyEmission::longitude>("longitude", "deg", "of the place, east of Greenwich", range(-180, 180))
+        .member<&SkyEmission::latitude>("latitude", "deg", "of the place, north of the equator", range(-90, 90), when("time"))
+        .member<&SkyEmission::longitude>("longitude", "deg", "of the place, east of Greenwich", range(-180, 180), when("time"))
+        .group("Sky")
         .member<&SkyEmission::turbidity>("turbidity", "1",
                                          "how hazy the air is: 2 very clear, 3 clear, 6 warm and moist, 10 hazy", range(1, 10))
-        .member<&SkyEmission::ground_albedo>("ground_albedo", "1",
-                                             "reflectance of the ground all around, which brightens the sky")
+        .member<&SkyEmission::ground_albedo>(
+            "ground_albedo", "1", "reflectance of the ground all around, which brightens the sky", Meaning::reflectance)
         .member<&SkyEmission::sun>("sun", "", "whether the sun's disc is there")
         .member<&SkyEmission::sun_diameter>("sun_diameter", "deg",
                                             "angle across the sun's disc; a larger one is as much darker as it is larger",
-                                            Range{0, 20, true})
-        .member<&SkyEmission::scale>("scale", "1", "multiplies the radiance", at_least(0))
+                                            Range{0, 20, true}, soft(0.1, 5), logarithmic, when("sun"))
+        .group("Amount")
+        .member<&SkyEmission::scale>("scale", "1", "multiplies the radiance", at_least(0), soft(0.01, 100), logarithmic)
         .member<&SkyEmission::lux>("illuminance", "lx", "on level ground, sun and sky together; 0: as the model says",
-                                   at_least(0));
+                                   at_least(0), soft(1, 100000), logarithmic);
   }
 
   void prepare() override {

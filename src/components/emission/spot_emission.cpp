@@ -22,12 +22,16 @@ class SpotEmission final : public AxialEmission {
          "Light that leaves within a cone: full up to an inner angle, falling smoothly to nothing at an outer one, by "
          "t^2 (3 - 2t) with t linear in the cosine. On a Point a spotlight; on a surface the radiance's profile, to which the "
          "surface adds its cosine; on an Environment a sun with a soft edge.")
+        .group("Light")
         .member<&SpotEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
-                                    "radiance within the inner angle; only its shape counts when an amount is given");
+                                    "radiance within the inner angle; only its shape counts when an amount is given",
+                                    Meaning::radiance, soft(0.01, 1000), logarithmic);
     describe_amounts(d);
-    d.member<&SpotEmission::axis>("axis", "1",
-                                  "the middle of the cone, the way its light travels, in the object's own coordinates; of any "
-                                  "length")
+    d.group("Cone")
+        .member<&SpotEmission::axis>(
+            "axis", "1",
+            "the middle of the cone, the way its light travels, in the object's own coordinates; of any "
+            "length")
         .member<&SpotEmission::inner_angle>("inner_angle", "deg", "from the axis to where the light begins to fall off",
                                             range(0, 180))
         .member<&SpotEmission::outer_angle>("outer_angle", "deg", "from the axis to where there is none any more",

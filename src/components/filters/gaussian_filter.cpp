@@ -19,8 +19,9 @@ class GaussianFilter final : public Filter {
   static void describe(Description<GaussianFilter>& d) {
     d.summary("A normal distribution cut off at the radius, lowered so that it ends at zero.",
               "Pharr, Jakob & Humphreys, Physically Based Rendering, 3rd ed., section 7.8.1")
-        .member<&GaussianFilter::radius_pixels>("radius", "1", "where the weight reaches zero [pixels]", range(0.5, 16))
-        .member<&GaussianFilter::deviation>("deviation", "1", "standard deviation [pixels]", range(0.05, 16));
+        .member<&GaussianFilter::radius_pixels>("radius", "1", "where the weight reaches zero [pixels]", range(0.5, 16),
+                                                soft(0.5, 4))
+        .member<&GaussianFilter::deviation>("deviation", "1", "standard deviation [pixels]", range(0.05, 16), soft(0.1, 2));
   }
   float weight(float x, float y) const override { return along(x) * along(y); }
   float radius() const override { return radius_pixels; }

@@ -17,7 +17,8 @@ class LanczosFilter final : public Filter {
   static void describe(Description<LanczosFilter>& d) {
     d.summary("The sinc function windowed by the main lobe of a wider one: sharp, with negative lobes.",
               "Duchon 1979, Lanczos filtering in one and two dimensions")
-        .member<&LanczosFilter::radius_pixels>("radius", "1", "number of lobes to each side [pixels]", range(1, 16));
+        .member<&LanczosFilter::radius_pixels>("radius", "1", "number of lobes to each side [pixels]", range(1, 16),
+                                               soft(1, 4));
   }
   float weight(float x, float y) const override { return along(x) * along(y); }
   float radius() const override { return radius_pixels; }

@@ -21,7 +21,8 @@ class MitchellFilter final : public Filter {
   static void describe(Description<MitchellFilter>& d) {
     d.summary("Piecewise cubic with small negative lobes, balanced between blur and ringing.",
               "Mitchell & Netravali 1988, Reconstruction filters in computer graphics, eq. 8")
-        .member<&MitchellFilter::radius_pixels>("radius", "1", "half the width of the support [pixels]", range(0.5, 16))
+        .member<&MitchellFilter::radius_pixels>("radius", "1", "half the width of the support [pixels]", range(0.5, 16),
+                                                soft(1, 4))
         .member<&MitchellFilter::b>("b", "1", "blur: 1 with c = 0 is the cubic B-spline", range(0, 1))
         .member<&MitchellFilter::c>("c", "1", "ringing: 0.5 with b = 0 is the Catmull-Rom spline", range(0, 1));
   }

@@ -22,17 +22,11 @@ class ExrOutput final : public Output {
          "Kainz, Bogart & Hess 2004, The OpenEXR image file format")
         .member<&ExrOutput::precision>("precision", "", "of the colours: 16 or 32 bits", choices("half", "float"),
                                        Effect::retone)
-        .member<&ExrOutput::color_space>("color_space", "", "the RGB space the colours are written in, or xyz", Effect::retone)
+        .member<&ExrOutput::color_space>("color_space", "", "the RGB space the colours are written in, or xyz", Effect::retone,
+                                         rgb_space_names())
         .member<&ExrOutput::layers>("layers", "", "whether the film's layers are written as well", Effect::retone);
   }
-  void prepare() override {
-    try {
-      rgb_space(color_space);
-    } catch (const Error& e) {
-      fail("color_space", e.what());
-    }
-    require_image_library();
-  }
+  void prepare() override { require_image_library(); }
   std::string extension() const override { return ".exr"; }
   bool for_display() const override { return false; }
 

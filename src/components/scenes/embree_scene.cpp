@@ -21,6 +21,7 @@ class EmbreeScene final : public Scene {
   static void describe(Description<EmbreeScene>& d) {
     d.summary("A scene searched by Embree's bounding volume hierarchies: the fastest for all but a handful of triangles.",
               "Wald et al. 2014, \"Embree: a kernel framework for efficient CPU ray tracing\"")
+        .group("Structure")
         .member<&EmbreeScene::quality>("quality", "", "effort spent on the hierarchy: high takes longest to build",
                                        choices("low", "medium", "high"), Effect::rebuild)
         .member<&EmbreeScene::compact>("compact", "", "less memory, slower", Effect::rebuild);

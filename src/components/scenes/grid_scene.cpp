@@ -12,6 +12,7 @@ class GridScene final : public CellScene<GridScene> {
          "A scene whose space is divided into equal cells, which rays walk through one by one. Quick to build, and fast when "
          "all parts are of about the same size and evenly spread; slow when a small part of the scene holds most of it.",
          "Amanatides & Woo 1987, \"A fast voxel traversal algorithm for ray tracing\"")
+        .group("Structure")
         .member<&GridScene::resolution>("resolution", "1",
                                         "cells along the longest edge of the scene; 0: from the number of parts", range(0, 512),
                                         Effect::rebuild);

@@ -142,6 +142,7 @@ void Instance::describe(Description<Instance>& d) {
        "for all instances. With a shader, everything in it has that shader instead of its own. The transform of the scene "
        "itself and the instance's emission, interior, sides and priority say nothing.",
        "Rubin & Whitted 1980, \"A 3-dimensional representation for fast rendering of complex scenes\"")
+      .group("Content")
       .member<&Instance::scene>("scene", "", "what is placed", required, Effect::rebuild);
 }
 

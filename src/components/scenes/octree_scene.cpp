@@ -13,10 +13,11 @@ class OctreeScene final : public CellScene<OctreeScene> {
          "sizes; "
          "bounding volume hierarchies are faster.",
          "Revelles, Urena & Lastra 2000, \"An efficient parametric algorithm for octree traversal\"")
+        .group("Structure")
         .member<&OctreeScene::max_depth>("max_depth", "1", "how often a cell is divided at most", range(0, deepest),
                                          Effect::rebuild)
         .member<&OctreeScene::leaf_size>("leaf_size", "1", "triangles and other objects that may stay together in a cell",
-                                         at_least(1), Effect::rebuild);
+                                         at_least(1), Effect::rebuild, soft(1, 64), logarithmic);
   }
 
   /// See CellScene.

@@ -41,7 +41,7 @@ class WayOut {
   double area_stretch(const Normal3&) const;
   /// By how much M enlarges when it is a similarity; 0: it is none.
   float similarity() const;
-  Normal3 carry(Normal3) const;  ///< M^-T n, not normalised
+  Normal3 carry(Normal3) const;  ///< M^-T n, not normalized
 
  private:
   int size_ = 0;

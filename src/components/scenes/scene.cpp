@@ -99,6 +99,7 @@ void Scene::describe(Description<Scene>& d) {
        "stands in several places is stored once. Its luminaires are luminaires in each of these places; amounts of light "
        "they are asked for (a power in watts) are those of each place, whatever its size. A nested scene's own shader, "
        "emission, interior, sides and priority say nothing.")
+      .group("Content")
       .member<&Scene::objects>("objects", "", "what is in it", Effect::rebuild);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Fresnel's equations: the fraction of unpolarised light a smooth boundary reflects.
+// Fresnel's equations: the fraction of unpolarized light a smooth boundary reflects.
 
 #include "etendue/core/spectrum.h"
 
@@ -27,7 +27,7 @@ inline float fresnel_dielectric(float cosine, float eta) {
   return fresnel_dielectric(cosine, eta, unused);
 }
 
-/// The fractions reflected of light polarised across (s) and in (p) the plane of incidence; see fresnel_dielectric.
+/// The fractions reflected of light polarized across (s) and in (p) the plane of incidence; see fresnel_dielectric.
 struct PolarizedReflectance {
   float s, p;
 };

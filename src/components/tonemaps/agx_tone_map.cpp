@@ -56,10 +56,11 @@ class AgXToneMap final : public ExposedToneMap {
          "go to white instead of being clipped. Most colours beyond the RGB space are drawn in; hues stay near what they are.",
          "T. Sobotka, AgX; B. Wrensch 2023, Minimal AgX implementation")
         // The slope of a straight line from middle grey to white is 1 / (2 * 6.5 / 16.5) = 1.27; an S is steeper.
+        .group("Curve")
         .member<&AgXToneMap::contrast>("contrast", "1",
                                        "slope of the curve at middle grey: 2 is the original's, which is soft; 2.6 keeps "
                                        "contrasts there as they are in the scene",
-                                       range(1.3, 10), Effect::retone);
+                                       range(1.3, 10), Effect::retone, soft(1.3, 5));
   }
 
  protected:

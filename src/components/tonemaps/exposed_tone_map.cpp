@@ -80,6 +80,7 @@ void ExposedToneMap::describe(Description<ExposedToneMap>& d) {
        "Tone maps that begin with an exposure, as a camera does: the picture is multiplied so that middle grey is 0.18. What "
        "was found automatically is written into the file as 'exposure'. Pieces of one picture and pictures of a film each "
        "find their own: give them one that is fixed.")
+      .group("Exposure")
       .member<&ExposedToneMap::exposure>("exposure", "",
                                          "automatic: from the lit pixels' mean logarithm of luminance; lamps, fireflies and "
                                          "a black background change it little. fixed: as stops say",
@@ -87,12 +88,12 @@ void ExposedToneMap::describe(Description<ExposedToneMap>& d) {
       .member<&ExposedToneMap::stops>("stops", "1",
                                       "each doubles the light: added to what is automatic, or alone if fixed (at 0, "
                                       "luminance 1 stays 1)",
-                                      range(-64, 64), Effect::retone)
+                                      range(-64, 64), Effect::retone, soft(-10, 10))
       .member<&ExposedToneMap::percentile>("percentile", "1",
                                            "of automatic exposure: percentage of the pixels with light that lamps and "
                                            "highlights leave; those count as the brightest of the rest, and what is far "
                                            "darker than it does not count",
-                                           Range{0, 100, true}, Effect::retone);
+                                           Range{0, 100, true}, Effect::retone, soft(90, 100), when("exposure", "automatic"));
 }
 
 static const Register<ExposedToneMap> registered;

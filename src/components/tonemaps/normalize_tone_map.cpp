@@ -10,8 +10,9 @@ class NormalizeToneMap final : public ToneMap {
  public:
   static void describe(Description<NormalizeToneMap>& d) {
     d.summary("Divides by the largest luminance, or by a percentile of the luminances, which becomes white.")
+        .group("Curve")
         .member<&NormalizeToneMap::percentile>("percentile", "1", "percentage of the pixels with light that stay below white",
-                                               Range{0, 100, true}, Effect::retone);
+                                               Range{0, 100, true}, Effect::retone, soft(50, 100));
   }
 
  protected:

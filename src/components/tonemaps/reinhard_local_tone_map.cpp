@@ -58,7 +58,9 @@ class ReinhardLocalToneMap final : public ExposedToneMap {
          "there "
          "is no strong contrast. Details stay in bright places; colours are kept as there.",
          "Reinhard, Stark, Shirley & Ferwerda 2002, Photographic tone reproduction for digital images, equation 9")
-        .member<&ReinhardLocalToneMap::white>("white", "1", reinhard_white_text, range(0, 1e9), Effect::retone)
+        .group("Curve")
+        .member<&ReinhardLocalToneMap::white>("white", "1", reinhard_white_text, range(0, 1e9), Effect::retone, soft(0.5, 1000),
+                                              logarithmic)
         .member<&ReinhardLocalToneMap::sharpness>("sharpness", "1", "how much edges are enhanced (phi of the paper)",
                                                   range(0, 20), Effect::retone)
         .member<&ReinhardLocalToneMap::threshold>("threshold", "1", "contrast that ends a pixel's surrounding", range(0.001, 1),

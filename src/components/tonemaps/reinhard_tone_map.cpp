@@ -13,7 +13,9 @@ class ReinhardToneMap final : public ExposedToneMap {
          "chromaticities; "
          "colours that the RGB space does not hold are mixed with grey of their luminance until it does.",
          "Reinhard, Stark, Shirley & Ferwerda 2002, Photographic tone reproduction for digital images, equation 4")
-        .member<&ReinhardToneMap::white>("white", "1", reinhard_white_text, range(0, 1e9), Effect::retone);
+        .group("Curve")
+        .member<&ReinhardToneMap::white>("white", "1", reinhard_white_text, range(0, 1e9), Effect::retone, soft(0.5, 1000),
+                                         logarithmic);
   }
 
  protected:

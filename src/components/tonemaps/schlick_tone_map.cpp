@@ -22,20 +22,21 @@ class SchlickToneMap final : public ToneMap {
          "A rational curve of the luminance relative to white that lifts dark places and keeps black, white and "
          "chromaticities.",
          "Schlick 1994, Quantization techniques for visualization of high dynamic range pictures")
+        .group("Curve")
         .member<&SchlickToneMap::p>("p", "1", "slope of the curve at black, at least 1; 0: found from the members below",
-                                    range(0, 1e9), Effect::retone)
+                                    range(0, 1e9), Effect::retone, soft(1, 1000), logarithmic)
         .member<&SchlickToneMap::darkest_grey>("darkest_grey", "1", "the darkest level that can be told from black (M)",
-                                               Range{0, 65535, true}, Effect::retone)
-        .member<&SchlickToneMap::levels>("levels", "1", "number of levels of the display (N)", range(2, 65536), Effect::retone)
+                                               Range{0, 65535, true}, Effect::retone, soft(0.1, 100), logarithmic, unless("p"))
+        .member<&SchlickToneMap::levels>("levels", "1", "number of levels of the display (N)", range(2, 65536), Effect::retone,
+                                         soft(2, 65536), logarithmic, unless("p"))
         .member<&SchlickToneMap::dark_percentile>(
             "dark_percentile", "1", "percentage of the pixels with light darker than what becomes the darkest grey",
-            range(0, 100), Effect::retone)
+            range(0, 100), Effect::retone, unless("p"))
         .member<&SchlickToneMap::percentile>("percentile", "1", "percentage of the pixels with light that stay below white",
-                                             Range{0, 100, true}, Effect::retone);
+                                             Range{0, 100, true}, Effect::retone, soft(50, 100));
   }
 
   void prepare() override {
-    ToneMap::prepare();
     if (p != 0 && p < 1) fail("p", "must be at least 1, or 0 to find it");
     if (darkest_grey >= levels) fail("darkest_grey", "must be less than the number of levels");
   }

@@ -12,8 +12,9 @@ class SquareRootToneMap final : public ToneMap {
     d.summary(
          "The square root of the luminance relative to white, chromaticities kept: brings up dark places. The result is "
          "light, still to be encoded; to let the root itself stand for the encoding, set transfer to linear.")
+        .group("Curve")
         .member<&SquareRootToneMap::percentile>("percentile", "1", "percentage of the pixels with light that stay below white",
-                                                Range{0, 100, true}, Effect::retone);
+                                                Range{0, 100, true}, Effect::retone, soft(50, 100));
   }
 
  protected:

@@ -5,23 +5,14 @@
 namespace etendue {
 void ToneMap::describe(Description<ToneMap>& d) {
   d.summary("From a picture in CIE XYZ without bounds to the RGB values a display or file takes.")
+      .group("Encoding")
       .member<&ToneMap::color_space>("color_space", "", "primaries and white of the result: the name of an RGB space",
-                                     Effect::retone)
-      .member<&ToneMap::transfer>("transfer", "", "encoding of the result: srgb, linear, rec709 or gamma2.2", Effect::retone);
+                                     Effect::retone, rgb_space_names())
+      .member<&ToneMap::transfer>("transfer", "", "encoding of the result: srgb, linear, rec709 or gamma2.2", Effect::retone,
+                                  transfer_names());
 }
 
 static const Register<ToneMap> registered;
-
-void ToneMap::prepare() {
-  try {
-    rgb_space(color_space);
-  } catch (const Error& e) {
-    fail("color_space", e.what());
-  }
-  const std::vector<std::string> known = transfer_names();
-  if (std::find(known.begin(), known.end(), transfer) == known.end())
-    fail("transfer", "no transfer function is called '" + transfer + "'" + suggestion(transfer, known));
-}
 
 Image ToneMap::apply(const Image& xyz) const {
   size_t from[3];

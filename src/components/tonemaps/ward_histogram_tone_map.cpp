@@ -132,21 +132,22 @@ class WardHistogramToneMap final : public ExposedToneMap {
          "than an eye would see there. It takes luminances as they are, in cd/m^2: a night is dark and flat. Colours are kept "
          "as by ReinhardToneMap.",
          "Ward Larson, Rushmeier & Piatko 1997, A visibility matching tone reproduction operator for high dynamic range scenes")
+        .group("Curve")
         .member<&WardHistogramToneMap::ceiling>("ceiling", "",
                                                 "most contrast shown: human, what an eye sees; linear, that of the scene; "
-                                                "unlimited, histogram equalisation",
+                                                "unlimited, histogram equalization",
                                                 choices("human", "linear", "unlimited"), Effect::retone)
+        .group("Display")
         .member<&WardHistogramToneMap::display_maximum>("display_maximum", "cd/m^2", "luminance of the display's white",
-                                                        range(1, 1e5), Effect::retone)
+                                                        range(1, 1e5), Effect::retone, soft(50, 2000), logarithmic)
         .member<&WardHistogramToneMap::display_minimum>("display_minimum", "cd/m^2", "luminance of the display's black",
-                                                        range(0.0001, 1e4), Effect::retone)
+                                                        range(0.0001, 1e4), Effect::retone, soft(0.001, 10), logarithmic)
         .member<&WardHistogramToneMap::degrees>("degrees", "deg",
                                                 "angle across which the picture is seen; an eye adapts to the mean over one",
-                                                range(1, 180), Effect::retone);
+                                                range(1, 180), Effect::retone, soft(10, 120));
   }
 
   void prepare() override {
-    ExposedToneMap::prepare();
     if (!(display_maximum >= 2 * display_minimum)) fail("display_maximum", "must be at least twice the minimum");
   }
 

@@ -27,14 +27,17 @@ class HomogeneousVolume final : public VolumeShader {
   static void describe(Description<HomogeneousVolume>& d) {
     d.summary("A medium that is the same everywhere, with the Henyey-Greenstein phase function.",
               "Henyey & Greenstein 1941, Diffuse radiation in the galaxy")
-        .member<&HomogeneousVolume::absorption>("absorption", "1/m", "absorption coefficient, per wavelength")
-        .member<&HomogeneousVolume::scattering>("scattering", "1/m", "scattering coefficient, per wavelength")
+        .member<&HomogeneousVolume::absorption>("absorption", "1/m", "absorption coefficient, per wavelength",
+                                                Meaning::coefficient, soft(0.001, 1000), logarithmic)
+        .member<&HomogeneousVolume::scattering>("scattering", "1/m", "scattering coefficient, per wavelength",
+                                                Meaning::coefficient, soft(0.001, 1000), logarithmic)
         .member<&HomogeneousVolume::emission>("emission", "W m^-3 sr^-1 nm^-1",
-                                              "radiance the medium adds per distance, whatever it absorbs")
+                                              "radiance the medium adds per distance, whatever it absorbs", Meaning::radiance,
+                                              soft(0.001, 1000), logarithmic)
         .member<&HomogeneousVolume::anisotropy>("anisotropy", "1",
                                                 "mean cosine of the angle light turns by, between -1 (all back) and 1 (all "
                                                 "straight on), both excluded; 0 scatters alike in all directions",
-                                                range(-1, 1));
+                                                range(-1, 1), when("scattering"));
   }
 
   void prepare() override {

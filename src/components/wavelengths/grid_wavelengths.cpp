@@ -23,7 +23,7 @@ class GridWavelengths final : public WavelengthSampler {
   static void describe(Description<GridWavelengths>& d) {
     d.summary("A fixed grid of wavelengths of which each path takes its share in rotation.")
         .member<&GridWavelengths::count>("count", "1", "number of wavelengths; best a multiple of those a path carries",
-                                         range(1, 4096))
+                                         range(1, 4096), soft(4, 128), logarithmic)
         .member<&GridWavelengths::low>("low", "nm", "where the first cell begins; light below it is left out",
                                        range(double(wavelength_low), double(wavelength_high)))
         .member<&GridWavelengths::high>("high", "nm", "where the last cell ends; light above it is left out",

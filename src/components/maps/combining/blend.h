@@ -54,10 +54,12 @@ class SolidMap : public BlendMap {
 
 template <class Map>
 Description<Map>& describe_solid(Description<Map>& d, const char* size) {
-  return d.template member<&Map::first>("first", "1", "the map where the texture is 0")
+  return d.group("Colours")
+      .template member<&Map::first>("first", "1", "the map where the texture is 0")
       .template member<&Map::second>("second", "1", "the map where it is 1")
+      .group("Place")
       .template member<&Map::size>("size", "m", std::string(size) + "; in the space uv, of the surface coordinates",
-                                   more_than(0))
+                                   more_than(0), soft(0.01, 100), logarithmic)
       .template member<&Map::space>("space", "", "what coordinates it is cut out of", choices("object", "world", "uv"))
       .template member<&Map::seed>("seed", "1", "chooses one of many textures of the same kind");
 }
@@ -83,9 +85,12 @@ class FractalMap : public SolidMap {
 template <class Map>
 Description<Map>& describe_fractal(Description<Map>& d, const char* size) {
   return describe_solid(d, size)
-      .template member<&Map::octaves>("octaves", "1", "how many sizes of features are added", range(1, 24))
-      .template member<&Map::lacunarity>("lacunarity", "1", "how much finer each size is than the one before", range(1, 16))
-      .template member<&Map::gain>("gain", "1", "how much weaker each size is than the one before", range(0, 1));
+      .group("Noise")
+      .template member<&Map::octaves>("octaves", "1", "how many sizes of features are added", range(1, 24), soft(1, 12))
+      .template member<&Map::lacunarity>("lacunarity", "1", "how much finer each size is than the one before", range(1, 16),
+                                         soft(1, 4), unless("octaves", 1))
+      .template member<&Map::gain>("gain", "1", "how much weaker each size is than the one before", range(0, 1),
+                                   unless("octaves", 1));
 }
 
 inline constexpr const char* noise_source = "Perlin 1985, \"An image synthesizer\"; Perlin 2002, \"Improving noise\"";

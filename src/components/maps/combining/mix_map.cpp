@@ -12,7 +12,8 @@ class MixMap final : public BlendMap {
     d.summary("A mixture of two maps (lerp), wavelength by wavelength: (1 - amount) first + amount second.")
         .member<&MixMap::first>("first", "1", "the map where the amount is 0")
         .member<&MixMap::second>("second", "1", "the map where it is 1")
-        .member<&MixMap::amount>("amount", "1", "how much there is of the second, between 0 and 1; of a colour, its mean");
+        .member<&MixMap::amount>("amount", "1", "how much there is of the second, between 0 and 1; of a colour, its mean",
+                                 Meaning::number);
   }
 
   void prepare() override {

@@ -10,7 +10,7 @@ class PowerMap final : public ObjectMap {
   static void describe(Description<PowerMap>& d) {
     d.summary("A map to a power, wavelength by wavelength; 0 where the base is negative or the power would be infinite.")
         .member<&PowerMap::base>("base", "1", "the map")
-        .member<&PowerMap::exponent>("exponent", "1", "the number it is raised to; of a colour, its mean");
+        .member<&PowerMap::exponent>("exponent", "1", "the number it is raised to; of a colour, its mean", Meaning::number);
   }
 
   void prepare() override {

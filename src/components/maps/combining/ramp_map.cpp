@@ -16,7 +16,8 @@ class RampMap final : public ObjectMap {
   static void describe(Description<RampMap>& d) {
     d.summary("Colours at positions along u, v or the number of another map.")
         .member<&RampMap::along>("along", "", "u, v: surface coordinates; input: the map below", choices("u", "v", "input"))
-        .member<&RampMap::input>("input", "1", "the map whose number is looked up, when `along` is input")
+        .member<&RampMap::input>("input", "1", "the map whose number is looked up, when `along` is input", Meaning::number,
+                                 when("along", "input"))
         .member<&RampMap::positions>("positions", "1",
                                      "where the colours are, in increasing order; before the first and after "
                                      "the last, those go on")

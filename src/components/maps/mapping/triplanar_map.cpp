@@ -13,8 +13,9 @@ class TriplanarMap final : public ObjectMap {
   static void describe(Description<TriplanarMap>& d) {
     d.summary("Projects a map along the x, y and z axes, blended by the normal; u and v are in metres.")
         .member<&TriplanarMap::map>("map", "1", "the map over the surface coordinates that the projections give")
-        .member<&TriplanarMap::size>("size", "m", "how long a unit of u and v is", more_than(0))
-        .member<&TriplanarMap::sharpness>("sharpness", "1", "how quickly one projection takes over from another", range(1, 64))
+        .member<&TriplanarMap::size>("size", "m", "how long a unit of u and v is", more_than(0), soft(0.01, 100), logarithmic)
+        .member<&TriplanarMap::sharpness>("sharpness", "1", "how quickly one projection takes over from another", range(1, 64),
+                                          logarithmic)
         .member<&TriplanarMap::world>("world", "",
                                       "whether the projections stand still in the scene; else they are fixed to the object");
   }

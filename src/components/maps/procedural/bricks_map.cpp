@@ -18,7 +18,7 @@ class BricksMap final : public BlendMap {
         .member<&BricksMap::first>("mortar", "1", "the map between them")
         .member<&BricksMap::repeat>("repeat", "1", "bricks per unit of u, and rows per unit of v")
         .member<&BricksMap::joint>("joint", "1", "thickness of the mortar over the height of a row", range(0, 1))
-        .member<&BricksMap::shift>("shift", "1", "how far a row is moved against the one below, in bricks");
+        .member<&BricksMap::shift>("shift", "1", "how far a row is moved against the one below, in bricks", soft(0, 1));
   }
 
   void prepare() override {

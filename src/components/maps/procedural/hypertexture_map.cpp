@@ -19,12 +19,14 @@ class HypertextureMap final : public FractalMap {
     d.summary("The density of a soft ball with a turbulent border, where a surface cuts it.",
               "Perlin & Hoffert 1989, \"Hypertexture\"");
     describe_fractal(d, "size of the largest bumps of the border")
-        .member<&HypertextureMap::center>("center", "m", "centre of the ball")
+        .group("Ball")
+        .member<&HypertextureMap::centre>("centre", "m", "centre of the ball")
         .member<&HypertextureMap::radius>("radius", "m", "radius where the density is a half before the border is disturbed",
-                                          more_than(0))
-        .member<&HypertextureMap::softness>("softness", "m", "width of the region where the density falls", more_than(0))
-        .member<&HypertextureMap::disturbance>("disturbance", "1",
-                                               "how far turbulence moves the border inwards, over the radius", at_least(0))
+                                          more_than(0), soft(0.01, 100), logarithmic)
+        .member<&HypertextureMap::softness>("softness", "m", "width of the region where the density falls", more_than(0),
+                                            soft(0.01, 100), logarithmic)
+        .member<&HypertextureMap::disturbance>(
+            "disturbance", "1", "how far turbulence moves the border inwards, over the radius", at_least(0), soft(0, 5))
         .member<&HypertextureMap::bias>("bias", "1", "what the density 1/2 becomes", range(0.01, 0.99))
         .member<&HypertextureMap::contrast>("contrast", "1", "Perlin's gain: above 1/2 the density falls faster in the middle",
                                             range(0.01, 0.99));
@@ -32,18 +34,18 @@ class HypertextureMap final : public FractalMap {
 
   void prepare() override {
     FractalMap::prepare();
-    if (!is_finite(center)) fail("center", "must be finite numbers");
+    if (!is_finite(centre)) fail("centre", "must be finite numbers");
     bias_ = std::log(bias) / std::log(0.5f);
     gain_ = std::log(1 - contrast) / std::log(0.5f);
   }
 
-  Point3 center{0, 0, 0};
+  Point3 centre{0, 0, 0};
   float radius = 1, softness = 0.5f, disturbance = 1, bias = 0.5f, contrast = 0.5f;
 
  private:
   float fraction(const SolidPoint& p) const override {
-    const Vector3 from_center = size * p.at - (center - Point3{});
-    const float r = length(from_center) * (1 + disturbance * noise().turbulence(p.at, p.width));
+    const Vector3 from_centre = size * p.at - (centre - Point3{});
+    const float r = length(from_centre) * (1 + disturbance * noise().turbulence(p.at, p.width));
     // Averaged over the footprint, the border is as wide as that at least.
     const float t = clamp(0.5f + (radius - r) / std::max(softness, size * p.width), 0, 1), b = biased(t, bias_);
     return b < 0.5f ? 0.5f * biased(2 * b, gain_) : 1 - 0.5f * biased(2 - 2 * b, gain_);

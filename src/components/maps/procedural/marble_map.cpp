@@ -17,11 +17,13 @@ class MarbleMap final : public FractalMap {
   static void describe(Description<MarbleMap>& d) {
     d.summary("Layers across the x axis, disturbed by turbulence.", noise_source);
     describe_fractal(d, "distance between two veins")
+        .group("Layers")
         .member<&MarbleMap::disturbance>("disturbance", "1", "how far turbulence moves the layers, over their distance",
-                                         at_least(0))
-        .member<&MarbleMap::swell>("swell", "1", "size of what moves them, over their distance", more_than(0))
+                                         at_least(0), soft(0, 20))
+        .member<&MarbleMap::swell>("swell", "1", "size of what moves them, over their distance", more_than(0), soft(0.1, 100),
+                                   logarithmic, when("disturbance"))
         .member<&MarbleMap::sharpness>("sharpness", "1", "1: veins as wide as what is between them; larger: narrower ones",
-                                       range(0.1, 100));
+                                       range(0.1, 100), logarithmic);
   }
 
   void prepare() override {

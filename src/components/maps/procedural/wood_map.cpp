@@ -19,9 +19,12 @@ class WoodMap final : public FractalMap {
   static void describe(Description<WoodMap>& d) {
     d.summary("Rings around the z axis, with fibres along it.", noise_source);
     describe_fractal(d, "width of a ring")
-        .member<&WoodMap::disturbance>("disturbance", "1", "how far the rings are from round, over their width", at_least(0))
-        .member<&WoodMap::swell>("swell", "1", "size of what disturbs the rings, over their width", more_than(0))
-        .member<&WoodMap::sharpness>("sharpness", "1", "how late in the year the wood darkens", range(0.1, 100))
+        .group("Rings")
+        .member<&WoodMap::disturbance>("disturbance", "1", "how far the rings are from round, over their width", at_least(0),
+                                       soft(0, 10))
+        .member<&WoodMap::swell>("swell", "1", "size of what disturbs the rings, over their width", more_than(0),
+                                 soft(0.1, 100), logarithmic, when("disturbance"))
+        .member<&WoodMap::sharpness>("sharpness", "1", "how late in the year the wood darkens", range(0.1, 100), logarithmic)
         .member<&WoodMap::fibre>("fibre", "1", "what part of the contrast is fibre", range(0, 1));
   }
 

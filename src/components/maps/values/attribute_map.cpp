@@ -16,18 +16,15 @@ class AttributeMap final : public ObjectMap {
                                      "of the attribute: \"color\" (red, green and blue of a PLY file's vertices, or the colors "
                                      "of a TriangleMesh), or any "
                                      "other number of a PLY file's vertices by its name there")
-        .member<&AttributeMap::color_space>("color_space", "", "primaries and white of an attribute of three numbers")
+        .member<&AttributeMap::color_space>("color_space", "", "primaries and white of an attribute of three numbers",
+                                            rgb_space_names())
         .member<&AttributeMap::otherwise>("otherwise", "1", "the map where the object has no such attribute");
   }
 
   void prepare() override {
     if (name.empty()) fail("name", "the name of an attribute is needed");
     if (!otherwise) fail("otherwise", "a map is needed");
-    try {
-      space_ = &rgb_space(color_space);
-    } catch (const Error& e) {
-      fail("color_space", e.what());
-    }
+    space_ = &rgb_space(color_space);
     number_ = attribute_number(name);
   }
 

@@ -22,17 +22,20 @@ class ImageMap final : public ObjectMap {
  public:
   static void describe(Description<ImageMap>& d) {
     d.summary("An image file over the surface coordinates: its lower left corner is at (0, 0), its upper right one at (1, 1).")
+        .group("Image")
         .member<&ImageMap::file>("file", "",
                                  "the image; any format OpenImageIO reads. With <UDIM> in its name: one image for each unit "
                                  "square of u and v, from files with 1001 + u + 10 v in that place; black where there is none",
                                  required)
+        .group("Placement")
         .member<&ImageMap::interpolation>(
             "interpolation", "",
             "what is between the middles of texels: nearest: texels as squares; bilinear: mixtures of four",
             choices("nearest", "bilinear"))
         .member<&ImageMap::wrap>("wrap", "", "what lies outside the unit square", choices("repeat", "mirror", "clamp", "black"))
-        .member<&ImageMap::color_space>("color_space", "", "primaries and white of the image's RGB")
-        .member<&ImageMap::transfer>("transfer", "", "how its numbers are encoded; auto: srgb for integers, linear for floats")
+        .member<&ImageMap::color_space>("color_space", "", "primaries and white of the image's RGB", rgb_space_names())
+        .member<&ImageMap::transfer>("transfer", "", "how its numbers are encoded; auto: srgb for integers, linear for floats",
+                                     image_transfer_names())
         .member<&ImageMap::channel>("channel", "",
                                     "which channels of the file: \"\" the first three or its only one, else the name of one "
                                     "(\"A\", \"depth.Z\") or of a layer (\"diffuse\" for diffuse.R, diffuse.G, diffuse.B)")
@@ -40,16 +43,7 @@ class ImageMap final : public ObjectMap {
   }
 
   void prepare() override {
-    try {
-      space_ = &rgb_space(color_space);
-    } catch (const Error& e) {
-      fail("color_space", e.what());
-    }
-    try {
-      check_transfer(transfer);
-    } catch (const Error& e) {
-      fail("transfer", e.what());
-    }
+    space_ = &rgb_space(color_space);
     if (!(std::isfinite(repeat.x) && std::isfinite(repeat.y))) fail("repeat", "must be finite numbers");
     if (file.empty()) fail("file", "an image file is needed");
     load(file.resolved());

@@ -43,7 +43,7 @@ class Csg : public SceneObject {
 
   template <class T>
   static void describe_operands(Description<T>& d, const std::string& text) {
-    d.template member<&Csg::operands>("operands", "", text, required, Effect::rebuild);
+    d.group("Shape").template member<&Csg::operands>("operands", "", text, required, Effect::rebuild);
   }
 
  private:

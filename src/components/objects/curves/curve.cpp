@@ -21,13 +21,15 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
          "coordinates of their own. The first strand's v begins anywhere, that of the following ones by the golden section "
          "further on, so that what v does to many hairs is as if it was random.",
          "frames: Wang et al. 2008, \"Computation of rotation minimizing frames\"; cones that fit: Monge's theorem on quadrics")
+        .group("Shape")
         .member<&Curve::points>("points", "m", "the control points of all strands, one strand after the other", Effect::rebuild)
         .member<&Curve::radius>("radius", "m",
                                 "half of the thickness of a tube or the width of a ribbon: one number, or one for each of the "
                                 "points, interpolated as they are",
-                                at_least(0), Effect::rebuild)
+                                at_least(0), Effect::rebuild, soft(0.00001, 1), logarithmic)
         .member<&Curve::counts>("counts", "1", "how many of the points belong to each strand; none: all to one", at_least(1),
                                 Effect::rebuild)
+        .group("Form")
         .member<&Curve::basis>("basis", "",
                                "what runs between the points: straight lines; cubic Bezier curves, with two handles between "
                                "the points that are run through; a uniform cubic B-spline, which only comes near them; a "
@@ -36,11 +38,11 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
         .member<&Curve::form>("form", "", "a tube is round; a ribbon is flat and has a front", choices("tube", "ribbon"),
                               Effect::rebuild)
         .member<&Curve::normals>("normals", "", "where a ribbon's front faces: one, or one for each of the points",
-                                 Effect::rebuild)
+                                 Effect::rebuild, when("form", "ribbon"))
         .member<&Curve::turn>("turn", "deg",
                               "splines are cut into straight pieces that turn by about so much from one to the next: they are "
                               "off by turn^2 / 8 of the radius of curvature, 0.14 % at 6 degrees",
-                              range(0.5, 45), Effect::rebuild);
+                              range(0.5, 45), Effect::rebuild, unless("basis", "linear"));
   }
 
   void prepare() override {

@@ -20,7 +20,7 @@ struct StrandControl {
 
 /// A place on a strand.
 struct StrandPoint {
-  double position[3], normal[3];  ///< the normal as interpolated, not normalised
+  double position[3], normal[3];  ///< the normal as interpolated, not normalized
   double radius;
   double u;  ///< along the strand, 0 to 1
 };

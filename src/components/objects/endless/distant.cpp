@@ -17,6 +17,7 @@ class Distant final : public SceneObject {
          "A luminaire at infinity whose light all travels one way, like a sun without width. Its emission's radiance, times "
          "1 sr, is the irradiance [W/m^2 per nm] on a plane across the light; a power given to the emission is that of the "
          "light through the disc which shades the whole scene. Its transform turns it.")
+        .group("Shape")
         .member<&Distant::direction>("direction", "1", "the way its light travels, of any length", Effect::rebuild);
   }
 

@@ -22,6 +22,7 @@ class Heightfield final : public PlacedObject {
          "bilinearly between its points. u goes along x, v along y, from 0 to 1 over the whole field.",
          "traversal: Tevs, Ihrke & Seidel 2008, \"Maximum mipmaps for fast, accurate, and scalable dynamic height field "
          "rendering\"")
+        .group("Shape")
         .member<&Heightfield::image>(
             "image", "",
             "an image of heights, in place of the list: the first channel of its pixels, which are the "
@@ -29,12 +30,16 @@ class Heightfield final : public PlacedObject {
             Effect::rebuild)
         .member<&Heightfield::transfer>(
             "transfer", "", "the transfer function of the image's numbers: linear when they are heights as they are",
-            Effect::rebuild)
-        .member<&Heightfield::heights>("heights", "1", "row by row along x, beginning at the lowest y", Effect::rebuild)
-        .member<&Heightfield::nx>("nx", "1", "how many of the heights are in a row", range(2, 65536), Effect::rebuild)
-        .member<&Heightfield::ny>("ny", "1", "how many rows of heights there are", range(2, 65536), Effect::rebuild)
+            Effect::rebuild, image_transfer_names(), when("image"))
+        .member<&Heightfield::heights>("heights", "1", "row by row along x, beginning at the lowest y", Effect::rebuild,
+                                       unless("image"))
+        .member<&Heightfield::nx>("nx", "1", "how many of the heights are in a row", range(2, 65536), Effect::rebuild,
+                                  unless("image"))
+        .member<&Heightfield::ny>("ny", "1", "how many rows of heights there are", range(2, 65536), Effect::rebuild,
+                                  unless("image"))
+        .group("Size")
         .member<&Heightfield::size>("size", "m", "of the field along x and y", Effect::rebuild)
-        .member<&Heightfield::height>("height", "m", "of a 1 in the list or the image", Effect::rebuild)
+        .member<&Heightfield::height>("height", "m", "of a 1 in the list or the image", Effect::rebuild, soft(-10, 10))
         .member<&Heightfield::smooth>("smooth", "", "shading normals hide that the surface is made of cells", Effect::rebuild);
   }
 
@@ -146,11 +151,6 @@ class Heightfield final : public PlacedObject {
   };
 
   std::vector<float> read(int& wide, int& high) const {
-    try {
-      check_transfer(transfer);
-    } catch (const Error& error) {
-      fail("transfer", error.what());
-    }
     LinearImage picture;
     try {
       picture = read_linear_image(image.resolved(), transfer);

@@ -21,6 +21,7 @@ class ImplicitSurface final : public ImplicitObject {
          "Surface "
          "coordinates are those of the face of the box the surface faces most, from 0 to 1 as on a Box.",
          "Mitchell 1990, \"Robust ray intersection with interval arithmetic\"")
+        .group("Shape")
         .member<&ImplicitSurface::formula>(
             "formula", "",
             "of numbers, x, y, z (in m, the object's own), pi, + - * / ( ) and functions (abs sqrt exp log sin cos tan atan2 "
@@ -28,6 +29,7 @@ class ImplicitSurface final : public ImplicitObject {
             "fract mod pow min max step clamp mix smoothstep; angles in radians). pow takes negative numbers when its exponent "
             "is a whole number. What is no finite number, such as 1 / 0, is 0",
             Effect::rebuild)
+        .group("Box")
         .member<&ImplicitSurface::low>("low", "m", "the corner of the box with the lowest coordinates", Effect::rebuild)
         .member<&ImplicitSurface::high>("high", "m", "the corner with the highest", Effect::rebuild)
         .member<&ImplicitSurface::capped>(
@@ -37,7 +39,7 @@ class ImplicitSurface final : public ImplicitObject {
             "tolerance", "1",
             "parts of the solid, and gaps, may be missed where a ray is in them for less than this, in longest edges "
             "of the box; and thicker ones where a ray would take more than 16384 steps, of which there is a warning",
-            range(1e-12, 1e-3), Effect::rebuild);
+            range(1e-12, 1e-3), Effect::rebuild, logarithmic);
   }
 
   void prepare() override {

@@ -20,31 +20,33 @@ class Metaballs final : public ImplicitObject {
          "box "
          "the surface faces most, from 0 to 1 as on a Box.",
          "Wyvill, McPheeters & Wyvill 1986, \"Data structure for soft objects\"")
-        .member<&Metaballs::centers>("centers", "m", "the middles of the balls", Effect::rebuild)
+        .group("Shape")
+        .member<&Metaballs::centres>("centres", "m", "the middles of the balls", Effect::rebuild)
         .member<&Metaballs::radii>("radii", "m", "how far each ball reaches; one number: all reach as far", Effect::rebuild)
         .member<&Metaballs::strengths>("strengths", "1",
                                        "the density at the middle of each, negative to take away; one number: all "
                                        "are as strong",
                                        Effect::rebuild)
-        .member<&Metaballs::threshold>("threshold", "1", "the density at the surface", more_than(0), Effect::rebuild);
+        .member<&Metaballs::threshold>("threshold", "1", "the density at the surface", more_than(0), Effect::rebuild,
+                                       soft(0.01, 10), logarithmic);
   }
 
   void prepare() override {
-    if (centers.empty()) fail("centers", "at least one ball is needed");
-    if (radii.size() != 1 && radii.size() != centers.size())
+    if (centres.empty()) fail("centres", "at least one ball is needed");
+    if (radii.size() != 1 && radii.size() != centres.size())
       fail("radii",
-           std::to_string(radii.size()) + " radii for " + std::to_string(centers.size()) + " balls: give one, or as many");
-    if (strengths.size() != 1 && strengths.size() != centers.size())
-      fail("strengths", std::to_string(strengths.size()) + " strengths for " + std::to_string(centers.size()) +
+           std::to_string(radii.size()) + " radii for " + std::to_string(centres.size()) + " balls: give one, or as many");
+    if (strengths.size() != 1 && strengths.size() != centres.size())
+      fail("strengths", std::to_string(strengths.size()) + " strengths for " + std::to_string(centres.size()) +
                             " balls: give one, or as many");
     if (!std::isfinite(threshold)) fail("threshold", "must be finite");
     balls_.clear();
     Bounds3 box;
-    transform.count_from(transform.outer(), own_centre(centers));
-    const std::vector<Point3> middles = counted_from(transform.inner(), centers);
-    for (size_t i = 0; i < centers.size(); ++i) {
+    transform.count_from(transform.outer(), own_centre(centres));
+    const std::vector<Point3> middles = counted_from(transform.inner(), centres);
+    for (size_t i = 0; i < centres.size(); ++i) {
       const float radius = radii[radii.size() == 1 ? 0 : i], strength = strengths[strengths.size() == 1 ? 0 : i];
-      if (!is_finite(centers[i])) fail("centers", "must be finite");
+      if (!is_finite(centres[i])) fail("centres", "must be finite");
       if (!(radius > 0 && radius < infinity)) fail("radii", "must be positive and finite");
       if (!std::isfinite(strength)) fail("strengths", "must be finite");
       const Point3& c = middles[i];
@@ -60,7 +62,7 @@ class Metaballs final : public ImplicitObject {
 
   bool closed() const override { return true; }  // at the border of the box the density is 0
 
-  std::vector<DoublePoint3> centers{{-0.45, 0, 0}, {0.45, 0, 0}};
+  std::vector<DoublePoint3> centres{{-0.45, 0, 0}, {0.45, 0, 0}};
   std::vector<float> radii{1}, strengths{1};
   float threshold = 0.2f;
 
@@ -74,7 +76,7 @@ class Metaballs final : public ImplicitObject {
     Place g{};
     for_balls_at(x, [&](const Ball& ball, double u) {
       const double slope = 6 * ball.strength * u * u * ball.inverse_square;
-      for (size_t k = 0; k < 3; ++k) g[k] += slope * (x[k] - ball.center[k]);
+      for (size_t k = 0; k < 3; ++k) g[k] += slope * (x[k] - ball.centre[k]);
     });
     return g;
   }
@@ -126,7 +128,7 @@ class Metaballs final : public ImplicitObject {
 
  private:
   struct Ball {
-    Place center;
+    Place centre;
     double inverse_square, strength;  // of the radius [1/m^2]
   };
   enum class Sign : std::uint8_t { mixed, inside, outside };
@@ -147,7 +149,7 @@ class Metaballs final : public ImplicitObject {
       const Ball& ball = balls_[listed_[i]];
       double near = 0, far = 0;
       for (size_t k = 0; k < 3; ++k) {
-        const double a = from[k] - ball.center[k], b = to[k] - ball.center[k], nearest = std::max({a, -b, 0.0});
+        const double a = from[k] - ball.centre[k], b = to[k] - ball.centre[k], nearest = std::max({a, -b, 0.0});
         near += nearest * nearest;
         far += std::max(a * a, b * b);
       }
@@ -242,7 +244,7 @@ class Metaballs final : public ImplicitObject {
 
   Block block_of(const Ball& ball) const {
     const double reach = std::sqrt(1 / ball.inverse_square);
-    const Place& c = ball.center;
+    const Place& c = ball.centre;
     return block_between({c[0] - reach, c[1] - reach, c[2] - reach}, {c[0] + reach, c[1] + reach, c[2] + reach});
   }
 
@@ -259,7 +261,7 @@ class Metaballs final : public ImplicitObject {
   static bool overlaps(const Ball& ball, const Place& from, const Place& to) {
     double near = 0;
     for (size_t k = 0; k < 3; ++k) {
-      const double d = std::max({from[k] - ball.center[k], ball.center[k] - to[k], 0.0});
+      const double d = std::max({from[k] - ball.centre[k], ball.centre[k] - to[k], 0.0});
       near += d * d;
     }
     return near * ball.inverse_square <= 1;
@@ -276,7 +278,7 @@ class Metaballs final : public ImplicitObject {
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
       const Ball& ball = balls_[listed_[i]];
       double r2 = 0;
-      for (size_t k = 0; k < 3; ++k) r2 += (x[k] - ball.center[k]) * (x[k] - ball.center[k]);
+      for (size_t k = 0; k < 3; ++k) r2 += (x[k] - ball.centre[k]) * (x[k] - ball.centre[k]);
       const double u = 1 - r2 * ball.inverse_square;
       if (u > 0) visit(ball, u);
     }
@@ -291,7 +293,7 @@ class Metaballs final : public ImplicitObject {
       const Ball& ball = balls_[listed_[i]];
       double a = 0, h = 0, c = -1 / ball.inverse_square;
       for (int k = 0; k < 3; ++k) {
-        const double x = r.at(enter, k) - ball.center[size_t(k)];
+        const double x = r.at(enter, k) - ball.centre[size_t(k)];
         a += r.direction[k] * r.direction[k];
         h += r.direction[k] * x;
         c += x * x;
@@ -323,7 +325,7 @@ class Metaballs final : public ImplicitObject {
   static void subtract(const Ball& ball, const DoubleRay& r, double from, double to, double (&b)[7]) {
     double start = 0, end = 0, slope = 0;  // of r^2
     for (int k = 0; k < 3; ++k) {
-      const double x = r.at(from, k) - ball.center[size_t(k)], y = r.at(to, k) - ball.center[size_t(k)];
+      const double x = r.at(from, k) - ball.centre[size_t(k)], y = r.at(to, k) - ball.centre[size_t(k)];
       start += x * x;
       end += y * y;
       slope += x * r.direction[k] * (to - from);

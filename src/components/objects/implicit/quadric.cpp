@@ -14,10 +14,12 @@ class Quadric final : public ImplicitObject {
          "By "
          "default the unit sphere. Surface coordinates are those of the face of the box the surface faces most, from 0 to 1 as "
          "on a Box.")
+        .group("Shape")
         .member<&Quadric::squares>("squares", "1", "the factors a, b, c of x^2, y^2 and z^2", Effect::rebuild)
         .member<&Quadric::products>("products", "1", "the factors d, e, f of y z, z x and x y", Effect::rebuild)
         .member<&Quadric::linear>("linear", "1", "the factors g, h, i of x, y and z, in m", Effect::rebuild)
         .member<&Quadric::constant>("constant", "1", "the term j", Effect::rebuild)
+        .group("Box")
         .member<&Quadric::low>("low", "m", "the corner of the box with the lowest coordinates", Effect::rebuild)
         .member<&Quadric::high>("high", "m", "the corner with the highest", Effect::rebuild)
         .member<&Quadric::capped>("capped", "",

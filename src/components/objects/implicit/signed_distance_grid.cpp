@@ -25,17 +25,19 @@ class SignedDistanceGrid final : public ImplicitObject {
          "Other fields than distances may be given. Surface coordinates are those of the face of the box the surface faces "
          "most, from 0 to 1 as on a Box.",
          "Hansson-Soderlund, Evans & Akenine-Moller 2022, \"Ray tracing of signed distance function grids\"")
+        .group("Shape")
         .member<&SignedDistanceGrid::file>(
             "file", "",
             "a NumPy array (.npy) of shape (nz, ny, nx); if given, 'resolution' and 'distances' are "
             "not used",
             Effect::rebuild)
         .member<&SignedDistanceGrid::resolution>("resolution", "1", "how many distances there are along x, y and z",
-                                                 Effect::rebuild)
+                                                 Effect::rebuild, unless("file"))
         .member<&SignedDistanceGrid::distances>(
             "distances", "m",
             "at the points of the grid, x running fastest, z slowest. None: a ball that fills four fifths of the box",
             Effect::rebuild)
+        .group("Box")
         .member<&SignedDistanceGrid::low>("low", "m", "where the first point is", Effect::rebuild)
         .member<&SignedDistanceGrid::high>("high", "m", "where the last point is", Effect::rebuild)
         .member<&SignedDistanceGrid::capped>(

@@ -16,6 +16,7 @@ class DisplacedMesh final : public TriangleObject {
          "has the normals of its new shape. All that lies in one place moves alike, so that nothing gapes. Surface coordinates "
          "are those of the other object.",
          "Cook 1984, \"Shade trees\"")
+        .group("Shape")
         .member<&DisplacedMesh::surface>(
             "surface", "",
             "what is moved: an object of triangles, such as a TriangleMesh or a SubdivisionSurface. Its shader, emission and "
@@ -25,25 +26,26 @@ class DisplacedMesh final : public TriangleObject {
             "displacement", "1",
             "how far outwards along the shading normal: scale (displacement - midlevel). A map sees the surface before it is "
             "moved and without this object's transform, and takes means over a triangle's size if it can",
-            Effect::rebuild)
+            Effect::rebuild, Meaning::number)
         .member<&DisplacedMesh::offset>("offset", "1",
                                         "three maps: how far along x, y and z: scale (offset - midlevel), in addition; none: "
                                         "nothing. Those of an image are "
                                         "ImageMaps of its channels (\"R\", \"G\" and \"B\")",
-                                        Effect::rebuild)
+                                        Effect::rebuild, Meaning::number)
         .member<&DisplacedMesh::offset_space>(
             "offset_space", "",
             "what x, y and z are. object: the axes before this object's transform; tangent: where u grows, across it where v "
             "grows, and the normal",
-            choices("object", "tangent"), Effect::rebuild)
-        .member<&DisplacedMesh::scale>("scale", "m", "multiplies the maps; before the transform", Effect::rebuild)
-        .member<&DisplacedMesh::midlevel>("midlevel", "1", "the value of a map that moves nothing", Effect::rebuild)
+            choices("object", "tangent"), Effect::rebuild, when("offset"))
+        .member<&DisplacedMesh::scale>("scale", "m", "multiplies the maps; before the transform", Effect::rebuild, soft(-1, 1))
+        .member<&DisplacedMesh::midlevel>("midlevel", "1", "the value of a map that moves nothing", Effect::rebuild, soft(0, 1))
+        .group("Fineness")
         .member<&DisplacedMesh::levels>("levels", "1", "how many times all edges of triangles are halved first", range(0, 8),
                                         Effect::rebuild)
         .member<&DisplacedMesh::edge_length>(
             "edge_length", "m",
             "edges longer than this are halved further, before the surface is moved and before the transform; 0: none",
-            at_least(0), Effect::rebuild)
+            at_least(0), Effect::rebuild, soft(0.001, 10), logarithmic)
         .member<&DisplacedMesh::smooth_angle>(
             "smooth_angle", "rad",
             "edges at which the surface's normals turn by more than this stay hard; 0: all of the new shape is shaded flat",

@@ -19,6 +19,7 @@ class Polygon final : public TriangleObject {
          "across "
          "it, to the left as seen from the front, from 0 to 1 over the polygon's extent.",
          "ear clipping: Meisters 1975; holes: Eberly 2008, \"Triangulation by ear clipping\"; normal: Newell's method")
+        .group("Shape")
         .member<&Polygon::points>("points", "m", "the corners in order, counter-clockwise seen from the front", Effect::rebuild)
         .member<&Polygon::holes>("holes", "m", "the corners of holes in order, either way round, one hole after the other",
                                  Effect::rebuild)

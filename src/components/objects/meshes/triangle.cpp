@@ -12,6 +12,7 @@ class Triangle final : public TriangleObject {
     d.summary(
          "A triangle; counter-clockwise seen from the front. Surface coordinates are (0, 0), (1, 0) and (0, 1) at its corners.",
          "solid-angle sampling: Arvo 1995, \"Stratified sampling of spherical triangles\"")
+        .group("Shape")
         .member<&Triangle::a>("a", "m", "its first corner", Effect::rebuild)
         .member<&Triangle::b>("b", "m", "its second corner", Effect::rebuild)
         .member<&Triangle::c>("c", "m", "its third corner", Effect::rebuild);

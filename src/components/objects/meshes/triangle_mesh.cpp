@@ -42,6 +42,7 @@ class TriangleMesh final : public TriangleObject {
     d.summary(
          "Triangles, from a file or written out. Meshes from one file share it. A mesh that changes its shape has several "
          "keys: at each of `times` the vertices are where one of them says, and between two they move in straight lines.")
+        .group("Shape")
         .member<&TriangleMesh::file>("file", "", "a PLY file (text or binary) or an OBJ file; none: the lists below",
                                      Effect::rebuild)
         .member<&TriangleMesh::positions>("positions", "m", "the vertices, when there is no file", Effect::rebuild)
@@ -56,6 +57,7 @@ class TriangleMesh final : public TriangleObject {
                                        "AttributeMap, as are those of a PLY file",
                                        Effect::rebuild)
         .member<&TriangleMesh::flat>("flat", "", "ignores normals of vertices: the surface is shaded as it is", Effect::rebuild)
+        .group("Motion")
         .member<&TriangleMesh::times>("times", "s", "of the keys, increasing: the first is that of `file` or `positions`",
                                       Effect::rebuild)
         .member<&TriangleMesh::motion_files>(

@@ -133,7 +133,7 @@ class TriangleObject : public SceneObject, public NumberedParts {
   // Made when first asked for: few objects need them.
   struct Lazy {
     std::once_flag table_made, accelerator_made, closed_known;
-    std::vector<double> cumulative;  // of the triangles' areas, normalised
+    std::vector<double> cumulative;  // of the triangles' areas, normalized
     std::unique_ptr<EmbreeTriangles> accelerator;
     bool closed = false;
   };

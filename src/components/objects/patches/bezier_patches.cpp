@@ -13,6 +13,7 @@ class BezierPatches final : public BezierObject {
          "Bézier patches of any degree up to 9, polynomial or rational. Each has its own surface coordinates from 0 to 1 and "
          "faces where dp/du x dp/dv points; patches whose borders all meet enclose a volume and face outwards.",
          "Bézier patches: Farin 2002, \"Curves and surfaces for CAGD\"; roots: Toth 1985; Nishita, Sederberg & Kakimoto 1990")
+        .group("Shape")
         .member<&BezierPatches::degree_u>("degree_u", "1", "the degree along u", range(1, bezier::highest_degree),
                                           Effect::rebuild)
         .member<&BezierPatches::degree_v>("degree_v", "1", "the degree along v", range(1, bezier::highest_degree),

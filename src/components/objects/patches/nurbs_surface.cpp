@@ -20,6 +20,7 @@ class NurbsSurface final : public BezierObject {
          "over "
          "the knots. Closed curves may trim it; loops must not cross.",
          "Piegl & Tiller 1997, \"The NURBS book\"")
+        .group("Shape")
         .member<&NurbsSurface::degree_u>("degree_u", "1", "the degree along u", range(1, bezier::highest_degree),
                                          Effect::rebuild)
         .member<&NurbsSurface::degree_v>("degree_v", "1", "the degree along v", range(1, bezier::highest_degree),
@@ -30,13 +31,14 @@ class NurbsSurface final : public BezierObject {
         .member<&NurbsSurface::points>("points", "m", "the control points, along u first", Effect::rebuild)
         .member<&NurbsSurface::weights>("weights", "1", "a weight for each control point, or none", more_than(0),
                                         Effect::rebuild)
+        .group("Trimming")
         .member<&NurbsSurface::trimming>(
             "trimming", "",
             "curves in u and v, in the units of the knots, each of which begins where the last one "
             "ends until a loop is closed",
             Effect::rebuild)
         .member<&NurbsSurface::keep>("keep", "", "which part trimming leaves: what the loops wind around, or the rest",
-                                     choices("inside", "outside"), Effect::rebuild);
+                                     choices("inside", "outside"), Effect::rebuild, when("trimming"));
   }
 
   void prepare() override {

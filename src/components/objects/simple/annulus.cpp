@@ -10,8 +10,10 @@ class Annulus final : public PlacedObject {
   static void describe(Description<Annulus>& d) {
     d.summary(
          "A flat ring about the origin in the xy plane, facing +z; surface coordinates are as on a Disc of its outer radius.")
-        .member<&Annulus::inner_radius>("inner_radius", "m", "of its hole; 0: none", at_least(0), Effect::rebuild)
-        .member<&Annulus::radius>("radius", "m", "its outer radius", more_than(0), Effect::rebuild)
+        .group("Shape")
+        .member<&Annulus::inner_radius>("inner_radius", "m", "of its hole; 0: none", at_least(0), Effect::rebuild, soft(0, 100))
+        .member<&Annulus::radius>("radius", "m", "its outer radius", more_than(0), Effect::rebuild, soft(0.01, 100),
+                                  logarithmic)
         .member<&Annulus::sweep>("sweep", "deg", "how much of a turn there is, from x towards y", Range{0, 360, true},
                                  Effect::rebuild);
   }

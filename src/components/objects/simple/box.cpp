@@ -15,16 +15,17 @@ class Box final : public PlacedObject {
          "goes "
          "along y and v along z, on +y along z and x, on +z along x and y; on those that face back u runs the other way.",
          "slabs: Kay & Kajiya 1986, \"Ray tracing complex scenes\"")
-        .member<&Box::center>("center", "m", "its middle", Effect::rebuild)
+        .group("Shape")
+        .member<&Box::centre>("centre", "m", "its middle", Effect::rebuild)
         .member<&Box::size>("size", "m", "its edges", Effect::rebuild);
   }
 
   void prepare() override {
-    if (!is_finite(center)) fail("center", "must be finite");
+    if (!is_finite(centre)) fail("centre", "must be finite");
     for (int k = 0; k < 3; ++k)
       if (!(size[k] > 0 && size[k] < infinity)) fail("size", "all edges must be positive and finite");
     count_with_scene(transform);
-    const DoubleVector3 middle = center - transform.inner(), half = 0.5 * DoubleVector3(size);
+    const DoubleVector3 middle = centre - transform.inner(), half = 0.5 * DoubleVector3(size);
     low_ = Point3(DoublePoint3{} + (middle - half));
     high_ = Point3(DoublePoint3{} + (middle + half));
     double sum = 0;
@@ -66,7 +67,7 @@ class Box final : public PlacedObject {
     return seen.areas[p.primitive] > 0 && cosine > 0 ? distance_squared(p.position, from) / (cosine * seen.area) : 0;
   }
 
-  DoublePoint3 center{0, 0, 0};
+  DoublePoint3 centre{0, 0, 0};
   Vector3 size{1, 1, 1};
 
  protected:

@@ -15,9 +15,11 @@ class Cone final : public RevolvedQuadric {
          "A circular cone about the z axis with its base at z = 0, pointed or cut off at its height. On its side u goes around "
          "from +x towards +y, over the sweep, and v up; on its caps they are as on a Disc, u backwards on what faces down.",
          "intersection with quadrics: Hearn & Baker 2004")
-        .member<&Cone::radius>("radius", "m", "of its base", at_least(0), Effect::rebuild)
-        .member<&Cone::top_radius>("top_radius", "m", "at its height; 0: a point", at_least(0), Effect::rebuild)
-        .member<&Cone::height>("height", "m", "from base to top along z", more_than(0), Effect::rebuild)
+        .group("Shape")
+        .member<&Cone::radius>("radius", "m", "of its base", at_least(0), Effect::rebuild, soft(0, 100))
+        .member<&Cone::top_radius>("top_radius", "m", "at its height; 0: a point", at_least(0), Effect::rebuild, soft(0, 100))
+        .member<&Cone::height>("height", "m", "from base to top along z", more_than(0), Effect::rebuild, soft(0.01, 100),
+                               logarithmic)
         .member<&Cone::caps>("caps", "", "whether discs close its ends", Effect::rebuild)
         .member<&Cone::sweep>("sweep", "deg", "how much of a turn there is, from x towards y; less than all of it is open",
                               Range{0, 360, true}, Effect::rebuild);

@@ -12,8 +12,10 @@ class Cylinder final : public RevolvedQuadric {
          "A circular cylinder about the z axis, from -height/2 to height/2. On its side u goes around from +x towards +y, over "
          "the sweep, and v up; on its caps they are as on a Disc, u backwards on what faces down.",
          "intersection with quadrics: Hearn & Baker 2004")
-        .member<&Cylinder::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild)
-        .member<&Cylinder::height>("height", "m", "its length along z", more_than(0), Effect::rebuild)
+        .group("Shape")
+        .member<&Cylinder::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild, soft(0.01, 100), logarithmic)
+        .member<&Cylinder::height>("height", "m", "its length along z", more_than(0), Effect::rebuild, soft(0.01, 100),
+                                   logarithmic)
         .member<&Cylinder::caps>("caps", "", "whether discs close its ends", Effect::rebuild)
         .member<&Cylinder::sweep>("sweep", "deg", "how much of a turn there is, from x towards y; less than all of it is open",
                                   Range{0, 360, true}, Effect::rebuild);

@@ -13,7 +13,8 @@ class Disc final : public SceneObject {
     d.summary(
          "A disc about the origin in the xy plane, facing +z. u goes along x and v along y, from 0 to 1 over the square around "
          "it.")
-        .member<&Disc::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild);
+        .group("Shape")
+        .member<&Disc::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild, soft(0.01, 100), logarithmic);
   }
 
   void prepare() override {

@@ -52,15 +52,16 @@ class Ellipsoid final : public PlacedObject {
          "Heitz "
          "2017, \"Analytical calculation of the solid angle subtended by an arbitrarily positioned ellipsoid to a point "
          "source\"")
-        .member<&Ellipsoid::center>("center", "m", "its centre", Effect::rebuild)
+        .group("Shape")
+        .member<&Ellipsoid::centre>("centre", "m", "its centre", Effect::rebuild)
         .member<&Ellipsoid::radii>("radii", "m", "its half axes along x, y and z", Effect::rebuild);
   }
 
   void prepare() override {
-    if (!is_finite(center)) fail("center", "must be finite");
+    if (!is_finite(centre)) fail("centre", "must be finite");
     for (int k = 0; k < 3; ++k)
       if (!(radii[k] > 0 && radii[k] < infinity)) fail("radii", "all must be positive and finite");
-    transform.count_from(transform.outer(), center);
+    transform.count_from(transform.outer(), centre);
     area_ = area_under(Transform());
     if (!(float(area_) > 0 && float(area_) < infinity)) fail("radii", "the ellipsoid is too small or too large");
     const double a = double(radii.x), b = double(radii.y), c = double(radii.z), sum = a * b + b * c + c * a;
@@ -110,7 +111,7 @@ class Ellipsoid final : public PlacedObject {
     return cone_density(cone, t, distance(p.position, from), direction, p);
   }
 
-  DoublePoint3 center{0, 0, 0};
+  DoublePoint3 centre{0, 0, 0};
   Vector3 radii{1, 1, 1};
 
  protected:

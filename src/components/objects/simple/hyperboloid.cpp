@@ -17,10 +17,13 @@ class Hyperboloid final : public RevolvedQuadric {
          "straight line sweeps that turns around an axis it does not meet. On its side u goes around from +x towards +y, over "
          "the sweep, and v up; on its caps they are as on a Disc, u backwards on what faces down.",
          "intersection with quadrics: Hearn & Baker 2004")
+        .group("Shape")
         .member<&Hyperboloid::waist_radius>("waist_radius", "m", "in the middle, where it is narrowest", more_than(0),
-                                            Effect::rebuild)
-        .member<&Hyperboloid::radius>("radius", "m", "at its ends; at least that of the waist", more_than(0), Effect::rebuild)
-        .member<&Hyperboloid::height>("height", "m", "its length along z", more_than(0), Effect::rebuild)
+                                            Effect::rebuild, soft(0.01, 100), logarithmic)
+        .member<&Hyperboloid::radius>("radius", "m", "at its ends; at least that of the waist", more_than(0), Effect::rebuild,
+                                      soft(0.01, 100), logarithmic)
+        .member<&Hyperboloid::height>("height", "m", "its length along z", more_than(0), Effect::rebuild, soft(0.01, 100),
+                                      logarithmic)
         .member<&Hyperboloid::caps>("caps", "", "whether discs close its ends", Effect::rebuild)
         .member<&Hyperboloid::sweep>("sweep", "deg",
                                      "how much of a turn there is, from x towards y; less than all of it is open",

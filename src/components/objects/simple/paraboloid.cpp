@@ -17,8 +17,10 @@ class Paraboloid final : public RevolvedQuadric {
          "cap "
          "they are as on a Disc. The outside is in front.",
          "intersection with quadrics: Hearn & Baker 2004")
-        .member<&Paraboloid::radius>("radius", "m", "at its rim", more_than(0), Effect::rebuild)
-        .member<&Paraboloid::height>("height", "m", "from vertex to rim along z", more_than(0), Effect::rebuild)
+        .group("Shape")
+        .member<&Paraboloid::radius>("radius", "m", "at its rim", more_than(0), Effect::rebuild, soft(0.01, 100), logarithmic)
+        .member<&Paraboloid::height>("height", "m", "from vertex to rim along z", more_than(0), Effect::rebuild,
+                                     soft(0.01, 100), logarithmic)
         .member<&Paraboloid::cap>("cap", "", "whether a disc closes it", Effect::rebuild)
         .member<&Paraboloid::sweep>("sweep", "deg",
                                     "how much of a turn there is, from x towards y; less than all of it is open",

@@ -16,6 +16,7 @@ class Rectangle final : public SceneObject {
          "A parallelogram given by a corner and two edges; by default a unit square about the origin, facing +z. u goes along "
          "edge_u and v along edge_v, from 0 at the corner to 1.",
          "solid-angle sampling: Urena, Fajardo & King 2013")
+        .group("Shape")
         .member<&Rectangle::corner>("corner", "m", "one of its corners", Effect::rebuild)
         .member<&Rectangle::edge_u>("edge_u", "m", "from the corner along u", Effect::rebuild)
         .member<&Rectangle::edge_v>("edge_v", "m", "from the corner along v; the front is on the side of edge_u x edge_v",

@@ -13,8 +13,10 @@ void SceneObject::describe(Description<SceneObject>& d) {
        "each shape, in its own coordinates, before its transform; seen from the front with v upwards, u grows to the right, so "
        "an "
        "image is not mirrored there.")
+      .group("Placement")
       .member<&SceneObject::transform>("transform", "", "from the object's own coordinates to those of the scene it is in",
                                        Effect::rebuild)
+      .group("Material")
       .member<&SceneObject::shader>("shader", "", "how its surface scatters light; none: black")
       .member<&SceneObject::emission>("emission", "", "how it emits light; none: it does not", Effect::rebuild)
       .member<&SceneObject::interior>("interior", "", "the medium inside; none: vacuum", Effect::rebuild)

@@ -6,7 +6,7 @@
 namespace etendue {
 
 class Sphere final : public SceneObject {
-  DoublePoint3 center{0, 0, 0};
+  DoublePoint3 centre{0, 0, 0};
   float radius = 1;
 
  public:
@@ -16,21 +16,22 @@ class Sphere final : public SceneObject {
          "-z "
          "to that at +z.",
          "cone sampling: Shirley, Wang & Zimmerman 1996, \"Monte Carlo techniques for direct lighting calculations\"")
-        .member<&Sphere::center>("center", "m", "its centre", Effect::rebuild)
-        .member<&Sphere::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild);
+        .group("Shape")
+        .member<&Sphere::centre>("centre", "m", "its centre", Effect::rebuild)
+        .member<&Sphere::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild, soft(0.01, 100), logarithmic);
   }
 
   void prepare() override {
-    if (!is_finite(center) || !(radius > 0 && radius < infinity))
+    if (!is_finite(centre) || !(radius > 0 && radius < infinity))
       fail("radius", "centre and radius must be finite, the radius positive");
-    transform.count_from(transform.outer(), center);
+    transform.count_from(transform.outer(), centre);
     const float scale = transform.animated() ? 0 : similarity_scale(transform.still());
     round_ = scale > 0;
     ball_ = round_ ? Ball{transform.still()(Point3{}), scale * radius} : Ball{{}, radius};
     const Vector3 r{ball_.radius, ball_.radius, ball_.radius};
     Bounds3 box;
-    box.add(ball_.center - r);
-    box.add(ball_.center + r);
+    box.add(ball_.centre - r);
+    box.add(ball_.centre + r);
     if (round_) {
       bounds_ = box;
     } else if (transform.animated()) {
@@ -118,7 +119,7 @@ class Sphere final : public SceneObject {
     // at angle alpha to the axis back to `from`. With sin(max) = r/d the sine theorem gives the angle at the point, and
     //   cos(alpha) = sin(theta)^2 / sin(max) + cos(theta) sqrt(1 - sin(theta)^2 / sin(max)^2),
     // in which nothing cancels however far the sphere is.
-    const Vector3 to = ball.center - from;
+    const Vector3 to = ball.centre - from;
     const float d = length(to), sin_max = ball.radius / d;
     const float h = u.x * one_minus_cosine, sin2 = h * (2 - h), cos_theta = 1 - h;
     const float cos_alpha = std::min(1.0f, sin2 / sin_max + cos_theta * safe_sqrt(1 - sin2 / (sin_max * sin_max)));
@@ -148,14 +149,14 @@ class Sphere final : public SceneObject {
 
  private:
   struct Ball {
-    Point3 center;
+    Point3 centre;
     float radius = 1;
 
     /// The smallest t > 0, or infinity. In double: the discriminant of a small or far sphere is a difference of large
     /// numbers. q is the half of the root that does not cancel, c / q the other (Hearn & Baker 2004).
     float nearest(const Ray& ray) const {
-      const double ox = double(ray.origin.x) - center.x, oy = double(ray.origin.y) - center.y,
-                   oz = double(ray.origin.z) - center.z;
+      const double ox = double(ray.origin.x) - centre.x, oy = double(ray.origin.y) - centre.y,
+                   oz = double(ray.origin.z) - centre.z;
       const double dx = ray.direction.x, dy = ray.direction.y, dz = ray.direction.z;
       const double a = dx * dx + dy * dy + dz * dz, b = ox * dx + oy * dy + oz * dz;
       const double c = ox * ox + oy * oy + oz * oz - double(radius) * radius;
@@ -170,7 +171,7 @@ class Sphere final : public SceneObject {
 
     /// The cone in which the sphere is seen; false from inside or too close to tell.
     bool cone(const Point3& from, float& one_minus_cosine) const {
-      const float d2 = distance_squared(from, center), sin2 = radius * radius / d2;
+      const float d2 = distance_squared(from, centre), sin2 = radius * radius / d2;
       if (!(sin2 < 0.9999f)) return false;
       one_minus_cosine = sin2 / (1 + std::sqrt(1 - sin2));
       return true;
@@ -178,9 +179,9 @@ class Sphere final : public SceneObject {
   };
 
   static Vector3 unit_from_centre(const Ball& ball, const Ray& ray, float t) {
-    const double x = double(ray.origin.x) + double(t) * ray.direction.x - ball.center.x;
-    const double y = double(ray.origin.y) + double(t) * ray.direction.y - ball.center.y;
-    const double z = double(ray.origin.z) + double(t) * ray.direction.z - ball.center.z;
+    const double x = double(ray.origin.x) + double(t) * ray.direction.x - ball.centre.x;
+    const double y = double(ray.origin.y) + double(t) * ray.direction.y - ball.centre.y;
+    const double z = double(ray.origin.z) + double(t) * ray.direction.z - ball.centre.z;
     const double s = 1 / std::sqrt(x * x + y * y + z * z);
     return {float(x * s), float(y * s), float(z * s)};
   }
@@ -192,7 +193,7 @@ class Sphere final : public SceneObject {
 
   /// Fills a point by its direction from the centre: outside for a round still sphere, else in the object's coordinates.
   void fill(const Vector3& from_centre, float time, SurfacePoint& p) const {
-    p.position = ball_.center + ball_.radius * from_centre;
+    p.position = ball_.centre + ball_.radius * from_centre;
     p.normal = Normal3(from_centre);
     p.shading_normal = p.normal;
     p.dpdu = {};

@@ -83,9 +83,11 @@ class Torus final : public PlacedObject {
          "A torus about the z axis: a ring with a round cross-section. u goes around the axis from +x towards +y, v around "
          "the tube from its outermost circle over +z.",
          "area sampling: Williamson 1987, \"Random selection of points distributed on curved surfaces\"")
+        .group("Shape")
         .member<&Torus::radius>("radius", "m", "from the middle of the ring to the middle of the tube", more_than(0),
-                                Effect::rebuild)
-        .member<&Torus::tube_radius>("tube_radius", "m", "of the tube; smaller than `radius`", more_than(0), Effect::rebuild);
+                                Effect::rebuild, soft(0.01, 100), logarithmic)
+        .member<&Torus::tube_radius>("tube_radius", "m", "of the tube; smaller than `radius`", more_than(0), Effect::rebuild,
+                                     soft(0.01, 100), logarithmic);
   }
 
   void prepare() override {

@@ -17,9 +17,12 @@ class Tube final : public PlacedObject {
          "the "
          "lower one.",
          "intersection with quadrics: Hearn & Baker 2004")
-        .member<&Tube::inner_radius>("inner_radius", "m", "of its bore", more_than(0), Effect::rebuild)
-        .member<&Tube::radius>("radius", "m", "its outer radius", more_than(0), Effect::rebuild)
-        .member<&Tube::height>("height", "m", "its length along z", more_than(0), Effect::rebuild);
+        .group("Shape")
+        .member<&Tube::inner_radius>("inner_radius", "m", "of its bore", more_than(0), Effect::rebuild, soft(0.01, 100),
+                                     logarithmic)
+        .member<&Tube::radius>("radius", "m", "its outer radius", more_than(0), Effect::rebuild, soft(0.01, 100), logarithmic)
+        .member<&Tube::height>("height", "m", "its length along z", more_than(0), Effect::rebuild, soft(0.01, 100),
+                               logarithmic);
   }
 
   void prepare() override {

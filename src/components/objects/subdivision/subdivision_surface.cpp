@@ -17,6 +17,7 @@ class SubdivisionSurface final : public TriangleObject {
          "The smooth limit surface of a cage of polygons, as triangles whose corners and normals are those of the limit. The "
          "cage comes from a file or is written out.",
          "Catmull & Clark 1978; Loop 1987; creases: DeRose, Kass & Truong 1998; evaluation: OpenSubdiv")
+        .group("Cage")
         .member<&SubdivisionSurface::file>(
             "file", "", "a PLY file (text or binary) or an OBJ file, of which faces stay as they are; none: the lists below",
             Effect::rebuild)
@@ -34,6 +35,7 @@ class SubdivisionSurface final : public TriangleObject {
                                                  "which of uvs each corner of each face has, as indices does of vertices; an "
                                                  "edge along which they differ is a seam",
                                                  Effect::rebuild)
+        .group("Creases")
         .member<&SubdivisionSurface::creases>("creases", "1", "edges that are sharp: two vertices each, counting from 0",
                                               Effect::rebuild)
         .member<&SubdivisionSurface::crease_sharpness>(
@@ -43,6 +45,7 @@ class SubdivisionSurface final : public TriangleObject {
         .member<&SubdivisionSurface::corners>("corners", "1", "vertices that are sharp, counting from 0", Effect::rebuild)
         .member<&SubdivisionSurface::corner_sharpness>("corner_sharpness", "1", "how sharp, in the same way", range(0, 10),
                                                        Effect::rebuild)
+        .group("Rules")
         .member<&SubdivisionSurface::scheme>(
             "scheme", "",
             "catmull_clark: for any polygons; loop: for triangles; bilinear: divides faces but does not smooth them",
@@ -62,17 +65,18 @@ class SubdivisionSurface final : public TriangleObject {
             "weld", "",
             "makes one vertex of those in the same place: files that hold one uv for each vertex split them at seams",
             Effect::rebuild)
+        .group("Fineness")
         .member<&SubdivisionSurface::levels>(
             "levels", "1", "each edge of the cage is divided into 2^levels pieces, or fewer:", range(0, 10), Effect::rebuild)
         .member<&SubdivisionSurface::tolerance>(
             "tolerance", "m",
             "how far from the limit surface triangles may lie, before the transform: fewer pieces are made where these are "
             "enough; 0: any",
-            at_least(0), Effect::rebuild)
+            at_least(0), Effect::rebuild, soft(0.00001, 0.1), logarithmic)
         .member<&SubdivisionSurface::edge_length>(
             "edge_length", "m",
             "how long edges of triangles may be, before the transform: fewer pieces are made where these are enough; 0: any",
-            at_least(0), Effect::rebuild);
+            at_least(0), Effect::rebuild, soft(0.001, 10), logarithmic);
   }
 
   void prepare() override {

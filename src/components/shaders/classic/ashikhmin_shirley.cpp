@@ -106,13 +106,16 @@ class AshikhminShirley final : public Shader {
   static void describe(Description<AshikhminShirley>& d) {
     d.summary("An anisotropic Phong highlight that grows towards grazing angles, over a matt base that fades there.",
               "Ashikhmin & Shirley 2000, An anisotropic Phong BRDF model")
-        .member<&AshikhminShirley::color>("color", "1",
-                                          "fraction the base reflects of the light that reaches it, per wavelength")
-        .member<&AshikhminShirley::specular>("specular", "1",
-                                             "fraction the highlight reflects at normal incidence, per wavelength")
-        .member<&AshikhminShirley::exponent_u>("exponent_u", "1", "sharpness of the highlight along u, from 0 to 1e6")
-        .member<&AshikhminShirley::exponent_v>("exponent_v", "1", "the same across u")
-        .member<&AshikhminShirley::rotation>("rotation", "1", "by how many turns the pattern is rotated against u");
+        .member<&AshikhminShirley::color>(
+            "color", "1", "fraction the base reflects of the light that reaches it, per wavelength", Meaning::reflectance)
+        .member<&AshikhminShirley::specular>(
+            "specular", "1", "fraction the highlight reflects at normal incidence, per wavelength", Meaning::reflectance)
+        .member<&AshikhminShirley::exponent_u>("exponent_u", "1", "sharpness of the highlight along u, from 0 to 1e6",
+                                               Meaning::number, soft(1, 10000), logarithmic)
+        .member<&AshikhminShirley::exponent_v>("exponent_v", "1", "the same across u", Meaning::number, soft(1, 10000),
+                                               logarithmic)
+        .member<&AshikhminShirley::rotation>("rotation", "turn", "by how many turns the pattern is rotated against u",
+                                             Meaning::number, soft(0, 1));
   }
   void prepare() override {
     require_reflectance(*this, "color", color);

@@ -73,10 +73,10 @@ class CoupledMatteSpecular final : public Shader {
   static void describe(Description<CoupledMatteSpecular>& d) {
     d.summary("A polished surface over a matt base, which fades towards grazing angles as the polish reflects more.",
               "Shirley, Hu, Smits & Lafortune 1997, A practitioners' assessment of light reflection models")
-        .member<&CoupledMatteSpecular::color>("color", "1",
-                                              "fraction the base reflects of the light that reaches it, per wavelength")
-        .member<&CoupledMatteSpecular::specular>("specular", "1",
-                                                 "fraction the polish reflects at normal incidence, per wavelength");
+        .member<&CoupledMatteSpecular::color>(
+            "color", "1", "fraction the base reflects of the light that reaches it, per wavelength", Meaning::reflectance)
+        .member<&CoupledMatteSpecular::specular>(
+            "specular", "1", "fraction the polish reflects at normal incidence, per wavelength", Meaning::reflectance);
   }
   void prepare() override {
     require_reflectance(*this, "color", color);

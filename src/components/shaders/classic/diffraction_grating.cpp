@@ -91,14 +91,16 @@ class DiffractionGrating final : public Shader {
          "A mirror with fine parallel grooves, as on a compact disc: spectra on both sides of the mirror image. The part of "
          "orders that do not exist at an angle is absorbed.",
          "Born & Wolf 1999, Principles of Optics, section 8.6.1; Stam 1999, Diffraction shaders")
-        .member<&DiffractionGrating::lines>("lines", "1", "grooves per millimetre", more_than(0))
+        .member<&DiffractionGrating::lines>("lines", "1", "grooves per millimetre", more_than(0), soft(10, 2000), logarithmic)
         .member<&DiffractionGrating::efficiency>("efficiency", "1",
                                                  "fractions of the light that go into order 0 (the mirror image), into each of "
                                                  "+1 and -1, each of +2 and -2, and so on",
                                                  range(0, 1))
         .member<&DiffractionGrating::rotation>(
-            "rotation", "turn", "turns the grooves from the direction of u, counter-clockwise seen from the front")
-        .member<&DiffractionGrating::color>("color", "1", "fraction of light reflected into all orders, per wavelength");
+            "rotation", "turn", "turns the grooves from the direction of u, counter-clockwise seen from the front",
+            Meaning::number, soft(0, 1))
+        .member<&DiffractionGrating::color>("color", "1", "fraction of light reflected into all orders, per wavelength",
+                                            Meaning::reflectance);
   }
 
   void prepare() override {

@@ -59,10 +59,10 @@ class DiffuseTransmitter final : public Shader {
     d.summary(
          "A thin matt sheet that light also passes through, leaving alike in all directions on either side. Where "
          "reflectance and transmittance together exceed 1, both are scaled down to a sum of 1.")
-        .member<&DiffuseTransmitter::reflectance>("reflectance", "1",
-                                                  "fraction of light that leaves on the side it came from, per wavelength")
-        .member<&DiffuseTransmitter::transmittance>("transmittance", "1",
-                                                    "fraction of light that leaves on the other side, per wavelength");
+        .member<&DiffuseTransmitter::reflectance>(
+            "reflectance", "1", "fraction of light that leaves on the side it came from, per wavelength", Meaning::reflectance)
+        .member<&DiffuseTransmitter::transmittance>(
+            "transmittance", "1", "fraction of light that leaves on the other side, per wavelength", Meaning::reflectance);
   }
   void prepare() override {
     require_reflectance(*this, "reflectance", reflectance);

@@ -1,4 +1,4 @@
-// Lafortune: any number of generalised cosine lobes, as they are fitted to measured materials, over a Lambertian base.
+// Lafortune: any number of generalized cosine lobes, as they are fitted to measured materials, over a Lambertian base.
 
 #include "components/shaders/half_vector.h"
 #include "components/shaders/joint_scatter.h"
@@ -159,15 +159,17 @@ class LafortuneShader final : public Shader {
  public:
   static void describe(Description<LafortuneShader>& d) {
     d.summary(
-         "Generalised cosine lobes over a Lambertian base, as fitted to measured materials: mirror-like, off-specular, "
+         "Generalized cosine lobes over a Lambertian base, as fitted to measured materials: mirror-like, off-specular, "
          "anisotropic and retroreflective ones. Where all together could reflect more than arrives, all are scaled down.",
          "Lafortune, Foo, Torrance & Greenberg 1997, Non-linear approximation of reflectance functions")
-        .member<&LafortuneShader::color>("color", "1", "fraction of light reflected diffusely, per wavelength")
+        .member<&LafortuneShader::color>("color", "1", "fraction of light reflected diffusely, per wavelength",
+                                         Meaning::reflectance)
         .member<&LafortuneShader::coefficients>("coefficients", "1", "cx, cy, cz of each lobe; at most 8 lobes")
         .member<&LafortuneShader::exponents>("exponents", "1", "n of each lobe", range(0, 1e5))
-        .member<&LafortuneShader::lobe_colors>("lobe_colors", "1",
-                                               "what each lobe is multiplied by, per wavelength; 1 where none is given")
-        .member<&LafortuneShader::rotation>("rotation", "1", "by how many turns the lobes are rotated against u");
+        .member<&LafortuneShader::lobe_colors>(
+            "lobe_colors", "1", "what each lobe is multiplied by, per wavelength; 1 where none is given", Meaning::reflectance)
+        .member<&LafortuneShader::rotation>("rotation", "turn", "by how many turns the lobes are rotated against u",
+                                            Meaning::number, soft(0, 1));
   }
 
   void prepare() override {
@@ -176,7 +178,7 @@ class LafortuneShader final : public Shader {
     if (coefficients.size() > most_lobes) fail("coefficients", "at most 8 lobes");
     if (exponents.size() != coefficients.size())
       fail("exponents", "one for each of the " + std::to_string(coefficients.size()) + " lobes is needed");
-    if (lobe_colors.size() > coefficients.size()) fail("lobe_colors", "more colors than lobes");
+    if (lobe_colors.size() > coefficients.size()) fail("lobe_colors", "more colours than lobes");
     if (!rotation) fail("rotation", "a map or a number is needed");
     lobes_.clear();
     isotropic_ = true;

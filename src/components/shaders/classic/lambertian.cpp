@@ -46,7 +46,7 @@ class Lambertian final : public Shader {
  public:
   static void describe(Description<Lambertian>& d) {
     d.summary("A matt surface: light leaves alike in all directions.", "Lambert 1760, Photometria")
-        .member<&Lambertian::color>("color", "1", "fraction of light reflected, per wavelength");
+        .member<&Lambertian::color>("color", "1", "fraction of light reflected, per wavelength", Meaning::reflectance);
   }
   void prepare() override { require_reflectance(*this, "color", color); }
 

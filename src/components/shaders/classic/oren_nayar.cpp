@@ -101,8 +101,8 @@ class OrenNayar final : public Shader {
   static void describe(Description<OrenNayar>& d) {
     d.summary("A rough matt surface: flatter than a Lambertian one and brighter towards the light, without loss of energy.",
               "Portsmouth, Kutz & Hill 2025, EON: a practical energy-preserving rough diffuse BRDF (after Oren & Nayar 1994)")
-        .member<&OrenNayar::color>("color", "1", "fraction of light each facet reflects, per wavelength")
-        .member<&OrenNayar::roughness>("roughness", "1", "from 0 (Lambertian) to 1");
+        .member<&OrenNayar::color>("color", "1", "fraction of light each facet reflects, per wavelength", Meaning::reflectance)
+        .member<&OrenNayar::roughness>("roughness", "1", "from 0 (Lambertian) to 1", Meaning::number, soft(0, 1));
   }
   void prepare() override {
     require_reflectance(*this, "color", color);

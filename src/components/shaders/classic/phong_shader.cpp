@@ -1,4 +1,4 @@
-// PhongShader: a Phong lobe over a Lambertian base, normalised so that energy is conserved and f is reciprocal.
+// PhongShader: a Phong lobe over a Lambertian base, normalized so that energy is conserved and f is reciprocal.
 
 #include "components/shaders/reflectance.h"
 #include "matte_glossy_scatter.h"
@@ -82,13 +82,15 @@ class PhongShader final : public Shader {
  public:
   static void describe(Description<PhongShader>& d) {
     d.summary(
-         "Energy-conserving Phong lobe over a Lambertian base. Where color and specular together exceed 1, both are scaled "
+         "Energy-conserving Phong lobe over a Lambertian base. Where `color` and `specular` together exceed 1, both are scaled "
          "down to a sum of 1.",
          "Lafortune & Willems 1994, Using the modified Phong reflectance model for physically based rendering, eq. 6")
-        .member<&PhongShader::color>("color", "1", "fraction of light reflected diffusely, per wavelength")
+        .member<&PhongShader::color>("color", "1", "fraction of light reflected diffusely, per wavelength",
+                                     Meaning::reflectance)
         .member<&PhongShader::specular>("specular", "1",
-                                        "fraction of light reflected by the lobe at normal incidence, per wavelength")
-        .member<&PhongShader::exponent>("exponent", "1", "lobe sharpness", range(0, 1e6));
+                                        "fraction of light reflected by the lobe at normal incidence, per wavelength",
+                                        Meaning::reflectance)
+        .member<&PhongShader::exponent>("exponent", "1", "lobe sharpness", range(0, 1e6), soft(1, 10000), logarithmic);
   }
 
   void prepare() override {

@@ -188,13 +188,22 @@ class SchlickShader final : public Shader {
          "One layer, or two when base_color is given, each of which goes from a mirror through gloss to matt as its roughness "
          "grows, with Fresnel reflection and scratches. What would create energy in the paper is bounded.",
          "Schlick 1994, An inexpensive BRDF model for physically-based rendering")
-        .member<&SchlickShader::color>("color", "1", "fraction the surface reflects at normal incidence, per wavelength")
-        .member<&SchlickShader::roughness>("roughness", "1", "from 0 (a mirror) to 1 (matt)")
-        .member<&SchlickShader::isotropy>("isotropy", "1", "from 0.001 (scratches along u) to 1 (isotropic)")
-        .member<&SchlickShader::base_color>("base_color", "1", "color of the layer below; without it there is one layer")
-        .member<&SchlickShader::base_roughness>("base_roughness", "1", "roughness of the layer below")
-        .member<&SchlickShader::base_isotropy>("base_isotropy", "1", "isotropy of the layer below")
-        .member<&SchlickShader::rotation>("rotation", "1", "by how many turns the scratches are rotated against u");
+        .group("Layer")
+        .member<&SchlickShader::color>("color", "1", "fraction the surface reflects at normal incidence, per wavelength",
+                                       Meaning::reflectance)
+        .member<&SchlickShader::roughness>("roughness", "1", "from 0 (a mirror) to 1 (matt)", Meaning::number, soft(0, 1))
+        .member<&SchlickShader::isotropy>("isotropy", "1", "from 0.001 (scratches along u) to 1 (isotropic)", Meaning::number,
+                                          soft(0.001, 1), logarithmic)
+        .group("Layer below")
+        .member<&SchlickShader::base_color>("base_color", "1", "colour of the layer below; without it there is one layer",
+                                            Meaning::reflectance)
+        .member<&SchlickShader::base_roughness>("base_roughness", "1", "roughness of the layer below", Meaning::number,
+                                                soft(0, 1), when("base_color"))
+        .member<&SchlickShader::base_isotropy>("base_isotropy", "1", "isotropy of the layer below", Meaning::number,
+                                               soft(0.001, 1), logarithmic, when("base_color"))
+        .group("Direction")
+        .member<&SchlickShader::rotation>("rotation", "turn", "by how many turns the scratches are rotated against u",
+                                          Meaning::number, soft(0, 1));
   }
   void prepare() override {
     require_reflectance(*this, "color", color);

@@ -26,8 +26,9 @@ class BumpShader final : public PerturbedNormalShader {
               "Blinn 1978, Simulation of wrinkled surfaces")
         .member<&BumpShader::shader>("shader", "", "the surface that gets the bumps", required)
         .member<&BumpShader::height>("height", "m",
-                                     "how high the surface is raised; only slopes show: one that rises in steps is flat")
-        .member<&BumpShader::scale>("scale", "1", "multiplies the height");
+                                     "how high the surface is raised; only slopes show: one that rises in steps is flat",
+                                     Meaning::number, soft(0.0001, 0.1), logarithmic)
+        .member<&BumpShader::scale>("scale", "1", "multiplies the height", soft(-10, 10));
   }
 
   void prepare() override {

@@ -63,7 +63,7 @@ class MaskShader final : public Shader {
   static void describe(Description<MaskShader>& d) {
     d.summary("A shader with holes in it: where opacity is less than 1, the rest of the light goes straight on.")
         .member<&MaskShader::shader>("shader", "", "the surface where it is there", required)
-        .member<&MaskShader::opacity>("opacity", "1", "fraction of the surface that is there");
+        .member<&MaskShader::opacity>("opacity", "1", "fraction of the surface that is there", Meaning::number, soft(0, 1));
   }
 
   void prepare() override {

@@ -95,7 +95,8 @@ class MixShader final : public Shader {
     d.summary("Some of one surface and some of another, mixed finer than can be seen, or from place to place by a map.")
         .member<&MixShader::first>("first", "", "the surface where amount is 0; nothing: black", required)
         .member<&MixShader::second>("second", "", "the surface where amount is 1", required)
-        .member<&MixShader::amount>("amount", "1", "fraction of the surface that is the second one");
+        .member<&MixShader::amount>("amount", "1", "fraction of the surface that is the second one", Meaning::number,
+                                    soft(0, 1));
   }
 
   void prepare() override {

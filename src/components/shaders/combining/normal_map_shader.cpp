@@ -27,10 +27,12 @@ class NormalMapShader final : public PerturbedNormalShader {
         .member<&NormalMapShader::shader>("shader", "", "the surface that gets the normals", required)
         .member<&NormalMapShader::file>(
             "file", "", "the image: red, green, blue in [0, 1] are x (along u), y (along v), z in [-1, 1]", required)
-        .member<&NormalMapShader::strength>("strength", "1", "multiplies the tilt: 0 is flat, 1 as in the image", at_least(0))
+        .member<&NormalMapShader::strength>("strength", "1", "multiplies the tilt: 0 is flat, 1 as in the image", at_least(0),
+                                            soft(0, 2))
         .member<&NormalMapShader::flip_y>("flip_y", "", "whether green grows against v, as in images made for DirectX")
         .member<&NormalMapShader::transfer>("transfer", "",
-                                            "how the image's numbers are encoded; nearly all images of normals are linear")
+                                            "how the image's numbers are encoded; nearly all images of normals are linear",
+                                            image_transfer_names())
         .member<&NormalMapShader::repeat>("repeat", "1", "how many times the image is laid along u and along v");
   }
 
@@ -39,11 +41,6 @@ class NormalMapShader final : public PerturbedNormalShader {
     if (file.empty()) fail("file", "an image file is needed");
     if (!(strength >= 0 && strength < infinity)) fail("strength", "must be a finite number, 0 or more");
     if (!(std::isfinite(repeat.x) && std::isfinite(repeat.y))) fail("repeat", "must be finite numbers");
-    try {
-      check_transfer(transfer);
-    } catch (const Error& e) {
-      fail("transfer", e.what());
-    }
     try {
       const LinearImage image = read_linear_image(file.resolved(), transfer);
       width_ = image.width;

@@ -176,14 +176,22 @@ class HairShader final : public Shader {
          "tube, the place across the fibre follows from the normal; on anything else, such as a flat ribbon, from the second "
          "surface coordinate, from 0 to 1, so that it looks like a round fibre.",
          "Chiang et al. 2016, A practical and controllable hair and fur model for production path tracing")
-        .member<&HairShader::pigment>("pigment", "", "what gives the hair its color: one of the following members",
+        .group("Colour")
+        .member<&HairShader::pigment>("pigment", "", "what gives the hair its colour: one of the following members",
                                       choices("melanin", "color", "absorption"))
-        .member<&HairShader::eumelanin>("eumelanin", "1", "concentration of black pigment: 0.3 blond, 1.3 brown, 8 black")
-        .member<&HairShader::pheomelanin>("pheomelanin", "1", "concentration of red pigment")
-        .member<&HairShader::color>("color", "1", "the color of dense hair, in all that is scattered many times")
-        .member<&HairShader::absorption>("absorption", "1", "absorption over a distance of the fibre's radius")
-        .member<&HairShader::longitudinal_roughness>("longitudinal_roughness", "1", "along the fibre, from 0 to 1")
-        .member<&HairShader::azimuthal_roughness>("azimuthal_roughness", "1", "around the fibre, from 0 to 1")
+        .member<&HairShader::eumelanin>("eumelanin", "1", "concentration of black pigment: 0.3 blond, 1.3 brown, 8 black",
+                                        Meaning::number, soft(0, 8), when("pigment", "melanin"))
+        .member<&HairShader::pheomelanin>("pheomelanin", "1", "concentration of red pigment", Meaning::number, soft(0, 8),
+                                          when("pigment", "melanin"))
+        .member<&HairShader::color>("color", "1", "the colour of dense hair, in all that is scattered many times",
+                                    Meaning::reflectance, when("pigment", "color"))
+        .member<&HairShader::absorption>("absorption", "1", "absorption over a distance of the fibre's radius",
+                                         Meaning::coefficient, soft(0.01, 10), logarithmic, when("pigment", "absorption"))
+        .group("Fibre")
+        .member<&HairShader::longitudinal_roughness>("longitudinal_roughness", "1", "along the fibre, from 0 to 1",
+                                                     Meaning::number, soft(0, 1))
+        .member<&HairShader::azimuthal_roughness>("azimuthal_roughness", "1", "around the fibre, from 0 to 1", Meaning::number,
+                                                  soft(0, 1))
         .member<&HairShader::tilt>("tilt", "deg", "by which the scales of the cuticle stand off the fibre, towards its tip",
                                    range(-15, 15))
         .member<&HairShader::ior>("ior", "1", "index of refraction of the fibre", range(1, 3));

@@ -40,7 +40,8 @@ class LayeredShader final : public Shader {
         .member<&LayeredShader::top>("top", "", "the surface above, such as a Dielectric; its index fills the space between",
                                      required)
         .member<&LayeredShader::bottom>("bottom", "", "the surface below", required)
-        .member<&LayeredShader::thickness>("thickness", "m", "of the medium between")
+        .member<&LayeredShader::thickness>("thickness", "m", "of the medium between", Meaning::number, soft(0.00001, 0.1),
+                                           logarithmic, when("medium"))
         .member<&LayeredShader::medium>("medium", "", "what absorbs and scatters between the two; nothing: it is clear")
         .member<&LayeredShader::walks>("walks", "1", "how many random walks each value is the mean of", range(1, 16));
   }

@@ -109,48 +109,80 @@ void Principled::describe(Description<Principled>& d) {
        "surface a body is matt where OpenPBR has subsurface scattering, and what glass absorbs over a distance is its "
        "object's interior's part.",
        "Portsmouth et al. 2024, OpenPBR Surface specification 1.1, Academy Software Foundation")
-      .member<&Principled::base_weight>("base_weight", "1", "factor of base_color")
-      .member<&Principled::base_color>("base_color", "1", "color of the matt body; of metal, seen straight on")
-      .member<&Principled::base_diffuse_roughness>("base_diffuse_roughness", "1", "of the matt body: 0 Lambertian, 1 like clay")
-      .member<&Principled::base_metalness>("base_metalness", "1", "fraction of the surface that is metal")
+      .group("Base")
+      .member<&Principled::base_weight>("base_weight", "1", "factor of base_color", Meaning::number, soft(0, 1))
+      .member<&Principled::base_color>("base_color", "1", "colour of the matt body; of metal, seen straight on",
+                                       Meaning::reflectance, when("base_weight"))
+      .member<&Principled::base_diffuse_roughness>("base_diffuse_roughness", "1", "of the matt body: 0 Lambertian, 1 like clay",
+                                                   Meaning::number, soft(0, 1))
+      .member<&Principled::base_metalness>("base_metalness", "1", "fraction of the surface that is metal", Meaning::number,
+                                           soft(0, 1))
+      .group("Specular")
       .member<&Principled::specular_weight>("specular_weight", "1",
-                                            "factor of the surface's reflectance: of metal as it is, of others by its index")
-      .member<&Principled::specular_color>("specular_color", "1", "tint of reflections; of metal, towards its edges")
-      .member<&Principled::specular_roughness>("specular_roughness", "1", "of the base's surface; its square is GGX's alpha")
+                                            "factor of the surface's reflectance: of metal as it is, of others by its index",
+                                            Meaning::number, soft(0, 1))
+      .member<&Principled::specular_color>("specular_color", "1", "tint of reflections; of metal, towards its edges",
+                                           Meaning::reflectance)
+      .member<&Principled::specular_roughness>("specular_roughness", "1", "of the base's surface; its square is GGX's alpha",
+                                               Meaning::number, soft(0, 1))
       .member<&Principled::specular_roughness_anisotropy>("specular_roughness_anisotropy", "1",
-                                                          "how much more rough the surface is along dpdu than across it")
+                                                          "how much more rough the surface is along dpdu than across it",
+                                                          Meaning::number, soft(0, 1))
       .member<&Principled::specular_ior>("specular_ior", "1", "index of refraction of the base, at 587.6 nm",
-                                         range(1, highest_ratio))
-      .member<&Principled::transmission_weight>("transmission_weight", "1", "fraction of what is not metal that is clear")
+                                         range(1, highest_ratio), soft(1, 2.5))
+      .group("Transmission")
+      .member<&Principled::transmission_weight>("transmission_weight", "1", "fraction of what is not metal that is clear",
+                                                Meaning::number, soft(0, 1))
       .member<&Principled::transmission_color>("transmission_color", "1",
-                                               "tint of light that goes through the clear surface; through a whole thin wall")
+                                               "tint of light that goes through the clear surface; through a whole thin wall",
+                                               Meaning::reflectance, when("transmission_weight"))
       .member<&Principled::transmission_dispersion_scale>("transmission_dispersion_scale", "1",
                                                           "amount of dispersion: 1 for that of the Abbe number", range(0, 1))
       .member<&Principled::transmission_dispersion_abbe_number>(
-          "transmission_dispersion_abbe_number", "1", "Abbe number of the clear base: low ones disperse more", range(5, 1000))
+          "transmission_dispersion_abbe_number", "1", "Abbe number of the clear base: low ones disperse more", range(5, 1000),
+          soft(10, 100), logarithmic, when("transmission_dispersion_scale"))
+      .group("Subsurface")
       .member<&Principled::subsurface_weight>(
           "subsurface_weight", "1",
           "fraction of the matt body that has subsurface_color; of thin walls, what scatters "
-          "light to both sides")
-      .member<&Principled::subsurface_color>("subsurface_color", "1", "color of that fraction")
+          "light to both sides",
+          Meaning::number, soft(0, 1))
+      .member<&Principled::subsurface_color>("subsurface_color", "1", "colour of that fraction", Meaning::reflectance,
+                                             when("subsurface_weight"))
       .member<&Principled::subsurface_scatter_anisotropy>("subsurface_scatter_anisotropy", "1",
                                                           "of thin walls: -1 all back, 0 as much to both sides, 1 all through",
-                                                          range(-1, 1))
-      .member<&Principled::coat_weight>("coat_weight", "1", "fraction of the surface that has a clear coat")
-      .member<&Principled::coat_color>("coat_color", "1", "tint of what is seen through the coat, straight on")
-      .member<&Principled::coat_roughness>("coat_roughness", "1", "of the coat's surface")
-      .member<&Principled::coat_roughness_anisotropy>("coat_roughness_anisotropy", "1", "as of the base")
-      .member<&Principled::coat_ior>("coat_ior", "1", "index of refraction of the coat", range(1, highest_ratio))
-      .member<&Principled::coat_darkening>(
-          "coat_darkening", "1", "amount by which the base looks darker for reflections on the coat's inside", range(0, 1))
-      .member<&Principled::fuzz_weight>("fuzz_weight", "1", "fraction of the surface that has fuzz, or dust, on top")
-      .member<&Principled::fuzz_color>("fuzz_color", "1", "color of the fuzz")
-      .member<&Principled::fuzz_roughness>("fuzz_roughness", "1", "0 for upright fibres, 1 for dust")
+                                                          range(-1, 1), when("subsurface_weight"), when("thin_walled"))
+      .group("Coat")
+      .member<&Principled::coat_weight>("coat_weight", "1", "fraction of the surface that has a clear coat", Meaning::number,
+                                        soft(0, 1))
+      .member<&Principled::coat_color>("coat_color", "1", "tint of what is seen through the coat, straight on",
+                                       Meaning::reflectance, when("coat_weight"))
+      .member<&Principled::coat_roughness>("coat_roughness", "1", "of the coat's surface", Meaning::number, soft(0, 1),
+                                           when("coat_weight"))
+      .member<&Principled::coat_roughness_anisotropy>("coat_roughness_anisotropy", "1", "as of the base", Meaning::number,
+                                                      soft(0, 1), when("coat_weight"))
+      .member<&Principled::coat_ior>("coat_ior", "1", "index of refraction of the coat", range(1, highest_ratio), soft(1, 2.5),
+                                     when("coat_weight"))
+      .member<&Principled::coat_darkening>("coat_darkening", "1",
+                                           "amount by which the base looks darker for reflections on the coat's inside",
+                                           range(0, 1), when("coat_weight"))
+      .group("Fuzz")
+      .member<&Principled::fuzz_weight>("fuzz_weight", "1", "fraction of the surface that has fuzz, or dust, on top",
+                                        Meaning::number, soft(0, 1))
+      .member<&Principled::fuzz_color>("fuzz_color", "1", "colour of the fuzz", Meaning::reflectance, when("fuzz_weight"))
+      .member<&Principled::fuzz_roughness>("fuzz_roughness", "1", "0 for upright fibres, 1 for dust", Meaning::number,
+                                           soft(0, 1), when("fuzz_weight"))
+      .group("Thin film")
       .member<&Principled::thin_film_weight>("thin_film_weight", "1",
-                                             "fraction of the base's surface that has a film, whose colors are interference")
-      .member<&Principled::thin_film_thickness>("thin_film_thickness", "nm", "of that film")
-      .member<&Principled::thin_film_ior>("thin_film_ior", "1", "index of refraction of that film", range(1, highest_ratio))
-      .member<&Principled::geometry_opacity>("geometry_opacity", "1", "fraction of the surface that is there")
+                                             "fraction of the base's surface that has a film, whose colours are interference",
+                                             Meaning::number, soft(0, 1))
+      .member<&Principled::thin_film_thickness>("thin_film_thickness", "nm", "of that film", Meaning::number, soft(50, 2000),
+                                                logarithmic, when("thin_film_weight"))
+      .member<&Principled::thin_film_ior>("thin_film_ior", "1", "index of refraction of that film", range(1, highest_ratio),
+                                          soft(1, 2.5), when("thin_film_weight"))
+      .group("Geometry")
+      .member<&Principled::geometry_opacity>("geometry_opacity", "1", "fraction of the surface that is there", Meaning::number,
+                                             soft(0, 1))
       .member<&Principled::thin_walled>("thin_walled", "", "a sheet without an inside, such as a leaf, paper or a window pane");
 }
 

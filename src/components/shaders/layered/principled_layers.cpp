@@ -61,7 +61,7 @@ PrincipledScatter::PrincipledScatter(const SurfacePoint& p, const Frame& frame, 
       colored_(disperses_ || layers.film > 0 || layers.reflect_eta.minimum() != layers.reflect_eta.maximum()),
       choosing_(disperses_ && !layers.single ? spectrum_size : 1) {
   if (!smooth_) prepare_multiple();
-  matt_mean_ = matt_normaliser();
+  matt_mean_ = matt_normalizer();
 }
 
 // Light that facets scatter more than once. What a clear boundary so loses is known of isotropic facets without film or coat;
@@ -90,7 +90,7 @@ void PrincipledScatter::prepare_multiple() {
 
 // The mean of t over the light that an EON body sends up: for a Lambertian one that under diffuse light. A rough one's depends
 // on where its light came from, and is greatest when that was the normal: then f = f_EON t(out) t(in) / mean makes no light.
-float PrincipledScatter::matt_normaliser() const {
+float PrincipledScatter::matt_normalizer() const {
   const bool lambertian = layers_.diffuse_roughness == 0;
   if (lambertian && !covered_) return gloss_.mean_passed();
   const EonLobe white(Spectrum(1.0f), layers_.diffuse_roughness);

@@ -125,7 +125,7 @@ class PrincipledScatter final : public JointScatter<PrincipledScatter> {
   float upper_passed(float cosine) const { return upper_passed({safe_sqrt(1 - cosine * cosine), 0, cosine}); }
   /// The same with the dielectric's surface: what comes to the matt body.
   float matt_passed(const Vector3& v) const { return upper_passed(v) * gloss_.passed(v); }
-  float matt_normaliser() const;
+  float matt_normalizer() const;
   void prepare_multiple();
   /// Of light that facets of the base reflect, what gets past the upper layers both times.
   Spectrum through_upper(const Vector3& out, const Vector3& in) const;

@@ -120,10 +120,11 @@ class SheenShader final : public Shader {
          "Upright fibres, as of velvet, peaches or dust, which shine where a surface is seen from the side; over another "
          "surface, which gets what they let through, or over black.",
          "Estevez & Kulla 2017, Production friendly microfacet sheen BRDF")
-        .member<&SheenShader::color>("color", "1", "fraction of light the fibres reflect, per wavelength")
-        .member<&SheenShader::weight>("weight", "1", "fraction of the surface that has fibres")
+        .member<&SheenShader::color>("color", "1", "fraction of light the fibres reflect, per wavelength", Meaning::reflectance)
+        .member<&SheenShader::weight>("weight", "1", "fraction of the surface that has fibres", Meaning::number, soft(0, 1))
         .member<&SheenShader::roughness>("roughness", "1",
-                                         "from 0 (upright fibres, a thin bright edge) to 1 (in disorder); below 0.1 as 0.1")
+                                         "from 0 (upright fibres, a thin bright edge) to 1 (in disorder); below 0.1 as 0.1",
+                                         Meaning::number, soft(0, 1))
         .member<&SheenShader::base>("base", "", "what lies under the fibres; nothing: black");
   }
 

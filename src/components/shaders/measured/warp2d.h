@@ -2,7 +2,7 @@
 // Warp2D: tabulated densities on the unit square, sampled exactly.
 //
 // For each point of a grid of two parameters there is a table of values on a grid of the square, bilinear between; between
-// the points of the parameter grid, the neighbours' tables are blended linearly. Each table is normalised, so every blend
+// the points of the parameter grid, the neighbours' tables are blended linearly. Each table is normalized, so every blend
 // is a density. A point is found in two steps (as in Dupuy & Jakob 2018, "An adaptive parameterization for efficient
 // material acquisition and rendering"): y by the marginal density, which is piecewise linear, and x by the conditional
 // one on that line, piecewise linear too. Integrals of tables blend as the tables do, so the running sums of all tables are

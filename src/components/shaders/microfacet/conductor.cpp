@@ -126,13 +126,18 @@ class Conductor final : public Shader {
     d.summary("A metal, polished or rough, on both sides. It reflects as its complex refractive index says.",
               "Walter et al. 2007, Microfacet models for refraction through rough surfaces; Heitz 2014, Understanding the "
               "masking-shadowing function; Kulla & Conty 2017, Revisiting physically based shading at Imageworks")
-        .member<&Conductor::ior>("ior", "1", "complex index of refraction: metal(\"Au\"), or complex(n, k)")
-        .member<&Conductor::color>("color", "1", "what the reflectance is multiplied by, per wavelength")
+        .group("Metal")
+        .member<&Conductor::ior>("ior", "1", "complex index of refraction: metal(\"Au\"), or complex(n, k)", Meaning::index)
+        .member<&Conductor::color>("color", "1", "what the reflectance is multiplied by, per wavelength", Meaning::reflectance)
+        .group("Roughness")
         .member<&Conductor::roughness>("roughness", "1",
                                        "the alpha of the distribution of facets, along the surface's u direction unless "
-                                       "rotated (not its square root); below 0.001 polished")
-        .member<&Conductor::roughness_y>("roughness_y", "1", "alpha across that direction; by default the same")
-        .member<&Conductor::rotation>("rotation", "turn", "turns those directions, counter-clockwise")
+                                       "rotated (not its square root); below 0.001 polished",
+                                       Meaning::number, soft(0, 1))
+        .member<&Conductor::roughness_v>("roughness_v", "1", "alpha across that direction; by default the same",
+                                         Meaning::number, soft(0, 1))
+        .member<&Conductor::rotation>("rotation", "turn", "turns those directions, counter-clockwise", Meaning::number,
+                                      soft(0, 1), when("roughness_v"))
         .member<&Conductor::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
         .member<&Conductor::multiple_scattering>("multiple_scattering", "",
                                                  "whether light that meets more than one facet is counted, or lost");
@@ -150,7 +155,7 @@ class Conductor final : public Shader {
       fail("ior", fmt::format("{} at {:.0f} nm", n_good ? k_wrong : k_good ? n_wrong : n_wrong + "; " + k_wrong, lambda));
     }
     require_reflectance(*this, "color", color);
-    require_roughness(*this, roughness, roughness_y);
+    require_roughness(*this, roughness, roughness_v);
     if (!rotation) fail("rotation", "a map or a number is needed");
   }
 
@@ -164,21 +169,21 @@ class Conductor final : public Shader {
       const Spectrum n = MediumStack::index(outside, w);
       index = {index.n / n, index.k / n};
     }
-    const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_y.get(), p);
+    const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
     if (d.smooth()) return arena.make<PolishedConductor>(p, index, tint);
     const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
     return arena.make<RoughConductor>(p, frame, d, index, tint, multiple_scattering);
   }
   Lobes possible_lobes() const override {
-    const Color x = roughness->constant(), y = roughness_y ? roughness_y->constant() : x;
+    const Color x = roughness->constant(), y = roughness_v ? roughness_v->constant() : x;
     if (!x || !y) return glossy_reflection | specular_reflection;
     const SurfacePoint nowhere;
-    return distribution_at(distribution, *roughness, roughness_y.get(), nowhere).smooth() ? specular_reflection
+    return distribution_at(distribution, *roughness, roughness_v.get(), nowhere).smooth() ? specular_reflection
                                                                                           : glossy_reflection;
   }
 
   Color ior = metal_index("Al");
-  Ref<ObjectMap> color = constant(1.0f), roughness = constant(0.2f), roughness_y, rotation = constant(0.0f);
+  Ref<ObjectMap> color = constant(1.0f), roughness = constant(0.2f), roughness_v, rotation = constant(0.0f);
   MicrofacetDistribution::Kind distribution = MicrofacetDistribution::ggx;
   bool multiple_scattering = true;
 };

@@ -92,17 +92,20 @@ class Dielectric final : public Shader {
               "Born & Wolf 1999, Principles of Optics, section 1.5; Walter et al. 2007, Microfacet models for refraction "
               "through rough surfaces; Kulla & Conty 2017, Revisiting physically based shading at Imageworks; nested bodies "
               "after Schmidt & Budge 2002")
-        .member<&Dielectric::ior>("ior", "1",
-                                  "index of refraction inside the object: a number, glass(\"N-BK7\"), or a spectrum")
+        .member<&Dielectric::ior>(
+            "ior", "1", "index of refraction inside the object: a number, glass(\"N-BK7\"), or a spectrum", Meaning::index)
         .member<&Dielectric::roughness>("roughness", "1",
                                         "the alpha of the distribution of facets, along the surface's u direction unless "
-                                        "rotated (not its square root); below 0.001 smooth")
-        .member<&Dielectric::roughness_y>("roughness_y", "1", "alpha across that direction; by default the same")
-        .member<&Dielectric::rotation>("rotation", "turn", "turns those directions, counter-clockwise")
+                                        "rotated (not its square root); below 0.001 smooth",
+                                        Meaning::number, soft(0, 1))
+        .member<&Dielectric::roughness_v>("roughness_v", "1", "alpha across that direction; by default the same",
+                                          Meaning::number, soft(0, 1))
+        .member<&Dielectric::rotation>("rotation", "turn", "turns those directions, counter-clockwise", Meaning::number,
+                                       soft(0, 1), when("roughness_v"))
         .member<&Dielectric::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
         .member<&Dielectric::multiple_scattering>(
             "multiple_scattering", "",
-            "whether light that meets more than one facet is counted, or lost; where roughness_y differs it is lost");
+            "whether light that meets more than one facet is counted, or lost; where roughness_v differs it is lost");
   }
 
   void prepare() override {
@@ -114,7 +117,7 @@ class Dielectric final : public Shader {
         fail("ior", "an index of refraction lies between 0 and 100, and this is " + std::to_string(n) + " at " +
                         std::to_string(int(lambda)) + " nm");
     }
-    require_roughness(*this, roughness, roughness_y);
+    require_roughness(*this, roughness, roughness_v);
     if (!rotation) fail("rotation", "a map or a number is needed");
   }
 
@@ -122,7 +125,7 @@ class Dielectric final : public Shader {
     const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr;
     Spectrum eta = interior_index(w);
     if (outside) eta = eta / MediumStack::index(outside, w);
-    const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_y.get(), p);
+    const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
     if (!RoughDielectric::smooth(d, eta)) {
       const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
       return arena.make<RoughDielectric>(p, frame, d, eta, multiple_scattering, w.single());
@@ -132,14 +135,14 @@ class Dielectric final : public Shader {
   }
   Lobes possible_lobes() const override {
     constexpr Lobes smooth = specular_reflection | specular_transmission, rough = glossy_reflection | glossy_transmission;
-    return everywhere(roughness, 0) && (!roughness_y || everywhere(roughness_y, 0)) ? smooth : smooth | rough;
+    return everywhere(roughness, 0) && (!roughness_v || everywhere(roughness_v, 0)) ? smooth : smooth | rough;
   }
   Spectrum interior_index(const Wavelengths& w) const override { return ior->evaluate(w, ColorUse::coefficient); }
   /// Rough, it loses up to a hundredth at some angles: tables are as exact as that.
   bool lossless() const override { return !(possible_lobes() & glossy_lobes); }
 
   Color ior = flat_spectrum(1.5f);
-  Ref<ObjectMap> roughness = constant(0.0f), roughness_y, rotation = constant(0.0f);
+  Ref<ObjectMap> roughness = constant(0.0f), roughness_v, rotation = constant(0.0f);
   MicrofacetDistribution::Kind distribution = MicrofacetDistribution::ggx;
   bool multiple_scattering = true;
 };

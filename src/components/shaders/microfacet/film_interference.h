@@ -7,7 +7,7 @@
 
 namespace etendue {
 
-/// What a boundary coated with one film does with unpolarised light: the fraction it reflects, and the fraction that gets
+/// What a boundary coated with one film does with unpolarized light: the fraction it reflects, and the fraction that gets
 /// through to the other side (into a conductor: what is absorbed there).
 struct FilmFractions {
   float reflected = 0, transmitted = 0;
@@ -16,7 +16,7 @@ struct FilmFractions {
 // Light that is reflected once at the film's front and any number of times within it adds up in amplitude. With r01 and r12
 // Fresnel's amplitudes at both faces, and 2 beta = 4 pi n1 d cos(theta1) / lambda the phase by which each round trip lags,
 //     r = (r01 + r12 e^(2 i beta)) / (1 + r01 r12 e^(2 i beta)),   t = t01 t12 e^(i beta) / (1 + r01 r12 e^(2 i beta))
-// (eqs. 55 to 57; Airy's sum), for each polarisation. The fractions are R = |r|^2 and, with the ratio of what a unit of
+// (eqs. 55 to 57; Airy's sum), for each polarization. The fractions are R = |r|^2 and, with the ratio of what a unit of
 // amplitude carries across the face, T = |t|^2 Re(n2 cos2) / (n0 cos0) for s, |t|^2 Re(n2* cos2) / (n0 cos0) for p.
 // Cosines follow from Snell's law for complex numbers, so that total reflection and light that tunnels through a film which
 // it could not travel in come out of the same formulas. Times go as e^(-i w t): a conductor's index is n + i k, and waves die

@@ -21,8 +21,8 @@ struct MicrofacetDistribution {
 
   MicrofacetDistribution() = default;
   /// Roughness is alpha. What is no number, or outside [smooth_below, 1], becomes the nearest end.
-  MicrofacetDistribution(Kind k, float roughness_x, float roughness_y)
-      : kind(k), alpha_x(valid(roughness_x)), alpha_y(valid(roughness_y)) {}
+  MicrofacetDistribution(Kind k, float roughness_x, float roughness_v)
+      : kind(k), alpha_x(valid(roughness_x)), alpha_y(valid(roughness_v)) {}
   MicrofacetDistribution(Kind k, float roughness) : MicrofacetDistribution(k, roughness, roughness) {}
 
   bool smooth() const { return std::max(alpha_x, alpha_y) <= smooth_below; }

@@ -32,7 +32,7 @@ class PerfectSpecular final : public Shader {
  public:
   static void describe(Description<PerfectSpecular>& d) {
     d.summary("A mirror, of the same reflectance at every angle, on both sides.")
-        .member<&PerfectSpecular::color>("color", "1", "fraction of light reflected, per wavelength");
+        .member<&PerfectSpecular::color>("color", "1", "fraction of light reflected, per wavelength", Meaning::reflectance);
   }
   void prepare() override { require_reflectance(*this, "color", color); }
 

@@ -120,11 +120,13 @@ class Plastic final : public Shader {
          "plastic, varnished wood, glazed china, ...",
          "Saunderson 1942, Calculation of the color of pigmented plastics; Wolff 1994, Diffuse-reflectance model for smooth "
          "dielectric surfaces")
-        .member<&Plastic::color>("color", "1", "fraction of light the body under the coat reflects, per wavelength")
-        .member<&Plastic::ior>("ior", "1", "index of refraction of the coat", range(1, 4))
+        .member<&Plastic::color>("color", "1", "fraction of light the body under the coat reflects, per wavelength",
+                                 Meaning::reflectance)
+        .member<&Plastic::ior>("ior", "1", "index of refraction of the coat", range(1, 4), soft(1, 2.5))
         .member<&Plastic::roughness>("roughness", "1",
                                      "the alpha of the distribution of the coat's facets (not its square root); below 0.001 "
-                                     "polished")
+                                     "polished",
+                                     Meaning::number, soft(0, 1))
         .member<&Plastic::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
         .member<&Plastic::nonlinear>(
             "nonlinear", "",

@@ -6,17 +6,17 @@
 
 namespace etendue {
 
-/// The distribution at a point; `roughness_y` may be null, and is then as `roughness`.
+/// The distribution at a point; `roughness_v` may be null, and is then as `roughness`.
 inline MicrofacetDistribution distribution_at(MicrofacetDistribution::Kind kind, const ObjectMap& roughness,
-                                              const ObjectMap* roughness_y, const SurfacePoint& p) {
+                                              const ObjectMap* roughness_v, const SurfacePoint& p) {
   const float x = roughness.scalar(p);
-  return {kind, x, roughness_y ? roughness_y->scalar(p) : x};
+  return {kind, x, roughness_v ? roughness_v->scalar(p) : x};
 }
 
 /// Throws at the members unless they are maps, or numbers from 0 to 1.
-inline void require_roughness(const Component& owner, const Ref<ObjectMap>& roughness, const Ref<ObjectMap>& roughness_y) {
+inline void require_roughness(const Component& owner, const Ref<ObjectMap>& roughness, const Ref<ObjectMap>& roughness_v) {
   require_scalar(owner, "roughness", roughness);
-  if (roughness_y) require_scalar(owner, "roughness_y", roughness_y);
+  if (roughness_v) require_scalar(owner, "roughness_v", roughness_v);
 }
 
 /// Whether the map is that number everywhere.

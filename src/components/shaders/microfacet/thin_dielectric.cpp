@@ -12,7 +12,7 @@ namespace {
 // Inside a slab light goes to and fro: with R the reflectance of one boundary, the same from both sides, and a what is left
 // after one passage, its parts sum to geometric series (Stokes 1862):
 //   R' = R + (1 - R)^2 a^2 R / (1 - a^2 R^2),  T' = (1 - R)^2 a / (1 - a^2 R^2);  T' = (1 - R) / (1 + R) where a = 1.
-// They hold for each polarisation on its own, which all passages keep; unpolarised light is half of each. The slab is thicker
+// They hold for each polarization on its own, which all passages keep; unpolarized light is half of each. The slab is thicker
 // than the light's coherence, so intensities add. A passage at the angle of cosine c' inside is 1 / c' times as long as one
 // along the normal: a = color^(1 / c').
 class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
@@ -96,8 +96,10 @@ class ThinDielectric final : public Shader {
          "bounds the medium that this names as its interior, which has the index of what is around; without one, what is "
          "around goes on inside.",
          "Stokes 1862, On the intensity of the light reflected from or transmitted through a pile of plates")
-        .member<&ThinDielectric::ior>("ior", "1", "index of refraction: a number, glass(\"N-BK7\"), or a spectrum")
-        .member<&ThinDielectric::color>("color", "1", "fraction of light left after one passage along the normal");
+        .member<&ThinDielectric::ior>("ior", "1", "index of refraction: a number, glass(\"N-BK7\"), or a spectrum",
+                                      Meaning::index)
+        .member<&ThinDielectric::color>("color", "1", "fraction of light left after one passage along the normal",
+                                        Meaning::reflectance);
   }
 
   void prepare() override {

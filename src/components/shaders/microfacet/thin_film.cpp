@@ -97,10 +97,10 @@ class ThinFilm final : public Shader {
          "the index of what is around it is a soap film.",
          "Born & Wolf 1999, Principles of Optics, section 1.6.4; Belcour & Barla 2017, A practical extension to microfacet "
          "theory for the modeling of varying iridescence")
-        .member<&ThinFilm::thickness>("thickness", "nm", "of the film")
-        .member<&ThinFilm::film_ior>("film_ior", "1", "index of refraction of the film")
-        .member<&ThinFilm::base_ior>("base_ior", "1",
-                                     "index of refraction of what the film lies on; complex for a metal: metal(\"Al\")")
+        .member<&ThinFilm::thickness>("thickness", "nm", "of the film", Meaning::number, soft(50, 2000), logarithmic)
+        .member<&ThinFilm::film_ior>("film_ior", "1", "index of refraction of the film", Meaning::index)
+        .member<&ThinFilm::base_ior>(
+            "base_ior", "1", "index of refraction of what the film lies on; complex for a metal: metal(\"Al\")", Meaning::index)
         .member<&ThinFilm::opaque>("opaque", "",
                                    "whether light that gets into the base is absorbed there, as by a metal it is");
   }

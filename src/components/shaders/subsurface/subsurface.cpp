@@ -5,7 +5,7 @@
 //     S = (1 - F(out)) A R(x, x') (1 - F(in)) / (c pi)     [1/(m^2 sr)],
 // where A R (by a profile, or by a random walk) is the fraction that gets from x to x', per area, and c = 1 - the mean of F
 // over diffuse light makes the last factor, times cos(in), integrate to 1 (Jensen et al. 2001, "A practical model for
-// subsurface light transport"; normalised as in Christensen & Burley 2015). Both ends are on the same side of the boundary, so
+// subsurface light transport"; normalized as in Christensen & Burley 2015). Both ends are on the same side of the boundary, so
 // no squared indices remain. A body of colour 1 returns all light: F + (1 - F) A = 1.
 //
 // To renderers the way in is specular transmission, since no light is let through in any other direction than by way of
@@ -112,11 +112,13 @@ class Subsurface final : public Shader {
          "walk needs a closed object; on others the diffusion profile is used.",
          "Christensen & Burley 2015, Approximate reflectance profiles for efficient subsurface scattering; Chiang, Kutz & "
          "Burley 2016, Practical and controllable subsurface scattering for production path tracing")
-        .member<&Subsurface::color>("color", "1", "fraction of the light let in that leaves again, per wavelength")
+        .member<&Subsurface::color>("color", "1", "fraction of the light let in that leaves again, per wavelength",
+                                    Meaning::reflectance)
         .member<&Subsurface::mean_free_path>(
             "mean_free_path", "m",
-            "how far light goes before it forgets its direction (transport mean free path), per wavelength")
-        .member<&Subsurface::ior>("ior", "1", "index of refraction: a number or a spectrum")
+            "how far light goes before it forgets its direction (transport mean free path), per wavelength",
+            Meaning::coefficient, soft(0.0001, 1), logarithmic)
+        .member<&Subsurface::ior>("ior", "1", "index of refraction: a number or a spectrum", Meaning::index)
         .member<&Subsurface::anisotropy>("anisotropy", "1",
                                          "mean cosine of the scattering angle; for random_walk, hardly changes the look",
                                          range(-0.95, 0.95))

@@ -1,0 +1,167 @@
+// What holds of every sampler of wavelengths: they are seen, follow the densities they are said to have, and give a spectrum
+// its colour.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "conformance.h"
+#include "etendue/describe/color.h"
+#include "etendue/wavelength_sampler.h"
+#include "statistics.h"
+
+namespace etendue::conform {
+namespace {
+
+/// How often a wavelength was drawn (or those of an interval), and the sum of 1 / density [nm] over them.
+struct Cell {
+  double low = 0, high = 0;  // [nm]
+  double count = 0, inverse = 0;
+  /// The probability of the cell, as the densities of what was drawn in it say: with E[1/p | cell] = width / P(cell).
+  double probability() const { return count > 0 ? (high - low) * count / inverse : 0; }
+};
+
+class WavelengthTrial {
+ public:
+  explicit WavelengthTrial(Trial& t) : trial(t), sampler_(t.part<WavelengthSampler>()) {}
+
+  void check() {
+    draw();
+    if (usable_) find_support();
+    if (!usable_) return;
+    for (size_t lane = 0; lane < size_t(spectrum_size); ++lane) check_lane(lane);
+    check_white();
+  }
+
+ private:
+  /// Samples of some pixels, in order, as a render takes them.
+  void draw() {
+    constexpr int per_pixel = 4096;
+    const int pixels = std::max(1, trial.samples(40));
+    for (int i = 0; i < pixels; ++i) {
+      SampleKey key(1, int(trial.random() % 1000), int(trial.random() % 1000), 0);
+      for (int s = 0; s < per_pixel; ++s, ++key.sample) {
+        const float u = s == 0 ? 0 : s == 1 ? one_minus_epsilon : trial.uniform();
+        const Wavelengths w = sampler_.sample(key, u), again = sampler_.sample(key, u);
+        for (int k = 0; k < spectrum_size; ++k) {
+          trial.expect(again[k] == w[k] && again.density(k) == w.density(k), "the same sample has the same wavelengths");
+          usable_ &= trial.expect(w[k] >= wavelength_low && w[k] <= wavelength_high, "wavelengths lie in [360, 830] nm",
+                                  [&] { return fmt::format("{} nm for u = {}", w[k], u); });
+          usable_ &= trial.expect(w.density(k) > 0 && std::isfinite(w.density(k)), "densities are finite and more than 0",
+                                  [&] { return fmt::format("{} at {} nm", w.density(k), w[k]); });
+        }
+        drawn_.push_back(w);
+      }
+    }
+  }
+
+  /// The wavelengths there are: a range, or so few single ones that each is a cell of its own.
+  void find_support() {
+    std::map<float, int> distinct;
+    constexpr size_t most = 5000;
+    for (const Wavelengths& w : drawn_)
+      for (int k = 0; k < spectrum_size && distinct.size() <= most; ++k) ++distinct[w[k]];
+    double low = infinity, high = 0;
+    for (const Wavelengths& w : drawn_)
+      for (int k = 0; k < spectrum_size; ++k) low = std::min(low, double(w[k])), high = std::max(high, double(w[k]));
+    discrete_ = distinct.size() <= most;
+    constexpr double narrowest = 5;  // [nm]: in less, floats are too far apart to tell
+    if (distinct.size() > 1 && high - low < narrowest) {
+      usable_ = false;
+      trial.not_tried("wavelengths follow the density", fmt::format("they lie within {:.3g} nm", high - low));
+      return;
+    }
+    if (!discrete_) {
+      constexpr int cells = 96;
+      for (int i = 0; i < cells; ++i)
+        cells_.push_back({std::lerp(low, high, double(i) / cells), std::lerp(low, high, double(i + 1) / cells)});
+      return;
+    }
+    // Borders in the middle between neighbours; the first and last cell are as wide on either side.
+    std::vector<double> at;
+    for (const auto& [lambda, count] : distinct) at.push_back(double(lambda));
+    if (at.size() == 1) {  // of a width that only the density knows
+      const double half = 0.5 / double(drawn_.front().density(0));
+      cells_.push_back({at[0] - half, at[0] + half});
+      return;
+    }
+    for (size_t i = 0; i < at.size(); ++i) {
+      const double below = i > 0 ? at[i] - at[i - 1] : at[1] - at[0], above = i + 1 < at.size() ? at[i + 1] - at[i] : below;
+      cells_.push_back({at[i] - below / 2, at[i] + above / 2});
+    }
+  }
+
+  size_t cell_of(float lambda) const {
+    const auto next =
+        std::upper_bound(cells_.begin(), cells_.end(), double(lambda), [](double x, const Cell& c) { return x < c.low; });
+    return next == cells_.begin() ? 0 : size_t(next - cells_.begin()) - 1;
+  }
+
+  /// Each of a path's wavelengths alone has the density.
+  void check_lane(size_t lane) {
+    std::vector<Cell> cells = cells_;
+    for (const Wavelengths& w : drawn_) {
+      Cell& c = cells[cell_of(w[int(lane)])];
+      c.count += 1;
+      c.inverse += 1 / double(w.density(int(lane)));
+    }
+    double sum = 0;
+    const double n = double(drawn_.size());
+    std::vector<double> counts, expected;
+    for (const Cell& c : cells) {
+      sum += c.probability();
+      counts.push_back(c.count);
+      expected.push_back(n * c.probability());
+    }
+    // A cell that nothing fell into is unknown: it holds what is missing of 1, if anything. In single precision.
+    trial.expect(std::abs(sum - 1) < 1e-3, "densities integrate to 1", [&] {
+      return fmt::format("{} over {} to {} nm, of wavelength {}", sum, cells.front().low, cells.back().high, lane);
+    });
+    const double p = statistics::chi_square(counts, expected);
+    trial.expect(p > Trial::significance, "wavelengths follow the density", [&] {
+      return fmt::format("p = {:.3g} of {} wavelengths in {} cells, of wavelength {}", p, n, cells.size(), lane);
+    });
+  }
+
+  /// The mean of the estimates of a spectrum that is 1 everywhere is its colour, over the wavelengths that there are.
+  void check_white() {
+    Xyz exact;
+    if (discrete_) {
+      for (const Cell& c : cells_) add(exact, observer(float((c.low + c.high) / 2)), c.high - c.low);
+    } else {
+      constexpr int steps = 20000;
+      const double low = cells_.front().low, step = (cells_.back().high - low) / steps;
+      for (int i = 0; i < steps; ++i) add(exact, observer(float(low + (i + 0.5) * step)), step);
+    }
+    statistics::Mean x, y, z;
+    for (const Wavelengths& w : drawn_) {
+      const Xyz estimate = to_xyz(Spectrum(1.0f), w);
+      x.add(estimate.x), y.add(estimate.y), z.add(estimate.z);
+    }
+    const std::pair<const statistics::Mean*, double> all[] = {{&x, exact.x}, {&y, exact.y}, {&z, exact.z}};
+    for (const auto& [mean, truth] : all)
+      trial.expect(std::abs(mean->mean() - truth) < Trial::significant_errors * mean->error() + 1e-3 * (truth + 0.01),
+                   "the mean colour of a constant spectrum is its colour",
+                   [&, m = mean, t = truth] { return fmt::format("{:.5f} ± {:.5f}, not {:.5f}", m->mean(), m->error(), t); });
+  }
+  static void add(Xyz& sum, const Xyz& o, double width) {
+    const double factor = width / observer_y_integral();
+    sum.x += factor * o.x, sum.y += factor * o.y, sum.z += factor * o.z;
+  }
+
+  Trial& trial;
+  const WavelengthSampler& sampler_;
+  std::vector<Wavelengths> drawn_;
+  std::vector<Cell> cells_;
+  bool usable_ = true, discrete_ = false;
+};
+
+void check_wavelength_sampler(Trial& trial) { WavelengthTrial(trial).check(); }
+
+const RegisterCheck<WavelengthSampler> registered(check_wavelength_sampler);
+
+}  // namespace
+}  // namespace etendue::conform
