@@ -44,7 +44,7 @@ void register_ramp() { static const Register<RampVolume> registered; }  // once 
 /// A box of 4 m by 4 m by 2 m around the origin of the world, turned and moved: its own z goes along the world's x, from -1 to
 /// 1, in its own units of 2 m.
 std::string box(const std::string& volume) {
-  return "Box { center: [0, 0, 0.5], size: [2, 2, 1], shader: PassThrough {}, interior: RampVolume { " + volume +
+  return "Box { centre: [0, 0, 0.5], size: [2, 2, 1], shader: PassThrough {}, interior: RampVolume { " + volume +
          " }, transform: translate([-1, 0, 0] m) * rotate(90 deg, \"y\") * scale(2) }";
 }
 

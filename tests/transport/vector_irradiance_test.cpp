@@ -66,14 +66,14 @@ TEST(VectorIrradiance, OfRectanglesAndTriangles) {
 }
 
 TEST(VectorIrradiance, OfBalls) {
-  const auto ball = object("Sphere", {{"radius", 0.8}, {"center", {0.1, 0.2, -0.3}}});
+  const auto ball = object("Sphere", {{"radius", 0.8}, {"centre", {0.1, 0.2, -0.3}}});
   for (const double distance : {0.81, 0.9, 1.2, 3.0, 100.0}) {
     SCOPED_TRACE(distance);
-    const Vector away = {0.48, -0.6, 0.64}, center = {0.1, 0.2, -0.3};
+    const Vector away = {0.48, -0.6, 0.64}, centre = {0.1, 0.2, -0.3};
     Vector expected;
     for (size_t k = 0; k < 3; ++k) expected[k] = -away[k] * M_PI * std::pow(0.8 / distance, 2);
-    expect_same(sampled(*ball, {float(center[0] + distance * away[0]), float(center[1] + distance * away[1]),
-                                float(center[2] + distance * away[2])}),
+    expect_same(sampled(*ball, {float(centre[0] + distance * away[0]), float(centre[1] + distance * away[1]),
+                                float(centre[2] + distance * away[2])}),
                 expected);
   }
 }
