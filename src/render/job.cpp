@@ -89,7 +89,21 @@ void Job::prepare() {
     count_anew_from({});
   }
   camera->set_film(image->width, image->height);
+  begin_film();
   prepared_ = true;
+}
+
+/// What was collected stays while it fits the description.
+void Job::begin_film() {
+  if (film_)
+    film_->follow(*image);
+  else
+    film_ = std::make_unique<Film>(*image);
+}
+
+Film& Job::film() const {
+  if (!film_) throw Error("a job that was not prepared has no film");
+  return *film_;
 }
 
 RenderContext Job::context() const { return {*scene, *camera, *image, *wavelengths, seed}; }
@@ -117,7 +131,8 @@ Ended Job::resume(const std::string& checkpoint) {
 }
 
 void Job::restore(const Checkpoint& c) {
-  image->load_state(c.state.image);
+  begin_film();
+  film_->load_state(c.state.image);
   if (renderer) renderer->load_state(c.state.renderer);
   done_ = c.done;
   seconds_ = c.seconds;
@@ -162,7 +177,8 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     ~Forgotten() { finish = abort = false; }
   } const forgotten{finish_, abort_};
 
-  image->clear();
+  begin_film();
+  film_->clear();
   rendering(*this, [&] { renderer->begin(context); });
   done_.clear();
   seconds_ = 0;
@@ -170,7 +186,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     restore(*from);
     kept.before_short_pass = from->before_short_pass;
     if (from->before_short_pass && part.end > done_.back().end) {
-      image->load_state(from->before_short_pass->image);
+      film_->load_state(from->before_short_pass->image);
       renderer->load_state(from->before_short_pass->renderer);
       drop_short_pass(done_, step);
     }
@@ -209,7 +225,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   const auto keep = [&] {
     kept.done = done_;
     kept.seconds = seconds_;
-    kept.state = {image->save_state(), renderer->save_state()};
+    kept.state = {film_->save_state(), renderer->save_state()};
     try {
       write_checkpoint(kept, checkpoint_file);
       checkpoint_failure_.clear();
@@ -228,7 +244,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   };
   /// Whether a rule other than the number of samples says stop.
   const auto stopped = [&]() -> std::optional<Ended> {
-    if (error_limit > 0) error = image->relative_error();
+    if (error_limit > 0) error = film_->relative_error();
     if (missing(done_, part).empty()) return Ended::samples;
     if (finish_.load()) return Ended::interrupted;
     if (time_limit > 0 && seconds_ >= time_limit) return Ended::time;
@@ -236,7 +252,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     return {};
   };
 
-  PassRunner runner(*image, threads, abort_,
+  PassRunner runner(*film_, threads, abort_,
                     [&](std::uint64_t done, std::uint64_t count) { report(double(done) / double(count), false); });
   std::optional<Ended> ended;
   if (from) ended = stopped();
@@ -246,12 +262,20 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     require_independent_passes();
     kept.before_short_pass.reset();
     if (keeps && pass.end % step != 0 && pass.end == part.end)
-      kept.before_short_pass = Checkpoint::State{image->save_state(), renderer->save_state()};
+      kept.before_short_pass = Checkpoint::State{film_->save_state(), renderer->save_state()};
     runner.begin = pass.begin;
     runner.end = pass.end;
-    rendering(*this, [&] { renderer->pass(context, runner); });
-    if (abort_.load()) return Ended::aborted;
-    require_independent_passes();
+    {
+      // A pass that is not finished leaves nothing behind, whatever ends it.
+      struct Step {
+        Film& film;
+        ~Step() { film.drop_step(); }
+      } const open{*film_};
+      rendering(*this, [&] { renderer->pass(context, runner); });
+      if (abort_.load()) return Ended::aborted;
+      require_independent_passes();
+      film_->end_step();
+    }
     insert(done_, pass);
     seconds_ = now() - begun;
     written = false;
@@ -265,7 +289,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
 }
 
 Image Job::picture() const {
-  Image picture = image->develop();
+  Image picture = film().develop();
   for (const auto& [key, text] : metadata) picture.metadata[key] = text;
   picture.metadata["seed"] = std::to_string(seed);
   picture.metadata["samples"] = std::to_string(count(done_));

@@ -18,7 +18,7 @@ std::uint32_t samples_per_pass(const PixelArea& area) {
 }
 
 struct PassRunner::State {
-  ImageBuffer& image;
+  Film& film;
   std::function<void(std::uint64_t, std::uint64_t)> tick;
   int threads;
   tbb::global_control limit;
@@ -46,9 +46,9 @@ namespace {
 int thread_count(int wanted) { return wanted > 0 ? wanted : tbb::info::default_concurrency(); }
 }  // namespace
 
-PassRunner::PassRunner(ImageBuffer& image, int threads, const std::atomic<bool>& abort_,
+PassRunner::PassRunner(Film& film, int threads, const std::atomic<bool>& abort_,
                        std::function<void(std::uint64_t, std::uint64_t)> tick)
-    : state_(new State{image,
+    : state_(new State{film,
                        std::move(tick),
                        thread_count(threads),
                        tbb::global_control(tbb::global_control::max_allowed_parallelism, size_t(thread_count(threads))),
@@ -64,6 +64,7 @@ PassRunner::~PassRunner() = default;
 void PassRunner::run(std::uint64_t count, Work work, void* self) {
   State& s = *state_;
   std::uint64_t next = 0, done = 0;
+  const size_t largest = s.film.largest_kept();
   s.tasks.execute([&] {
     // Enough tiles in flight that no thread waits for a slow one, few enough that memory stays small.
     tbb::parallel_pipeline(
@@ -73,10 +74,11 @@ void PassRunner::run(std::uint64_t count, Work work, void* self) {
           return next++;
         }) & tbb::make_filter<std::uint64_t, ImageTile*>(tbb::filter_mode::parallel, [&](std::uint64_t item) {
           std::unique_ptr<ImageTile> tile(s.take());
+          tile->keep_largest(largest);
           work(self, item, *tile, s.arenas.local());
           return tile.release();
         }) & tbb::make_filter<ImageTile*, void>(tbb::filter_mode::serial_in_order, [&](ImageTile* tile) {
-          s.image.merge(*tile);
+          s.film.merge(*tile);
           s.give(tile);
           s.tick(++done, count);
         }));

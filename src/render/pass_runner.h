@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 
+#include "etendue/film/film.h"
 #include "etendue/render/renderer.h"
 
 namespace etendue {
@@ -16,8 +17,7 @@ std::uint32_t samples_per_pass(const PixelArea&);
 class PassRunner final : public Pass {
  public:
   /// `abort` ends a pass early; `tick(done, count)` is called from one thread at a time.
-  PassRunner(ImageBuffer& image, int threads, const std::atomic<bool>& abort,
-             std::function<void(std::uint64_t, std::uint64_t)> tick);
+  PassRunner(Film& film, int threads, const std::atomic<bool>& abort, std::function<void(std::uint64_t, std::uint64_t)> tick);
   ~PassRunner() override;
 
   using Pass::run;

@@ -24,7 +24,7 @@ TEST_F(CheckpointTest, parts_merge_in_any_order_to_what_one_process_makes) {
   EXPECT_EQ(merged.done, (std::vector<IndexRange>{{0, std::uint32_t(samples)}}));
   EXPECT_EQ(merged.samples_wanted, std::uint32_t(samples));
   const Ref<Job> job = job_with_picture(merged);
-  EXPECT_EQ(job->image->samples(), straight->image->samples());
+  EXPECT_EQ(job->film().samples(), straight->film().samples());
   const Image picture = job->picture(), expected = straight->picture();
   EXPECT_LE(relative_difference(picture, expected), 1e-12);
   for (const char* key : {"samples", "seed", "renderer", "version"})
@@ -36,7 +36,7 @@ TEST_F(CheckpointTest, parts_merge_in_any_order_to_what_one_process_makes) {
   EXPECT_EQ(read_checkpoint(folder / "ac").done, (std::vector<IndexRange>{{0, 2 * step}, {3 * step, std::uint32_t(samples)}}));
   const Ref<Job> filled = job_of(text, samples);
   EXPECT_EQ(filled->resume(folder / "ac"), Ended::samples);
-  EXPECT_EQ(filled->image->samples(), straight->image->samples());
+  EXPECT_EQ(filled->film().samples(), straight->film().samples());
   EXPECT_LE(relative_difference(filled->picture(), expected), 1e-12);
 }
 

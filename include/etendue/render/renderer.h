@@ -7,7 +7,7 @@
 #include "etendue/core/arena.h"
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
-#include "etendue/film/image_buffer.h"
+#include "etendue/film/image_tile.h"
 #include "etendue/light_sampler.h"
 #include "etendue/sampler.h"
 #include "etendue/scene.h"

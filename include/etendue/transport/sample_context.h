@@ -8,7 +8,7 @@
 
 #include "etendue/camera.h"
 #include "etendue/core/arena.h"
-#include "etendue/film/image_buffer.h"
+#include "etendue/film/image_tile.h"
 #include "etendue/sampler.h"
 #include "etendue/scene.h"
 #include "etendue/transport/path_record.h"
@@ -20,7 +20,7 @@ namespace etendue {
 struct RenderContext {
   const Scene& scene;
   const Camera& camera;
-  ImageBuffer& image;
+  const ImageBuffer& image;
   const WavelengthSampler& wavelengths;
   std::uint64_t seed = 0;
 };
