@@ -63,6 +63,7 @@ std::vector<double>& Film::Members::list(List which) {
 void Film::merge(const ImageTile& tile) {
   Members& m = *members_;
   const std::lock_guard lock(m.mutex);
+  if (!tile.format_) return;  // never begun
   if (tile.format_ != m.format && !tile.format_->collects_as(*m.format)) throw Error("the tile is of another picture");
   try {
     if (m.step.begun && tile.block_ != m.step.block) {

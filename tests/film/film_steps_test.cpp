@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstring>
 #include <random>
 #include <thread>
@@ -202,12 +203,12 @@ TEST(FilmSteps, what_cannot_be_summed_is_an_error_that_says_where) {
   ImageTile tile;
   const auto add = [&](float weight) {
     tile.begin(*image, image->area());
-    tile.contribute({5.5f, 2.5f}, 5, 2, 0, Spectrum(3e38f), wavelengths, weight);
+    tile.contribute({5.5f, 2.5f}, 5, 2, 0, Spectrum(1e30f), wavelengths, weight);
     film.merge(tile);
   };
-  add(1e30f);  // about 1e70, and squared
+  add(1e30f);  // about 1e62, and squared
   film.end_step();
-  EXPECT_GT(film.develop().at(5, 2, 1), 1e37);
+  EXPECT_GT(film.develop().at(5, 2, 1), 1e29);
   const std::vector<std::byte> before = film.save_state();
   std::string message;
   try {

@@ -114,12 +114,12 @@ class Job final : public Component {
   Ended run(const Checkpoint* from, const std::string& from_file);
 
   std::atomic<bool> finish_{false}, abort_{false};
-  std::unique_ptr<Film> film_;
   std::vector<IndexRange> done_;
   double seconds_ = 0;
   std::string checkpoint_failure_;
   bool prepared_ = false;
   DoublePoint3 centre_;
+  std::unique_ptr<Film> film_;
 };
 
 /// Reads a render description; throws Errors with everything wrong that can be found in one run. Not prepared yet.
