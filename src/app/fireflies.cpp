@@ -11,10 +11,10 @@
 namespace etendue {
 
 std::string fireflies_text(const Job& job, const std::string& picture_command) {
-  const std::vector<LargeSample> largest = job.image->largest_samples();
+  const std::vector<LargeSample> largest = job.film().largest_samples();
   if (largest.empty()) return "No sample brought any light.\n";
 
-  const Image picture = job.image->develop();
+  const Image picture = job.film().develop();
   const PixelArea& area = job.image->area();
   std::string text = largest.size() == 1
                          ? "The sample that brought most light; to see its path:\n"

@@ -8,7 +8,7 @@
 
 namespace etendue {
 
-/// Tells the samples a finished render kept (ImageBuffer::keep_largest, before it), largest first: what each brought, how
+/// Tells the samples a finished render kept (Film::keep_largest, before it), largest first: what each brought, how
 /// that compares to its pixel, and the command that replays it alone.
 std::string fireflies_text(const Job&, const std::string& picture_command);
 

@@ -2,8 +2,10 @@
 
 #include <cstring>
 #include <limits>
+#include <tuple>
 
-#include "etendue/film/image_buffer.h"
+#include "etendue/film/image_tile.h"
+#include "film_values.h"
 #include "filter_window.h"
 #include "pixel_area.h"
 
@@ -81,24 +83,44 @@ size_t pixels(const PixelArea& a) { return size_t(std::max(a.width(), 0)) * size
 
 }  // namespace
 
-void ImageTile::begin(const ImageBuffer& buffer, const PixelArea& area) {
-  buffer_ = &buffer;
-  sampled_ = intersection(area, buffer.sampled_area());
-  area_ = intersection(area, buffer.area());
-  extent_ = intersection(widened(area, buffer.reach()), buffer.area());
-  sums_.assign(4 * pixels(extent_), 0);
-  moments_.assign(3 * pixels(area_), 0);
-  features_.assign(buffer.wants_features() ? ImageBuffer::feature_values * pixels(area_) : 0, 0);
-  lengths_.assign(3 * size_t(buffer.path_lengths) * pixels(extent_), 0);
+bool BadSample::operator<(const BadSample& b) const {
+  return std::tuple(y, x, sample, kind) < std::tuple(b.y, b.x, b.sample, b.kind);
+}
+
+void FeatureCount::add(const FeatureCount& more) {
+  samples += more.samples;
+  hits += more.hits;
+  if (std::tuple(more.first, more.object) < std::tuple(first, object)) {
+    first = more.first;
+    object = more.object;
+  }
+}
+
+void ImageTile::begin(const ImageBuffer& image, const PixelArea& area, std::uint32_t block) {
+  format_ = image.format();
+  block_ = block;
+  sampled_ = intersection(area, format_->sampled_area);
+  area_ = intersection(area, format_->area);
+  extent_ = intersection(widened(area, format_->reach()), format_->area);
+  light_.assign(4 * pixels(extent_), 0);
+  lit_ = false;
+  lengths_.assign(3 * size_t(format_->path_lengths) * pixels(extent_), 0);
+  samples_.assign(pixels(area_), 0);
+  weights_.clear();
+  features_.assign(format_->wants_features ? feature_values * pixels(area_) : 0, 0);
+  feature_counts_.assign(format_->wants_features ? pixels(area_) : 0, {});
   splats_.clear();
+  splat_path_ = {-1, -1, 0};
   largest_.clear();
   bad_.clear();
   bad_count_ = paths_ = 0;
 }
 
-void ImageTile::note(int x, int y, std::uint32_t sample, BadSample::Kind kind) {
+void ImageTile::note(const BadSample& sample) {
   ++bad_count_;
-  if (bad_.size() < ImageBuffer::bad_samples_kept) bad_.push_back({x, y, sample, kind});
+  if (bad_.size() < FilmCounts::bad_kept) return bad_.push_back(sample);
+  const auto last = std::ranges::max_element(bad_, std::less());
+  if (sample < *last) *last = sample;
 }
 
 void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum& value,
@@ -113,45 +135,54 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
     weight = 1;
   }
   if (!good) [[unlikely]] {
-    note(px, py, sample, kind);
+    note({px, py, sample, kind});
     color = {};
   }
-  if (buffer_->largest_wanted_ > 0) [[unlikely]]
+  if (largest_wanted_ > 0) [[unlikely]]
     note_large({color.y * double(weight), px, py, sample, film, false});
   if (!sampled_.contains(px, py)) [[unlikely]]
     return;
 
   if (area_.contains(px, py)) [[likely]] {  // beside a crop a sample counts for the pixels of the crop alone
-    double* moment = &moments_[3 * (size_t(py - area_.y0) * size_t(area_.width()) + size_t(px - area_.x0))];
-    moment[0] += 1;
-    moment[1] += color.y;
-    moment[2] += color.y * color.y;
+    ++samples_[own_pixel(px, py)];
+    if (weight != 1) [[unlikely]] {
+      if (weights_.empty()) weights_.assign(pixels(area_), 0);
+      weights_[own_pixel(px, py)] += double(weight) - 1;
+    }
   }
-
-  if (!lengths_.empty() && good) [[unlikely]]
+  if (color.x == 0 && color.y == 0 && color.z == 0) return;
+  lit_ = true;
+  if (!lengths_.empty()) [[unlikely]]
     add_lengths(film, px, py, wavelengths, weight, by_length);
+  add_light(film, px, py, color, weight);
+}
 
-  const Sums light{color.x, color.y, color.z, 0};
-  if (extent_.contains(px, py)) [[likely]] {
-    double* own = &sums_[4 * (size_t(py - extent_.y0) * size_t(extent_.width()) + size_t(px - extent_.x0))];
-    own[3] += double(weight);
-    if (buffer_->box_) add(own, double(weight) * light);
+void ImageTile::add_light(Point2 film, int px, int py, const Xyz& color, float weight) {
+  const Sums light{color.x, color.y, color.z, color.y * color.y};
+  if (format_->box) {
+    if (!area_.contains(px, py)) return;
+    const double w = double(weight);
+    add(&light_[4 * (size_t(py - extent_.y0) * size_t(extent_.width()) + size_t(px - extent_.x0))],
+        Sums{w, w, w, w * w} * light);
+    return;
   }
-  if (buffer_->box_) return;
-  constexpr int size = ImageBuffer::table_size;
-  const FilterWindow across(film.x, buffer_->filter_radius_, size, extent_.x0, extent_.x1);
-  const FilterWindow down(film.y, buffer_->filter_radius_, size, extent_.y0, extent_.y1);
+  constexpr int size = PictureFormat::table_size;
+  const FilterWindow across(film.x, format_->radius, size, extent_.x0, extent_.x1);
+  const FilterWindow down(film.y, format_->radius, size, extent_.y0, extent_.y1);
   for (int j = 0; j < down.count; ++j) {
-    const float* row = &buffer_->filter_table_[size_t(down.cells[size_t(j)]) * size];
+    const float* row = &format_->table[size_t(down.cells[size_t(j)]) * size];
     double* sum =
-        &sums_[4 * (size_t(down.first + j - extent_.y0) * size_t(extent_.width()) + size_t(across.first - extent_.x0))];
-    for (int i = 0; i < across.count; ++i, sum += 4) add(sum, double(row[across.cells[size_t(i)]] * weight) * light);
+        &light_[4 * (size_t(down.first + j - extent_.y0) * size_t(extent_.width()) + size_t(across.first - extent_.x0))];
+    for (int i = 0; i < across.count; ++i, sum += 4) {
+      const double w = double(row[across.cells[size_t(i)]] * weight);
+      add(sum, Sums{w, w, w, w * w} * light);
+    }
   }
 }
 
 void ImageTile::add_lengths(Point2 film, int px, int py, const Wavelengths& wavelengths, float weight,
                             std::span<const Spectrum> by_length) {
-  const size_t count = std::min(by_length.size(), size_t(buffer_->path_lengths)), stride = 3 * size_t(buffer_->path_lengths);
+  const size_t count = std::min(by_length.size(), size_t(format_->path_lengths)), stride = 3 * size_t(format_->path_lengths);
   for (size_t length = 0; length < count; ++length) {
     if (by_length[length].black()) continue;
     Xyz color;
@@ -164,15 +195,15 @@ void ImageTile::add_lengths(Point2 film, int px, int py, const Wavelengths& wave
       sum[1] += factor * color.y;
       sum[2] += factor * color.z;
     };
-    if (buffer_->box_) {
+    if (format_->box) {
       add(px, py, double(weight));
       continue;
     }
-    constexpr int size = ImageBuffer::table_size;
-    const FilterWindow across(film.x, buffer_->filter_radius_, size, extent_.x0, extent_.x1);
-    const FilterWindow down(film.y, buffer_->filter_radius_, size, extent_.y0, extent_.y1);
+    constexpr int size = PictureFormat::table_size;
+    const FilterWindow across(film.x, format_->radius, size, extent_.x0, extent_.x1);
+    const FilterWindow down(film.y, format_->radius, size, extent_.y0, extent_.y1);
     for (int j = 0; j < down.count; ++j) {
-      const float* row = &buffer_->filter_table_[size_t(down.cells[size_t(j)]) * size];
+      const float* row = &format_->table[size_t(down.cells[size_t(j)]) * size];
       for (int i = 0; i < across.count; ++i)
         add(across.first + i, down.first + j, double(row[across.cells[size_t(i)]] * weight));
     }
@@ -180,43 +211,53 @@ void ImageTile::add_lengths(Point2 film, int px, int py, const Wavelengths& wave
 }
 
 void ImageTile::note_large(const LargeSample& s) {
-  if (!(s.luminance > 0)) return;
-  keep_larger(largest_, s, buffer_->largest_wanted_);
+  if (s.luminance > 0) keep_larger(largest_, s, largest_wanted_);
+}
+
+void ImageTile::keep_larger(std::vector<LargeSample>& kept, const LargeSample& s, size_t most) {
+  // A heap with the least of them in front; ties are broken by place, so that the order of merging does not matter.
+  const auto larger = [](const LargeSample& a, const LargeSample& b) {
+    return std::tuple(-a.luminance, a.y, a.x, a.sample, a.film.y, a.film.x) <
+           std::tuple(-b.luminance, b.y, b.x, b.sample, b.film.y, b.film.x);
+  };
+  if (kept.size() >= most) {
+    if (kept.empty() || !larger(s, kept.front())) return;
+    std::pop_heap(kept.begin(), kept.end(), larger);
+    kept.pop_back();
+  }
+  kept.push_back(s);
+  std::push_heap(kept.begin(), kept.end(), larger);
 }
 
 void ImageTile::splat(Point2 film, int px, int py, std::uint32_t sample, const Spectrum& value, const Wavelengths& wavelengths,
                       int length) {
-  const PixelArea& all = buffer_->sampled_area();
+  const PixelArea& all = format_->sampled_area;
   // Light beside the pixels that are sampled is left out, as camera samples have none from there either: at the picture's
   // edge both estimate the same mean over the part of the filter that lies inside.
   if (!(film.x >= float(all.x0) && film.x < float(all.x1) && film.y >= float(all.y0) && film.y < float(all.y1))) return;
   Xyz color;
   BadKind kind = BadKind::not_a_number;
-  if (to_color(value, wavelengths, color, kind)) [[likely]] {
-    splats_.push_back({film, color, length});
-    if (buffer_->largest_wanted_ > 0) [[unlikely]]
-      note_large(
-          {color.y * (double(buffer_->width) * double(buffer_->height) / double(pixels(all))), px, py, sample, film, true});
-  } else {
-    note(px, py, sample, kind);
-  }
+  if (!to_color(value, wavelengths, color, kind)) [[unlikely]]
+    return note({px, py, sample, kind});
+  const bool same = splat_path_.x == px && splat_path_.y == py && splat_path_.sample == sample;
+  splat_path_ = {px, py, sample};
+  splats_.push_back({film, color, length, same});
+  if (largest_wanted_ > 0) [[unlikely]]
+    note_large(
+        {color.y * (double(format_->width) * double(format_->height) / double(pixels(all))), px, py, sample, film, true});
 }
 
-void ImageTile::features(int px, int py, const Features& f) {
+void ImageTile::features(int px, int py, std::uint32_t sample, const Features& f) {
   if (features_.empty() || !area_.contains(px, py)) return;
-  double* sum =
-      &features_[ImageBuffer::feature_values * (size_t(py - area_.y0) * size_t(area_.width()) + size_t(px - area_.x0))];
   if (!is_finite(f.albedo) || !is_finite(f.normal) || !std::isfinite(f.depth)) return;
+  const size_t pixel = own_pixel(px, py);
+  double* sum = &features_[feature_values * pixel];
   for (int i = 0; i < 3; ++i) {
     sum[i] += double(f.albedo[i]);
     sum[3 + i] += double(f.normal[i]);
   }
-  if (f.depth > 0) {
-    sum[6] += double(f.depth);
-    sum[7] += 1;
-  }
-  if (sum[9] == 0) sum[8] = f.object;
-  sum[9] += 1;
+  if (f.depth > 0) sum[6] += double(f.depth);
+  feature_counts_[pixel].add({1, f.depth > 0 ? 1u : 0u, sample, f.object});
 }
 
 }  // namespace etendue

@@ -165,19 +165,19 @@ Checkpoint merge_checkpoints(const std::vector<std::string>& paths) {
   const Ref<ImageBuffer> image = ref_cast<ImageBuffer>(parse_component(merged.image, "the checkpoint's description"));
   if (!image) throw Error(fmt::format("'{}' describes no image", parts.front().path));
   prepare_tree(*image);
+  Film film(*image);
   for (const Part& part : parts) {
     const Checkpoint c = read_checkpoint(part.path);
     if (c.done != part.header.done) throw Error(fmt::format("'{}' changed while it was read", part.path));
     if (!c.state.renderer.empty())
       throw Error(fmt::format("cannot merge '{}': {} learns from one pass to the next, so its passes belong together",
                               part.path, c.metadata.at("renderer")));
-    // Adding to nothing is exact, so the first is a part like any other.
-    image->add_state(c.state.image);
+    film.add_state(c.state.image);
     merged.seconds += c.seconds;
     merged.samples_wanted = std::max(merged.samples_wanted, c.samples_wanted);
     for (const IndexRange& range : c.done) insert(merged.done, range);
   }
-  merged.state.image = image->save_state();
+  merged.state.image = film.save_state();
   return merged;
 }
 

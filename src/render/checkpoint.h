@@ -36,7 +36,7 @@ std::string difference(const Identity&, const std::string& whose, const Identity
 struct Checkpoint {
   /// What the passes made, from which further ones go on.
   struct State {
-    std::vector<std::byte> image, renderer;  ///< of ImageBuffer::save_state and Renderer::save_state
+    std::vector<std::byte> image, renderer;  ///< of Film::save_state and Renderer::save_state
   };
 
   std::string version;  ///< of the program
@@ -72,8 +72,8 @@ void remove_leftovers(const std::string& path);
 /// Why the samples of two must not be added; empty: they may.
 std::string mismatch(const Checkpoint&, const std::string& whose, const Checkpoint& other, const std::string& other_whose);
 
-/// One checkpoint of all the samples in the files, which must be of the same job and have none in common; the states are
-/// added in the order of their samples. Throws Error.
+/// One checkpoint of all the samples in the files, which must be of the same job and have none in common; the order
+/// does not matter. Throws Error.
 Checkpoint merge_checkpoints(const std::vector<std::string>& paths);
 
 /// A job that holds the picture of a checkpoint and can write it, but has no scene.

@@ -25,7 +25,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::uint64_t name_of_format = 0x54504b4345445445;  // "ETDECKPT"
-constexpr std::uint64_t version_of_format = 1;
+constexpr std::uint64_t version_of_format = 2;
 constexpr size_t parts = 5;  // header, image, renderer, image before a short pass, renderer before a short pass
 using Bytes = std::vector<std::byte>;
 

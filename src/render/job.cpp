@@ -98,7 +98,22 @@ void Job::prepare() {
   }
   refuse_uneven_media_within(*scene, false);
   camera->set_film(image->width, image->height);
+  begin_film();
   prepared_ = true;
+}
+
+/// What was collected stays while it fits the description.
+void Job::begin_film() {
+  const Estimator estimator = renderer ? renderer->estimator() : Estimator::independent;
+  if (film_ && film_->estimator() == estimator)
+    film_->follow(*image);
+  else
+    film_ = std::make_unique<Film>(*image, estimator);
+}
+
+Film& Job::film() const {
+  if (!film_) throw Error("a job that was not prepared has no film");
+  return *film_;
 }
 
 RenderContext Job::context() const { return {*scene, *camera, *image, *wavelengths, seed}; }
@@ -129,7 +144,8 @@ Ended Job::resume(const std::string& checkpoint) {
 }
 
 void Job::restore(const Checkpoint& c) {
-  image->load_state(c.state.image);
+  begin_film();
+  film_->load_state(c.state.image);
   if (process_) process_->load_state(c.state.renderer);
   done_ = c.done;
   seconds_ = c.seconds;
@@ -174,7 +190,8 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     ~Forgotten() { finish = abort = false; }
   } const forgotten{finish_, abort_};
 
-  image->clear();
+  begin_film();
+  film_->clear();
   rendering(*this, [&] { process_ = renderer->start(context); });
   done_.clear();
   seconds_ = 0;
@@ -182,7 +199,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     restore(*from);
     kept.before_short_pass = from->before_short_pass;
     if (from->before_short_pass && part.end > done_.back().end) {
-      image->load_state(from->before_short_pass->image);
+      film_->load_state(from->before_short_pass->image);
       process_->load_state(from->before_short_pass->renderer);
       drop_short_pass(done_, step);
     }
@@ -221,7 +238,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   const auto keep = [&] {
     kept.done = done_;
     kept.seconds = seconds_;
-    kept.state = {image->save_state(), process_->save_state()};
+    kept.state = {film_->save_state(), process_->save_state()};
     try {
       write_checkpoint(kept, checkpoint_file);
       checkpoint_failure_.clear();
@@ -240,7 +257,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
   };
   /// Whether a rule other than the number of samples says stop.
   const auto stopped = [&]() -> std::optional<Ended> {
-    if (error_limit > 0) error = image->relative_error();
+    if (error_limit > 0) error = film_->relative_error();
     if (missing(done_, part).empty()) return Ended::samples;
     if (finish_.load()) return Ended::interrupted;
     if (time_limit > 0 && seconds_ >= time_limit) return Ended::time;
@@ -248,7 +265,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     return {};
   };
 
-  ParallelSchedule schedule(*image, threads, abort_,
+  ParallelSchedule schedule(*film_, threads, abort_,
                             [&](std::uint64_t done, std::uint64_t count) { report(double(done) / double(count), false); });
   std::optional<Ended> ended;
   if (from) ended = stopped();
@@ -258,12 +275,20 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
     require_independent_passes();
     kept.before_short_pass.reset();
     if (keeps && pass.end % step != 0 && pass.end == part.end)
-      kept.before_short_pass = Checkpoint::State{image->save_state(), process_->save_state()};
-    rendering(*this, [&] {
-      process_->prepare_step(schedule, pass);
-      process_->step(schedule, pass);
-    });
-    if (abort_.load()) return Ended::aborted;
+      kept.before_short_pass = Checkpoint::State{film_->save_state(), process_->save_state()};
+    {
+      // A step that is not finished leaves nothing behind, whatever ends it.
+      struct Step {
+        Film& film;
+        ~Step() { film.drop_step(); }
+      } const open{*film_};
+      rendering(*this, [&] {
+        process_->prepare_step(schedule, pass);
+        process_->step(schedule, pass);
+      });
+      if (abort_.load()) return Ended::aborted;
+      film_->end_step();
+    }
     insert(done_, pass);
     seconds_ = now() - begun;
     written = false;
@@ -277,7 +302,7 @@ Ended Job::run(const Checkpoint* from, const std::string& from_file) {
 }
 
 Image Job::picture() const {
-  Image picture = image->develop();
+  Image picture = film().develop();
   for (const auto& [key, text] : metadata) picture.metadata[key] = text;
   picture.metadata["seed"] = std::to_string(seed);
   picture.metadata["samples"] = std::to_string(count(done_));
@@ -304,10 +329,9 @@ std::vector<std::string> Job::write_outputs(const std::string& default_stem) con
 std::unique_ptr<RenderProcess> Job::start_at(std::uint32_t sample) {
   if (!prepared_) prepare_tree(*this);
   const std::uint32_t step = samples_per_pass(), begin = sample / step * step;
-  const Ref<ImageBuffer> film = ref_cast<ImageBuffer>(copy(*image));  // what steps before leave there is not looked at
-  prepare_tree(*film);
+  Film film(*image);  // what steps before leave there is not looked at
   const std::atomic<bool> never{false};
-  ParallelSchedule schedule(*film, threads, never);
+  ParallelSchedule schedule(film, threads, never);
   return rendering(*this, [&] {
     std::unique_ptr<RenderProcess> process = renderer->start(context());
     for (std::uint32_t first = renderer->steps_depend() ? 0 : begin;; first += step) {

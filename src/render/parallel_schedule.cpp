@@ -18,7 +18,7 @@ std::uint32_t samples_per_step(const PixelArea& area) {
 }
 
 struct ParallelSchedule::State {
-  ImageBuffer& image;
+  Film& film;
   std::function<void(std::uint64_t, std::uint64_t)> tick;
   int threads;
   tbb::global_control limit;
@@ -46,9 +46,9 @@ namespace {
 int thread_count(int wanted) { return wanted > 0 ? wanted : tbb::info::default_concurrency(); }
 }  // namespace
 
-ParallelSchedule::ParallelSchedule(ImageBuffer& image, int threads, const std::atomic<bool>& abort_,
+ParallelSchedule::ParallelSchedule(Film& film, int threads, const std::atomic<bool>& abort_,
                                    std::function<void(std::uint64_t, std::uint64_t)> tick)
-    : state_(new State{image,
+    : state_(new State{film,
                        std::move(tick),
                        thread_count(threads),
                        tbb::global_control(tbb::global_control::max_allowed_parallelism, size_t(thread_count(threads))),
@@ -86,15 +86,17 @@ void in_order(tbb::task_arena& tasks, int threads, std::uint64_t count, const st
 void ParallelSchedule::film_items(std::uint64_t count, FilmWork work, void* self) {
   State& s = *state_;
   std::uint64_t done = 0;
+  const size_t largest = s.film.largest_kept();
   in_order<ImageTile>(
       s.tasks, s.threads, count, [&] { return aborted(); },
       [&](std::uint64_t item) {
         std::unique_ptr<ImageTile> tile(s.take());
+        tile->keep_largest(largest);
         work(self, item, *tile, s.arenas.local());
         return tile.release();
       },
       [&](ImageTile* tile) {
-        s.image.merge(*tile);
+        s.film.merge(*tile);
         s.give(tile);
         if (s.tick) s.tick(++done, count);
       });

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "etendue/film/film.h"
 #include "etendue/render/schedule.h"
 
 namespace etendue {
@@ -18,7 +19,7 @@ class ParallelSchedule final : public Schedule {
  public:
   /// `threads`: 0 for all cores. `abort` lets what is done be thrown away; `tick(done, count)` is called from one thread at a
   /// time, for items of the film.
-  ParallelSchedule(ImageBuffer& image, int threads, const std::atomic<bool>& abort,
+  ParallelSchedule(Film& film, int threads, const std::atomic<bool>& abort,
                    std::function<void(std::uint64_t, std::uint64_t)> tick = {});
   ~ParallelSchedule() override;
 

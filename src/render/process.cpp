@@ -20,6 +20,7 @@ class Division {
   struct Item {
     PixelArea area;
     std::uint32_t first, last;  ///< samples, the last not included
+    std::uint32_t block;        ///< which step of the whole picture they belong to
   };
 
   Division(const ImageBuffer& image, IndexRange pass) : area_(image.sampled_area()) {
@@ -52,7 +53,7 @@ class Division {
     const std::uint64_t rest = number - part.first_item;
     const int t = int(rest / part.chunks), x = (column_ + t % columns_) * tile, y = (row_ + t / columns_) * tile;
     const std::uint32_t first = part.begin + std::uint32_t(rest % part.chunks) * part.chunk;
-    return {intersection({x, y, x + tile, y + tile}, area_), first, std::min(first + part.chunk, part.end)};
+    return {intersection({x, y, x + tile, y + tile}, area_), first, std::min(first + part.chunk, part.end), part.begin};
   }
 
  private:
@@ -124,8 +125,8 @@ void RenderProcess::step(Schedule& schedule, IndexRange samples) {
   const bool wants_features = context.image.wants_features();
   const size_t path_lengths = size_t(context.image.path_lengths);
   schedule.film(division.count(), [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
-    const auto [area, first, last] = division.item(item);
-    tile.begin(context.image, area);
+    const auto [area, first, last, block] = division.item(item);
+    tile.begin(context.image, area, block);
     std::vector<Splat> splats;
     std::vector<Spectrum> lengths(path_lengths);
     Features features;
@@ -142,7 +143,7 @@ void RenderProcess::step(Schedule& schedule, IndexRange samples) {
           tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, 1, lengths);
           for (const Splat& splat : splats)
             tile.splat(splat.film, x, y, key.sample, splat.value, splat.wavelengths, splat.length);
-          if (wants_features) tile.features(x, y, features);
+          if (wants_features) tile.features(x, y, key.sample, features);
         }
   });
 }

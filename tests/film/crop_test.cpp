@@ -38,8 +38,8 @@ Image render(const Ref<Job>& job, std::vector<int> crop) {
   job->image->crop = std::move(crop);
   prepare_tree(*job);
   job->render();
-  EXPECT_EQ(job->image->bad_samples(), 0u);
-  return job->image->develop();
+  EXPECT_EQ(job->film().bad_samples(), 0u);
+  return job->film().develop();
 }
 
 /// Pieces that have edges on and off the tiles' edges, one of a single pixel among them.

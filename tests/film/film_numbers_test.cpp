@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "etendue/film/image_buffer.h"
+#include "etendue/film/film.h"
 #include "etendue/filter.h"
 #include "support/component_test_support.h"
 
@@ -66,7 +66,7 @@ const Wavelengths& lambda() {
 }
 double unit() { return to_xyz(Spectrum(1.0f), lambda()).y; }
 
-Ref<ImageBuffer> film(const Case& c, int width, int height, const std::vector<int>& crop = {}) {
+Ref<ImageBuffer> picture(const Case& c, int width, int height, const std::vector<int>& crop = {}) {
   auto buffer = make<ImageBuffer>();
   buffer->width = width;
   buffer->height = height;
@@ -93,18 +93,19 @@ TEST(FilmNumbers, PixelsWeighSplatsByTheFilter) {
     constexpr size_t bins = 12;
     std::array<double, bins> got{}, expected{}, size{};
     const double norm = whole(c) * whole(c);
-    const Ref<ImageBuffer> buffer = film(c, 13, 13);
+    const Ref<ImageBuffer> buffer = picture(c, 13, 13);
     buffer->prepare();
+    Film film(*buffer);
     constexpr int count = 4000;
     for (int i = 0; i < count; ++i) {
       const double x = 6 + uniform(random), y = 6 + uniform(random);
-      buffer->clear();
+      film.clear();
       ImageTile tile;
       tile.begin(*buffer, buffer->area());
       for (int k = 0; k < 169; ++k) tile.count_path();
       tile.splat({float(x), float(y)}, 6, 6, 0, Spectrum(1.0f), lambda(), 1);
-      buffer->merge(tile);
-      const Image image = buffer->develop();
+      film.merge(tile);
+      const Image image = film.develop();
       for (int py = 3; py <= 9; ++py)
         for (int px = 3; px <= 9; ++px) {
           const double dx = std::abs(x - px - 0.5), dy = std::abs(y - py - 0.5);
@@ -145,17 +146,18 @@ TEST(FilmNumbers, SplatsInACropAndAtItsBorders) {
     if (c.name == "BoxFilter") continue;  // whose edges lie within cells
     const std::vector<int> crop = {3, 2, 12, 9};
     for (const Point2 at : {Point2{7.3f, 5.6f}, {3.2f, 2.1f}, {11.8f, 5.4f}, {6.4f, 8.9f}}) {
-      const Ref<ImageBuffer> buffer = film(c, 20, 15, crop);
+      const Ref<ImageBuffer> buffer = picture(c, 20, 15, crop);
       buffer->path_lengths = 3;
       buffer->prepare();
+      Film film(*buffer);
       ImageTile tile;
       tile.begin(*buffer, buffer->area());
       constexpr int paths = 63;
       for (int i = 0; i < paths; ++i) tile.count_path();
       tile.splat(at, 5, 5, 0, Spectrum(1.0f), lambda(), 2);
       tile.splat({19, 14}, 5, 5, 0, Spectrum(1.0f), lambda(), 2);  // farther from the crop than filters reach: nothing
-      buffer->merge(tile);
-      const Image image = buffer->develop();
+      film.merge(tile);
+      const Image image = film.develop();
       double largest = 0;
       for (int y = 2; y < 9; ++y)
         for (int x = 3; x < 12; ++x) {
@@ -170,8 +172,9 @@ TEST(FilmNumbers, SplatsInACropAndAtItsBorders) {
         }
     }
     // Even light over the film: every pixel of the crop has it all, to 0.3 %.
-    const Ref<ImageBuffer> buffer = film(c, 20, 15, crop);
+    const Ref<ImageBuffer> buffer = picture(c, 20, 15, crop);
     buffer->prepare();
+    Film film(*buffer);
     ImageTile tile;
     tile.begin(*buffer, buffer->area());
     constexpr int side = 50;
@@ -179,8 +182,8 @@ TEST(FilmNumbers, SplatsInACropAndAtItsBorders) {
       for (int x = 0; x < 20 * side; ++x)
         tile.splat({(float(x) + 0.5f) / side, (float(y) + 0.5f) / side}, 5, 5, 0, Spectrum(1.0f), lambda(), 1);
     for (int i = 0; i < 20 * 15 * side * side; ++i) tile.count_path();
-    buffer->merge(tile);
-    const Image image = buffer->develop();
+    film.merge(tile);
+    const Image image = film.develop();
     for (int y = 0; y < 7; ++y)
       for (int x = 0; x < 9; ++x) EXPECT_NEAR(image.at(x, y, 1), unit(), 3e-3 * unit()) << c.name << " " << x << " " << y;
   }
@@ -193,6 +196,7 @@ TEST(FilmNumbers, VarianceAndFeatures) {
   buffer->filter = create<Filter>("BoxFilter");
   buffer->layers = {"variance", "samples", "normal", "albedo", "depth"};
   buffer->prepare();
+  Film film(*buffer);
   ImageTile tile;
   tile.begin(*buffer, buffer->area());
   const double values[] = {1, 3, 4, 8};
@@ -202,10 +206,10 @@ TEST(FilmNumbers, VarianceAndFeatures) {
     f.normal = {0.1f * float(i), 0.2f * float(i), -0.3f * float(i)};
     f.albedo = {0.5f, 0.25f * float(i), 0.125f};
     f.depth = i < 2 ? 0 : 10 * float(i);  // nothing was met by the first two
-    tile.features(0, 0, f);
+    tile.features(0, 0, i, f);
   }
-  buffer->merge(tile);
-  const Image image = buffer->develop();
+  film.merge(tile);
+  const Image image = film.develop();
   const auto channel = [&](const std::string& name) {
     for (size_t i = 0; i < image.channels.size(); ++i)
       if (image.channels[i] == name) return image.at(0, 0, i);

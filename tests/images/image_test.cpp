@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "etendue/film/image_buffer.h"
+#include "etendue/film/film.h"
 #include "support/filter_support.h"
 
 namespace etendue::test {
@@ -42,8 +42,8 @@ std::vector<std::vector<Sample>> random_samples(const PixelArea& area, int count
   return samples;
 }
 
-/// Renders the samples in tiles of a size, merged in order.
-void render(ImageBuffer& buffer, const std::vector<std::vector<Sample>>& samples, int tile_size) {
+/// Renders the samples in tiles of a size, merged in order, as one step.
+void render(const ImageBuffer& buffer, Film& film, const std::vector<std::vector<Sample>>& samples, int tile_size) {
   const PixelArea& all = buffer.area();
   ImageTile tile;
   for (int y0 = all.y0; y0 < all.y1; y0 += tile_size)
@@ -58,16 +58,18 @@ void render(ImageBuffer& buffer, const std::vector<std::vector<Sample>>& samples
             tile.contribute(s.film, x, y, i++, Spectrum(s.value), wavelengths);
           }
         }
-      buffer.merge(tile);
+      film.merge(tile);
     }
+  film.end_step();
 }
 
-TEST(ImageBuffer, ConstantStaysConstantUnderEveryFilter) {
+TEST(Film, ConstantStaysConstantUnderEveryFilter) {
   // Samples on a lattice of which every cell of the filters' tables holds as many as it is large, so that sums are integrals:
   // at the border as well.
   const Xyz expected = to_xyz(Spectrum(0.7f), wavelengths);
   for (const auto& f : all_filters()) {
     const auto buffer = make_buffer(9, 7, f);
+    Film film(*buffer);
     std::vector<std::vector<Sample>> samples;
     constexpr int n = 128;
     for (int pixel = 0; pixel < 9 * 7; ++pixel) {
@@ -75,8 +77,8 @@ TEST(ImageBuffer, ConstantStaysConstantUnderEveryFilter) {
       for (int i = 0; i < n * n; ++i)
         own.push_back({{float(pixel % 9) + (float(i % n) + 0.5f) / n, float(pixel / 9) + (float(i / n) + 0.5f) / n}, 0.7f});
     }
-    render(*buffer, samples, 4);
-    const Image image = buffer->develop();
+    render(*buffer, film, samples, 4);
+    const Image image = film.develop();
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {
         EXPECT_NEAR(image.at(x, y, 0), expected.x, 1e-6 * expected.x) << name(*f);
@@ -86,16 +88,17 @@ TEST(ImageBuffer, ConstantStaysConstantUnderEveryFilter) {
   }
 }
 
-TEST(ImageBuffer, TableGivesTheFiltersOwnWeights) {
+TEST(Film, TableGivesTheFiltersOwnWeights) {
   // One sample near the centre of a pixel and one beside it, no others: their sum by the filter, over twice its integral over
   // that pixel.
   for (const auto& f : all_filters()) {
     const auto buffer = make_buffer(7, 7, f);
+    Film film(*buffer);
     ImageTile tile;
     tile.begin(*buffer, buffer->area());
     tile.contribute({3.4f, 3.7f}, 3, 3, 0, Spectrum(1.0f), wavelengths);
     tile.contribute({3.9f, 3.2f}, 3, 3, 1, Spectrum(3.0f), wavelengths);
-    buffer->merge(tile);
+    film.merge(tile);
     // Of the filter at the middles of the 64 cells within its radius.
     const float cell = f->radius() / 64;
     const auto weight = [&](float dx, float dy) {
@@ -108,34 +111,35 @@ TEST(ImageBuffer, TableGivesTheFiltersOwnWeights) {
       share += weight((float(i % fine) + 0.5f) / fine - 0.5f, (float(i / fine) + 0.5f) / fine - 0.5f) / (fine * fine);
     const double a = weight(-0.1f, 0.2f), b = weight(0.4f, -0.3f);
     const double y = to_xyz(Spectrum(1.0f), wavelengths).y;
-    EXPECT_NEAR(buffer->develop().at(3, 3, 1), y * (a + 3 * b) / (2 * share), 4e-3 * y) << name(*f);
-    EXPECT_EQ(buffer->develop().at(0, 0, 1) != 0, f->radius() > 3) << name(*f);
+    EXPECT_NEAR(film.develop().at(3, 3, 1), y * (a + 3 * b) / (2 * share), 4e-3 * y) << name(*f);
+    EXPECT_EQ(film.develop().at(0, 0, 1) != 0, f->radius() > 3) << name(*f);
   }
 }
 
-TEST(ImageBuffer, TilesDoNotShow) {
+TEST(Film, TilesDoNotShow) {
   for (const char* filter : {"BoxFilter", "GaussianFilter", "MitchellFilter"}) {
-    const auto one = make_buffer(16, 16, make_filter(filter)), many = make_buffer(16, 16, make_filter(filter)),
-               again = make_buffer(16, 16, make_filter(filter));
-    const auto samples = random_samples(one->area(), 8, 7);
-    render(*one, samples, 16);
-    render(*many, samples, 4);
-    render(*again, samples, 4);
-    const Image a = one->develop(), b = many->develop();
+    const auto buffer = make_buffer(16, 16, make_filter(filter));
+    Film one(*buffer), many(*buffer), again(*buffer);
+    const auto samples = random_samples(buffer->area(), 8, 7);
+    render(*buffer, one, samples, 16);
+    render(*buffer, many, samples, 4);
+    render(*buffer, again, samples, 4);
+    const Image a = one.develop(), b = many.develop();
     for (size_t i = 0; i < a.values.size(); ++i) EXPECT_NEAR(a.values[i], b.values[i], 1e-12 * std::abs(a.values[i]) + 1e-15);
-    EXPECT_EQ(many->save_state(), again->save_state()) << filter;
-    EXPECT_EQ(one->samples(), 16u * 16 * 8);
+    EXPECT_EQ(many.save_state(), again.save_state()) << filter;
+    EXPECT_EQ(one.samples(), 16u * 16 * 8);
   }
 }
 
-TEST(ImageBuffer, VarianceOfTheMean) {
+TEST(Film, VarianceOfTheMean) {
   // Uniform values in [0, 3): variance 9/12 each, so 0.75/n of the mean of n. Over 1024 pixels the relative deviation of
   // the mean estimate is below sqrt(2/n/1024) < 1 %; 4 % is four of them.
-  const auto buffer = make_buffer(32, 32);
+  const auto buffer = make_buffer(32, 32, make_filter("BoxFilter"));
   buffer->layers = {"variance", "samples"};
   buffer->prepare();
-  render(*buffer, random_samples(buffer->area(), 16, 3), 8);
-  const Image image = buffer->develop();
+  Film film(*buffer);
+  render(*buffer, film, random_samples(buffer->area(), 16, 3), 8);
+  const Image image = film.develop();
   ASSERT_EQ(image.channels, (std::vector<std::string>{"X", "Y", "Z", "variance.Y", "samples.N"}));
   double mean = 0;
   for (int y = 0; y < 32; ++y)
@@ -146,19 +150,20 @@ TEST(ImageBuffer, VarianceOfTheMean) {
   const double unit = to_xyz(Spectrum(1.0f), wavelengths).y;
   EXPECT_NEAR(mean / (unit * unit * 0.75 / 16), 1, 0.04);
   // standard error over mean: sqrt(0.75 / 16) / 1.5 = 0.144; the mean of the ratio is a little off by its curvature
-  EXPECT_NEAR(buffer->relative_error(), 0.144, 0.01);
+  EXPECT_NEAR(film.relative_error(), 0.144, 0.01);
 
-  const auto once = make_buffer(4, 4);
-  EXPECT_TRUE(std::isinf(once->relative_error()));
-  render(*once, random_samples(once->area(), 1, 3), 8);
-  EXPECT_TRUE(std::isinf(once->relative_error()));
-  render(*once, random_samples(once->area(), 1, 4), 8);
-  EXPECT_TRUE(std::isfinite(once->relative_error()));
+  Film once(*buffer);
+  EXPECT_TRUE(std::isinf(once.relative_error()));
+  render(*buffer, once, random_samples(buffer->area(), 1, 3), 8);
+  EXPECT_TRUE(std::isinf(once.relative_error()));
+  render(*buffer, once, random_samples(buffer->area(), 1, 4), 8);
+  EXPECT_TRUE(std::isfinite(once.relative_error()));
 }
 
-TEST(ImageBuffer, BadSamplesAreCountedLocatedAndBlack) {
+TEST(Film, BadSamplesAreCountedLocatedAndBlack) {
   for (const char* filter : {"BoxFilter", "GaussianFilter"}) {
     const auto buffer = make_buffer(8, 8, make_filter(filter));
+    Film film(*buffer);
     ImageTile tile;
     tile.begin(*buffer, buffer->area());
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -176,9 +181,9 @@ TEST(ImageBuffer, BadSamplesAreCountedLocatedAndBlack) {
     single.drop_secondary();
     tile.contribute({5.5f, 6.5f}, 5, 6, 9, partly, single);  // nor this: the value is of a dropped wavelength
     tile.splat({2.5f, 3.5f}, 4, 5, 11, Spectrum(nan), wavelengths, 2);
-    buffer->merge(tile);
-    EXPECT_EQ(buffer->bad_samples(), 6u);
-    const auto& bad = buffer->first_bad_samples();
+    film.merge(tile);
+    EXPECT_EQ(film.bad_samples(), 6u);
+    const auto& bad = film.first_bad_samples();
     ASSERT_EQ(bad.size(), 6u);
     EXPECT_EQ(bad[0].kind, BadSample::Kind::not_a_number);
     EXPECT_EQ(bad[0].x, 3);
@@ -189,26 +194,28 @@ TEST(ImageBuffer, BadSamplesAreCountedLocatedAndBlack) {
     EXPECT_EQ(bad[3].x, 6);
     EXPECT_EQ(bad[5].sample, 11u);
     EXPECT_EQ(bad[5].y, 5);
-    const Image image = buffer->develop();
+    const Image image = film.develop();
     for (const double v : image.values) EXPECT_TRUE(std::isfinite(v) && v >= 0);
     EXPECT_EQ(image.at(4, 2, 1), 0);
     EXPECT_GT(image.at(1, 6, 1), 0);
     EXPECT_GT(image.at(5, 6, 1), 0);
   }
   const auto buffer = make_buffer(8, 8);
+  Film film(*buffer);
   ImageTile tile;
   tile.begin(*buffer, buffer->area());
   for (unsigned i = 0; i < 100; ++i) tile.contribute({1, 1}, 1, 1, i, Spectrum(-1.0f), wavelengths);
-  buffer->merge(tile);
-  EXPECT_EQ(buffer->bad_samples(), 100u);
-  EXPECT_EQ(buffer->first_bad_samples().size(), 32u);
+  film.merge(tile);
+  EXPECT_EQ(film.bad_samples(), 100u);
+  EXPECT_EQ(film.first_bad_samples().size(), 32u);
 }
 
-TEST(ImageBuffer, SplatsOfAnEvenFilmAreEvenUpToTheEdge) {
+TEST(Film, SplatsOfAnEvenFilmAreEvenUpToTheEdge) {
   // 100 x 100 splats a pixel on a lattice, each of the light of one path: every filter must give back the value itself,
   // at the edge too, where part of the filter lies outside.
   for (const auto& f : all_filters()) {
     const auto buffer = make_buffer(6, 5, f);
+    Film film(*buffer);
     ImageTile tile;
     tile.begin(*buffer, buffer->area());
     constexpr int n = 100;
@@ -217,61 +224,69 @@ TEST(ImageBuffer, SplatsOfAnEvenFilmAreEvenUpToTheEdge) {
         tile.count_path();
         tile.splat({(float(i) + 0.5f) / n, (float(j) + 0.5f) / n}, 0, 0, 0, Spectrum(2.0f), wavelengths, 1);
       }
-    buffer->merge(tile);
+    film.merge(tile);
     const double expected = to_xyz(Spectrum(2.0f), wavelengths).y;
-    const Image image = buffer->develop();
+    const Image image = film.develop();
     for (int y = 0; y < 5; ++y)
       for (int x = 0; x < 6; ++x) EXPECT_NEAR(image.at(x, y, 1), expected, 0.02 * expected) << name(*f) << x << ' ' << y;
   }
 }
 
-TEST(ImageBuffer, StateRoundTrip) {
-  const auto a = make_buffer(9, 7), b = make_buffer(9, 7);
-  a->layers = b->layers = {"albedo", "object"};
-  a->prepare();
-  b->prepare();
-  const auto samples = random_samples(a->area(), 4, 5), more = random_samples(a->area(), 4, 6);
-  render(*a, samples, 4);
+TEST(Film, StateRoundTrip) {
+  const auto buffer = make_buffer(9, 7);
+  buffer->layers = {"albedo", "object"};
+  buffer->prepare();
+  Film a(*buffer), b(*buffer);
+  const auto samples = random_samples(buffer->area(), 4, 5), more = random_samples(buffer->area(), 4, 6);
+  render(*buffer, a, samples, 4);
   ImageTile tile;
-  tile.begin(*a, a->area());
-  tile.features(2, 3, {{0.1f, 0.2f, 0.3f}, {0, 0, 1}, 2, 7});
+  tile.begin(*buffer, buffer->area());
+  tile.features(2, 3, 0, {{0.1f, 0.2f, 0.3f}, {0, 0, 1}, 2, 7});
   tile.splat({1.2f, 3.4f}, 1, 3, 0, Spectrum(1.0f), wavelengths, 2);
   tile.contribute({1, 1}, 1, 1, 3, Spectrum(-1.0f), wavelengths);
-  a->merge(tile);
-  const std::vector<std::byte> state = a->save_state();
-  b->load_state(state);
-  EXPECT_EQ(b->save_state(), state);
-  EXPECT_EQ(a->develop().values, b->develop().values);
-  EXPECT_EQ(b->first_bad_samples().at(0).sample, 3u);
-  render(*a, more, 4);
-  render(*b, more, 4);
-  EXPECT_EQ(a->save_state(), b->save_state());
+  a.merge(tile);
+  a.end_step();
+  const std::vector<std::byte> state = a.save_state();
+  b.load_state(state);
+  EXPECT_EQ(b.save_state(), state);
+  EXPECT_EQ(a.develop().values, b.develop().values);
+  EXPECT_EQ(b.first_bad_samples().at(0).sample, 3u);
+  render(*buffer, a, more, 4);
+  render(*buffer, b, more, 4);
+  EXPECT_EQ(a.save_state(), b.save_state());
 
-  const std::vector<std::byte> before = b->save_state();
+  const std::vector<std::byte> before = b.save_state();
   for (size_t length = 0; length < state.size(); length += length < 100 ? 1 : 97)
-    EXPECT_THROW(b->load_state(std::span(state).first(length)), Error) << length;
+    EXPECT_THROW(b.load_state(std::span(state).first(length)), Error) << length;
   std::vector<std::byte> longer = state;
   longer.push_back({});
-  EXPECT_THROW(b->load_state(longer), Error);
-  EXPECT_EQ(b->save_state(), before);
-  EXPECT_THROW(make_buffer(7, 9)->load_state(state), Error);
-  EXPECT_THROW(make_buffer(9, 7)->load_state(state), Error);  // other layers
-  const auto other = make_buffer(9, 7, make_filter("BoxFilter"));
-  EXPECT_THROW(other->load_state(state), Error);
+  EXPECT_THROW(b.load_state(longer), Error);
+  EXPECT_EQ(b.save_state(), before);
+  const auto refused = [&](const Ref<ImageBuffer>& other, Estimator estimator) {
+    Film film(*other, estimator);
+    EXPECT_THROW(film.load_state(state), Error);
+    EXPECT_THROW(film.add_state(state), Error);
+  };
+  refused(make_buffer(7, 9), Estimator::independent);
+  refused(make_buffer(9, 7), Estimator::independent);  // other layers
+  refused(make_buffer(9, 7, make_filter("BoxFilter")), Estimator::independent);
+  refused(buffer, Estimator::correlated);
 }
 
-TEST(ImageBuffer, CropIsThePartOfThePicture) {
+TEST(Film, CropIsThePartOfThePicture) {
   const auto buffer = make_buffer(20, 10, make_filter("BoxFilter"));
+  Film film(*buffer);
   const auto samples = random_samples(buffer->area(), 4, 9);
-  render(*buffer, samples, 8);
+  render(*buffer, film, samples, 8);
   const auto part = make_buffer(20, 10, make_filter("BoxFilter"));
   part->crop = {5, 2, 11, 9};
   part->prepare();
+  Film part_film(*part);
   std::vector<std::vector<Sample>> inner;
   for (int y = 2; y < 9; ++y)
     for (int x = 5; x < 11; ++x) inner.push_back(samples[size_t(y * 20 + x)]);
-  render(*part, inner, 4);
-  const Image whole = buffer->develop(), crop = part->develop();
+  render(*part, part_film, inner, 4);
+  const Image whole = film.develop(), crop = part_film.develop();
   ASSERT_EQ(crop.width, 6);
   ASSERT_EQ(crop.height, 7);
   for (int y = 0; y < 7; ++y)
@@ -286,42 +301,49 @@ TEST(ImageBuffer, CropIsThePartOfThePicture) {
   }
 }
 
-TEST(ImageBuffer, LayersAreMeansOfTheFirstHits) {
+TEST(Film, LayersAreMeansOfTheFirstHits) {
   const auto buffer = make_buffer(4, 4);
   buffer->layers = {"albedo", "normal", "depth", "object"};
   buffer->prepare();
   EXPECT_TRUE(buffer->wants_features());
+  Film film(*buffer);
   ImageTile tile;
   tile.begin(*buffer, buffer->area());
-  tile.features(1, 2, {{0.2f, 0.4f, 0.6f}, {0, 0, 1}, 3, 5});
-  tile.features(1, 2, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 5, 6});
-  tile.features(1, 2, {});  // met nothing
-  buffer->merge(tile);
+  tile.features(1, 2, 4, {{0.2f, 0.4f, 0.6f}, {0, 0, 1}, 3, 5});
+  tile.features(1, 2, 2, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 5, 6});
+  tile.features(1, 2, 9, {});  // met nothing
+  film.merge(tile);
   tile.begin(*buffer, buffer->area());
-  tile.features(1, 2, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 7, 8});
-  buffer->merge(tile);
-  const Image image = buffer->develop();
+  tile.features(1, 2, 3, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 7, 8});
+  film.merge(tile);
+  const Image image = film.develop();
   ASSERT_EQ(image.channels.size(), 11u);
   EXPECT_EQ(image.channels[3], "albedo.R");
   EXPECT_NEAR(image.at(1, 2, 3), 1.0 / 4, 1e-6);
   EXPECT_NEAR(image.at(1, 2, 7), 0.5, 1e-6);
   EXPECT_NEAR(image.at(1, 2, 9), 5, 1e-6);  // the mean of 3, 5, 7: what met nothing has no depth
-  EXPECT_EQ(image.at(1, 2, 10), 5);
+  EXPECT_EQ(image.at(1, 2, 10), 6);         // of the least sample, whenever it came
   EXPECT_EQ(image.at(0, 0, 9), 0);
   buffer->layers = {"albdo"};
   EXPECT_THROW(buffer->prepare(), Error);
 }
 
-TEST(ImageBuffer, PreparingAgainKeepsThePictureUnlessTheFilmChanged) {
+TEST(Film, PreparingAgainKeepsThePictureUnlessTheFilmChanged) {
   const auto buffer = make_buffer(6, 6);
-  render(*buffer, random_samples(buffer->area(), 2, 1), 6);
-  const Image before = buffer->develop();
+  Film film(*buffer);
+  render(*buffer, film, random_samples(buffer->area(), 2, 1), 6);
+  const Image before = film.develop();
+  buffer->layers = {"variance"};
   buffer->prepare();
-  EXPECT_EQ(buffer->develop().values, before.values);
+  EXPECT_TRUE(film.follow(*buffer));
+  const Image after = film.develop();
+  for (int x = 0; x < 6; ++x) EXPECT_EQ(after.at(x, 3, 1), before.at(x, 3, 1));
+  EXPECT_EQ(after.channels.size(), 4u);
   buffer->filter = make_filter("BoxFilter");
   buffer->prepare();
-  EXPECT_EQ(buffer->samples(), 0u);
-  for (const double v : buffer->develop().values) EXPECT_EQ(v, 0);
+  EXPECT_FALSE(film.follow(*buffer));
+  EXPECT_EQ(film.samples(), 0u);
+  for (const double v : film.develop().values) EXPECT_EQ(v, 0);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ Tiles render(const std::string& renderer, const std::string& objects) {
   for (int pass = 0; pass < passes; ++pass) {
     job->seed = std::uint64_t(pass + 1);
     job->render();
-    const Image image = job->image->develop();
+    const Image image = job->film().develop();
     double sums[tiles] = {};
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) sums[y / tile * (width / tile) + x / tile] += image.at(x, y, 1) / (tile * tile);

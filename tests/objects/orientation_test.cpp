@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Points, UvOf, testing::ValuesIn(uv_cases));
 Point2 brightest(const std::string& camera, const std::string& objects, int size = 9) {
   const Ref<Job> job = load_job_text(job_text("PathTracer { samples: 64, max_depth: 1 }", camera, size, objects), "view.etd");
   job->render();
-  const Image image = job->image->develop();
+  const Image image = job->film().develop();
   Point2 at{-1, -1};
   double most = 0;
   for (int y = 0; y < size; ++y)
@@ -205,7 +205,7 @@ TEST(Orientation, AProjectedImage) {
                      file.path + "\", fov: 90 } }\n"),
         "projector.etd");
     job->render();
-    const Image image = job->image->develop();
+    const Image image = job->film().develop();
     Point2 at{-1, -1};
     double most = 0;
     for (int j = 0; j < 2; ++j)

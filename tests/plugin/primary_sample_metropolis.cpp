@@ -27,6 +27,7 @@ class PrimarySampleMetropolis final : public Renderer {
   }
   PathClasses finds() const override { return inner ? inner->finds() : no_paths; }
   Expectation expectation() const override { return inner ? inner->expectation() : Expectation::unbiased; }
+  Estimator estimator() const override { return Estimator::correlated; }
 
  private:
   std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;

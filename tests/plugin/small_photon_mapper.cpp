@@ -33,6 +33,7 @@ class SmallPhotonMapper final : public Renderer {
   }
   Expectation expectation() const override { return Expectation::consistent; }
   std::uint32_t samples_per_step(std::uint32_t) const override { return 1; }
+  Estimator estimator() const override { return Estimator::correlated; }
 
  private:
   std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;

@@ -12,14 +12,14 @@ namespace {
 
 TEST(Fireflies, those_listed_are_the_brightest_and_replay_to_the_same) {
   const Ref<Job> job = prepared(glass_text(8));
-  job->image->keep_largest(5);
+  job->film().keep_largest(5);
   job->render();
   const std::string text = fireflies_text(*job, "etendue render a.etd -D n=1");
   const std::vector<Listed> list = listed_in(text);
   ASSERT_EQ(list.size(), 5u) << text;
   EXPECT_TRUE(has(text, "  etendue render a.etd -D n=1 --pixel ")) << text;
   const Image picture = job->picture();
-  const std::vector<LargeSample> largest = job->image->largest_samples();
+  const std::vector<LargeSample> largest = job->film().largest_samples();
   for (size_t i = 0; i < list.size(); ++i) {
     const Listed& l = list[i];
     if (i > 0) {
@@ -40,7 +40,7 @@ TEST(Fireflies, places_in_a_crop_and_of_splats) {
   const Ref<Job> job = prepared(glass_text(8));
   job->image->crop = {2, 3, 12, 13};
   prepare_tree(*job);
-  job->image->keep_largest(3);
+  job->film().keep_largest(3);
   job->render();
   const Image picture = job->picture();
   const std::vector<Listed> list = listed_in(fireflies_text(*job, "c"));
@@ -52,8 +52,8 @@ TEST(Fireflies, places_in_a_crop_and_of_splats) {
   job->render();
   const std::string text = fireflies_text(*job, "c");
   EXPECT_TRUE(has(text, "splatted at (2.50, 3.25), ")) << text;
-  const double value = job->image->develop().at(0, 0, 1);
-  const std::vector<LargeSample> largest = job->image->largest_samples();
+  const double value = job->film().develop().at(0, 0, 1);
+  const std::vector<LargeSample> largest = job->film().largest_samples();
   ASSERT_EQ(listed_in(text).size(), 3u);
   for (size_t i = 0; i < 3; ++i) {
     const Listed l = listed_in(text)[i];
@@ -72,13 +72,13 @@ TEST(Fireflies, places_in_a_crop_and_of_splats) {
         if (x == 2 && y == 3) own += path.luminance / 4;
       }
   EXPECT_NEAR(sum + own, value, 1e-6 * value);
-  EXPECT_EQ(bad, job->image->bad_samples());
+  EXPECT_EQ(bad, job->film().bad_samples());
   EXPECT_GT(bad, 0u);
 }
 
 TEST(Fireflies, a_black_picture_has_none) {
   const Ref<Job> job = prepared(test::job_text("PathTracer { samples: 2 }", camera, 4, floor_disc));
-  job->image->keep_largest(3);
+  job->film().keep_largest(3);
   job->render();
   EXPECT_EQ(fireflies_text(*job, "c"), "No sample brought any light.\n");
 }

@@ -32,7 +32,7 @@ inline Ref<Job> job_of(const std::string& text, int samples) {
 inline Ref<Job> ball(int samples) { return job_of(ball_text(), samples); }
 
 /// All that was collected, bit by bit.
-inline std::vector<std::byte> film(const Job& job) { return job.image->save_state(); }
+inline std::vector<std::byte> film(const Job& job) { return job.film().save_state(); }
 
 /// The largest difference of two pictures in any channel, relative to that channel's largest value.
 inline double relative_difference(const Image& a, const Image& b) {

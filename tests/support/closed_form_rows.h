@@ -63,12 +63,12 @@ inline void expect_row(const Case& c) {
   for (int i = 0; i < renders; ++i) {
     job->seed = std::uint64_t(i + 1);
     job->render();
-    const Image image = job->image->develop();
+    const Image image = job->film().develop();
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) sum += image.at(x, y, 1);
     means.push_back(sum / (double(image.width) * image.height));
-    bad += job->image->bad_samples();
+    bad += job->film().bad_samples();
   }
   const double mean = std::accumulate(means.begin(), means.end(), 0.0) / renders;
   double squares = 0;

@@ -30,7 +30,7 @@ inline Measured measure(const Ref<Job>& job) {
     }
   m.mean = (1 / pixels) * m.mean;
   m.error = std::sqrt(sum) / pixels;
-  m.bad = job->image->bad_samples();
+  m.bad = job->film().bad_samples();
   return m;
 }
 

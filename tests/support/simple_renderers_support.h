@@ -101,7 +101,7 @@ inline double agreement(const std::string& a, const std::string& b, const std::s
     const Ref<Job> job = load_job_text(job_text(renderer, camera, size, objects), "test.etd");
     job->image->layers = {"variance"};
     job->render();
-    EXPECT_EQ(job->image->bad_samples(), 0u);
+    EXPECT_EQ(job->film().bad_samples(), 0u);
     return job->picture();
   };
   const Image first = render(a), second = render(b);

@@ -39,8 +39,8 @@ Mean rendered(const std::string& renderer, int samples, const std::string& camer
   for (int i = 0; i < renders; ++i) {
     job->seed = std::uint64_t(i + 1);
     job->render();
-    const Image image = job->image->develop();
-    EXPECT_EQ(job->image->bad_samples(), 0u);
+    const Image image = job->film().develop();
+    EXPECT_EQ(job->film().bad_samples(), 0u);
     double mean = 0;
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) mean += image.at(x, y, 1) / (double(image.width) * image.height);

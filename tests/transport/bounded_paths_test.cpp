@@ -166,7 +166,7 @@ TEST(BoundedPaths, a_thousand_sheets_are_no_deep_recursion) {
     job->renderer->samples = 1;
     job->threads = 1;
     job->render();
-    EXPECT_NEAR(job->image->develop().at(1, 1, 1), 1, 0.05) << renderer;
+    EXPECT_NEAR(job->film().develop().at(1, 1, 1), 1, 0.05) << renderer;
   }
 }
 

@@ -13,7 +13,7 @@ TEST(CornellBox, AgreesWithMitsuba) {
   const Ref<Job> job = load_job(ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd");
   job->renderer->samples = 128;
   job->render();
-  EXPECT_EQ(job->image->bad_samples(), 0u);
+  EXPECT_EQ(job->film().bad_samples(), 0u);
   const Image image = job->picture();
   ASSERT_EQ(image.width, 256);
   ASSERT_EQ(image.height, 256);

@@ -18,7 +18,7 @@ struct Estimate {
 Estimate estimate(const std::string& text) {
   const Ref<Job> job = load_job_text(text, "test.etd");
   job->render();
-  const Image image = job->image->develop();
+  const Image image = job->film().develop();
   double sum = 0, squares = 0;
   const double n = double(image.width) * image.height;
   for (int y = 0; y < image.height; ++y)
@@ -26,7 +26,7 @@ Estimate estimate(const std::string& text) {
       sum += image.at(x, y, 1);
       squares += image.at(x, y, 1) * image.at(x, y, 1);
     }
-  EXPECT_EQ(job->image->bad_samples(), 0u);
+  EXPECT_EQ(job->film().bad_samples(), 0u);
   return {sum / n, std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1))};
 }
 

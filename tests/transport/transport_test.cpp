@@ -21,11 +21,11 @@ Estimate estimate(const std::string& renderer, int samples, const std::string& c
   for (int i = 0; i < runs; ++i) {
     job->seed = std::uint64_t(i + 1);
     job->render();
-    const Image image = job->image->develop();
+    const Image image = job->film().develop();
     double mean = 0;
     for (int y = 0; y < 12; ++y)
       for (int x = 0; x < 12; ++x) mean += image.at(x, y, 1) / 144;
-    EXPECT_EQ(job->image->bad_samples(), 0u);
+    EXPECT_EQ(job->film().bad_samples(), 0u);
     sum += mean / runs;
     squares += mean * mean / runs;
   }
@@ -105,7 +105,7 @@ TEST(Transport, DepthIsMeasuredFromTheCameraThroughBoundaries) {
                       "test.etd");
     job->image->layers = {"depth"};
     job->render();
-    EXPECT_NEAR(job->image->develop().at(1, 1, 3), 4, 1e-3) << renderer;
+    EXPECT_NEAR(job->film().develop().at(1, 1, 3), 4, 1e-3) << renderer;
   }
 }
 

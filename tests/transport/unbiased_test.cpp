@@ -40,7 +40,7 @@ Image render(const std::string& renderer, const std::string& members, int sample
       seed, renderer, samples, members, side, side, filter, shader, more);
   const Ref<Job> job = load_job_text(text, "unbiased.etd");
   job->render();
-  EXPECT_EQ(job->image->bad_samples(), 0u);
+  EXPECT_EQ(job->film().bad_samples(), 0u);
   return job->picture();
 }
 
@@ -185,9 +185,10 @@ TEST(Unbiased, TheFilmAtItsBorder) {
         buffer->width = buffer->height = size;
         buffer->filter = filter;
         buffer->prepare();
+        Film film(*buffer);
         ImageTile tile;
         for (int trial = 0; trial < 6000; ++trial) {
-          buffer->clear();
+          film.clear();
           tile.begin(*buffer, buffer->area());
           for (int y = 0; y < size; ++y)
             for (int x = 0; x < size; ++x)
@@ -201,8 +202,8 @@ TEST(Unbiased, TheFilmAtItsBorder) {
                 else
                   tile.contribute(at, x, y, 0, light, w);
               }
-          buffer->merge(tile);
-          const Image image = buffer->develop();
+          film.merge(tile);
+          const Image image = film.develop();
           for (int i = 0; i < size * size; ++i) means[size_t(i)].add(image.at(i % size, i / size, 1) / unit.y);
         }
         for (int i = 0; i < size * size; ++i) {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "etendue/camera.h"
-#include "etendue/film/image_buffer.h"
+#include "etendue/film/film.h"
 #include "etendue/language/language.h"
 #include "etendue/output.h"
 #include "etendue/render/renderer.h"
@@ -23,7 +23,7 @@ struct Progress {
   double seconds = 0;                             ///< since the first pass began
   double seconds_left = 0;                        ///< estimated; negative: unknown
   double samples_per_second = 0;                  ///< over the whole picture
-  double error = 0;                               ///< relative, see ImageBuffer::relative_error; only when asked for
+  double error = 0;                               ///< relative, see FilmSnapshot::relative_error; only when asked for
   bool finished = false;
 };
 
@@ -83,6 +83,9 @@ class Job final : public Component {
   /// The samples of each pixel that the picture holds, in order.
   const std::vector<IndexRange>& samples_done() const { return done_; }
 
+  /// What has been collected. The job, or at least its image, must be prepared.
+  Film& film() const;
+
   /// Takes over the state of a checkpoint as it is. The image must be prepared.
   void restore(const Checkpoint&);
 
@@ -103,6 +106,7 @@ class Job final : public Component {
   RenderContext context() const;
   void count_from(const DoublePoint3& centre);
   IndexRange wanted_samples() const;
+  void begin_film();
   Ended run(const Checkpoint* from, const std::string& from_file);
 
   std::unique_ptr<RenderProcess> process_;
@@ -112,6 +116,7 @@ class Job final : public Component {
   std::string checkpoint_failure_;
   bool prepared_ = false;
   DoublePoint3 centre_;
+  std::unique_ptr<Film> film_;
 };
 
 /// Reads a render description; throws Errors with everything wrong that can be found in one run. Not prepared yet.

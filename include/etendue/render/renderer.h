@@ -5,6 +5,7 @@
 
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
+#include "etendue/film/film.h"
 #include "etendue/light_sampler.h"
 #include "etendue/render/process.h"
 #include "etendue/sampler.h"
@@ -50,6 +51,8 @@ class Renderer : public Component {
   /// Whether a step needs those before it: then no part of a render can be made by itself.
   virtual bool steps_depend() const { return false; }
   virtual Expectation expectation() const { return Expectation::unbiased; }
+  /// How its samples depend on one another, which says what the film may tell of their error.
+  virtual Estimator estimator() const { return Estimator::independent; }
   /// What makes expectations differ from the truth, in words for the user: what `expectation` says, and `map_filter`. Empty:
   /// nothing does.
   std::string bias() const;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "etendue/core/arena.h"
-#include "etendue/film/image_buffer.h"
+#include "etendue/film/image_tile.h"
 
 namespace etendue {
 

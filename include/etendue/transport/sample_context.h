@@ -6,7 +6,7 @@
 
 #include "etendue/camera.h"
 #include "etendue/core/arena.h"
-#include "etendue/film/image_buffer.h"
+#include "etendue/film/image_tile.h"
 #include "etendue/numbers.h"
 #include "etendue/scene.h"
 #include "etendue/transport/observer.h"
@@ -18,7 +18,7 @@ namespace etendue {
 struct RenderContext {
   const Scene& scene;
   const Camera& camera;
-  ImageBuffer& image;
+  const ImageBuffer& image;
   const WavelengthSampler& wavelengths;
   std::uint64_t seed = 0;
 };

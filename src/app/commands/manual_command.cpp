@@ -34,7 +34,7 @@ void render_picture(const PictureScene& scene, const std::string& name, const st
   job->renderer->samples = samples;
   if (job->render() != Ended::samples) throw Error("interrupted");
   if (scene.measured) {  // the mean luminance becomes that of a grey card
-    const Image image = job->image->develop();
+    const Image image = job->film().develop();
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) sum += image.at(x, y, 1);

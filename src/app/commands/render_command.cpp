@@ -51,12 +51,12 @@ std::string_view kind_text(BadSample::Kind kind) {
   return "";
 }
 
-void report_bad_samples(const ImageBuffer& image, const RenderOptions& options) {
-  if (image.bad_samples() == 0) return;
+void report_bad_samples(const Film& film, const RenderOptions& options) {
+  if (film.bad_samples() == 0) return;
   fmt::print(stderr, "{} of {} samples were not finite and non-negative; they count as black. To see the path of one:\n",
-             grouped(image.bad_samples()), grouped(image.samples()));
+             grouped(film.bad_samples()), grouped(film.samples()));
   constexpr size_t most = 5;
-  const auto& first = image.first_bad_samples();
+  const auto& first = film.first_bad_samples();
   for (size_t i = 0; i < std::min(first.size(), most); ++i) {
     const BadSample& bad = first[i];
     fmt::print(stderr, "  {} --pixel {},{} --sample {}    # {}\n", options.picture_command(), bad.x, bad.y, bad.sample,
@@ -91,7 +91,7 @@ void report_result(const Progress& progress, Ended ended, const std::vector<std:
                                    {"seconds", progress.seconds},
                                    {"samples", progress.samples},
                                    {"samples_per_second", progress.samples_per_second},
-                                   {"bad_samples", job.image->bad_samples()},
+                                   {"bad_samples", job.film().bad_samples()},
                                    {"ended", name(ended)}};
     if (!job.checkpoint_file.empty()) json["checkpoint"] = job.checkpoint_file;
     if (job.passes) json["samples_per_pass"] = job.samples_per_pass();
@@ -131,7 +131,7 @@ int render(const RenderOptions& options) {
   prepare_tree(*job);
   show_warnings(scene_warnings(*job));
   advise(*job);
-  if (options.fireflies > 0) job->image->keep_largest(size_t(options.fireflies));
+  if (options.fireflies > 0) job->film().keep_largest(size_t(options.fireflies));
 
   const ProgressDisplay::Kind kind = ProgressDisplay::kind_for(options.progress, options.quiet);
   ProgressDisplay display(kind, options.open_ended());
@@ -151,7 +151,7 @@ int render(const RenderOptions& options) {
 
   if (!job->checkpoint_failure().empty()) errors.emplace_back(job->checkpoint_failure());
   if (!written.empty()) show_warnings(picture_warnings(*job));
-  report_bad_samples(*job->image, options);
+  report_bad_samples(job->film(), options);
   report_result(display.last(), ended, written, kind, *job, options);
   if (options.fireflies > 0 && ended != Ended::aborted)
     report_fireflies(*job, options.picture_command(), kind == ProgressDisplay::Kind::json ? stderr : stdout);

@@ -43,8 +43,8 @@ statistics::Mean picture_means(Job& job, int renders, std::uint64_t& bad) {
   for (int i = 0; i < renders; ++i) {
     job.seed = std::uint64_t(i + 1);
     job.render();
-    bad += job.image->bad_samples();
-    const Image image = job.image->develop();
+    bad += job.film().bad_samples();
+    const Image image = job.film().develop();
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) sum += image.at(x, y, 1);

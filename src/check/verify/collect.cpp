@@ -188,14 +188,14 @@ class Restored {
 /// One more pass; false when it was interrupted.
 bool add_pass(Job& job, const Layout& layout, double factor, Measured& measured, RendererRun& run) {
   if (job.render() != Ended::samples) return false;
-  const Image picture = job.image->develop();
+  const Image picture = job.film().develop();
   measured.passes.push_back(means(layout, picture));
   for (double& value : measured.passes.back()) value *= factor;
   const size_t channels = picture.channels.size();
   for (size_t i = 0; i < run.picture.values.size(); ++i)
     run.picture.values[i] += factor * picture.values[i / 3 * channels + i % 3];
-  run.bad_samples += job.image->bad_samples();
-  run.samples += job.image->samples();
+  run.bad_samples += job.film().bad_samples();
+  run.samples += job.film().samples();
   return true;
 }
 

@@ -1,0 +1,251 @@
+// Film: what comes in, step by step.
+
+#include "etendue/film/film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "film_members.h"
+#include "film_values.h"
+#include "filter_window.h"
+
+namespace etendue {
+
+Film::Film(const ImageBuffer& image, Estimator estimator) : members_(std::make_unique<Members>()) {
+  members_->format = image.format();
+  members_->estimator = estimator;
+}
+Film::~Film() = default;
+
+Estimator Film::estimator() const { return members_->estimator; }
+
+bool Film::follow(const ImageBuffer& image) {
+  const std::lock_guard lock(members_->mutex);
+  const bool same = members_->format->collects_as(*image.format());
+  members_->format = image.format();
+  if (!same) members_->empty();
+  return same;
+}
+
+void Film::clear() {
+  const std::lock_guard lock(members_->mutex);
+  members_->empty();
+}
+
+// Memory is taken when it is first needed: a picture that is only described costs nothing.
+void Film::Members::empty() {
+  totals = {};
+  before_step.reset();
+  step = {};
+  largest.clear();
+}
+
+// ---- a step -------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+[[noreturn]] void out_of_memory(const PictureFormat& format) {
+  throw Error(
+      fmt::format("there is not enough memory for a picture of {} x {} pixels", format.area.width(), format.area.height()));
+}
+
+}  // namespace
+
+/// A list of the step at hand, with room for all pixels.
+std::vector<double>& Film::Members::list(List which) {
+  std::vector<double>& list = step.lists[which];
+  if (list.empty()) list.resize(format->pixels() * list_stride(which, *format));
+  return list;
+}
+
+void Film::merge(const ImageTile& tile) {
+  Members& m = *members_;
+  const std::lock_guard lock(m.mutex);
+  if (!tile.format_) return;  // never begun
+  if (tile.format_ != m.format && !tile.format_->collects_as(*m.format)) throw Error("the tile is of another picture");
+  try {
+    if (m.step.begun && tile.block_ != m.step.block) {
+      if (!m.before_step) m.before_step = std::make_unique<Totals>(m.totals);
+      m.add_step();
+    }
+    m.step.begun = true;
+    m.step.block = tile.block_;
+    add_tile(tile);
+  } catch (const std::bad_alloc&) {
+    out_of_memory(*m.format);
+  }
+}
+
+void Film::add_tile(const ImageTile& tile) {
+  Members& m = *members_;
+  const PictureFormat& format = *m.format;
+  const auto add = [&](const PixelArea& part, List which, const std::vector<double>& from) {
+    std::vector<double>& to = m.list(which);
+    const size_t stride = list_stride(which, format), row = stride * size_t(part.width());
+    for (int y = part.y0; y < part.y1; ++y) {
+      const double* source = &from[size_t(y - part.y0) * row];
+      double* target = &to[stride * format.index(part.x0, y)];
+      bool good = true;
+      for (size_t i = 0; i < row; ++i) {
+        target[i] += source[i];
+        good &= std::abs(target[i]) <= ExactSums::largest_addend;
+      }
+      if (!good) [[unlikely]]
+        m.complain(target, row, stride, part.x0, y);
+    }
+  };
+  FilmCounts& counts = m.step.counts;
+  if (counts.samples.empty()) counts.samples.resize(format.pixels());
+  if (tile.lit_ && !tile.light_.empty()) add(tile.extent_, light_list, tile.light_);
+  if (tile.lit_ && !tile.lengths_.empty()) add(tile.extent_, length_list, tile.lengths_);
+  if (!tile.weights_.empty()) add(tile.area_, weight_list, tile.weights_);
+  if (!tile.features_.empty()) {
+    add(tile.area_, feature_list, tile.features_);
+    if (counts.features.empty()) counts.features.resize(format.pixels());
+  }
+  for (int y = tile.area_.y0; y < tile.area_.y1; ++y)
+    for (int x = tile.area_.x0; x < tile.area_.x1; ++x) {
+      counts.samples[format.index(x, y)] += tile.samples_[tile.own_pixel(x, y)];
+      if (!tile.features_.empty()) counts.features[format.index(x, y)].add(tile.feature_counts_[tile.own_pixel(x, y)]);
+    }
+  if (!tile.splats_.empty()) add_splats(tile);
+  for (const LargeSample& s : tile.largest_) ImageTile::keep_larger(m.step.largest, s, m.largest_wanted);
+  counts.add_bad(tile.bad_);
+  counts.paths += tile.paths_;
+  counts.bad_count += tile.bad_count_;
+}
+
+void Film::Members::complain(const double* values, size_t count, size_t stride, int x0, int y) const {
+  for (size_t i = 0; i < count; ++i)
+    if (!(std::abs(values[i]) <= ExactSums::largest_addend))
+      throw Error(fmt::format("the light of pixel {},{} adds up to {}, which is too large to be summed", x0 + int(i / stride),
+                              y, values[i]));
+}
+
+// The splats of one sample are one outcome: what they bring to a pixel is added before it is squared, as (a + b)^2 =
+// a^2 + b^2 + 2 a b where two of them meet.
+void Film::add_splats(const ImageTile& tile) {
+  Members& m = *members_;
+  const PictureFormat& format = *m.format;
+  std::vector<double>& sums = m.list(splat_list);
+  double* by_length = format.path_lengths > 0 ? m.list(length_splat_list).data() : nullptr;
+  constexpr int size = PictureFormat::table_size;
+  struct Window {
+    FilterWindow across, down;
+    double luminance;
+    float weight(const PictureFormat& f, int x, int y) const {
+      return f.table[size_t(down.cells[size_t(y - down.first)]) * size + size_t(across.cells[size_t(x - across.first)])];
+    }
+  };
+  const auto along = [&](float film, int low, int high) {
+    return format.box ? FilterWindow::pixel(std::min(int(film), high - 1)) : FilterWindow(film, format.radius, size, low, high);
+  };
+  std::vector<Window> path;
+  for (const ImageTile::Splat& splat : tile.splats_) {
+    if (!splat.same_path) path.clear();
+    const Xyz& value = splat.value;
+    const Window window{along(splat.film.x, format.area.x0, format.area.x1),
+                        along(splat.film.y, format.area.y0, format.area.y1), value.y};
+    const int x1 = window.across.first + window.across.count, y1 = window.down.first + window.down.count;
+    for (int y = window.down.first; y < y1; ++y)
+      for (int x = window.across.first; x < x1; ++x) {
+        const double weight = double(window.weight(format, x, y));
+        double* sum = &sums[4 * format.index(x, y)];
+        sum[0] += weight * value.x;
+        sum[1] += weight * value.y;
+        sum[2] += weight * value.z;
+        sum[3] += weight * value.y * weight * value.y;
+        if (!(std::abs(sum[3]) + std::abs(sum[0]) + std::abs(sum[2]) <= ExactSums::largest_addend)) [[unlikely]]
+          m.complain(sum, 4, 4, x, y);
+        if (!by_length || splat.length < 1) continue;
+        double* part = &by_length[3 * (size_t(format.path_lengths) * format.index(x, y) +
+                                       size_t(std::min(splat.length, format.path_lengths)) - 1)];
+        part[0] += weight * value.x;
+        part[1] += weight * value.y;
+        part[2] += weight * value.z;
+      }
+    for (const Window& other : path)
+      for (int y = std::max(window.down.first, other.down.first); y < std::min(y1, other.down.first + other.down.count); ++y)
+        for (int x = std::max(window.across.first, other.across.first);
+             x < std::min(x1, other.across.first + other.across.count); ++x)
+          sums[4 * format.index(x, y) + 3] += 2 * (double(window.weight(format, x, y)) * window.luminance) *
+                                              (double(other.weight(format, x, y)) * other.luminance);
+    path.push_back(window);
+  }
+}
+
+// ---- whole steps ----------------------------------------------------------------------------------------------------------
+
+void Film::end_step() {
+  Members& m = *members_;
+  const std::lock_guard lock(m.mutex);
+  try {
+    if (m.step.begun) m.add_step();
+  } catch (const std::bad_alloc&) {
+    out_of_memory(*m.format);
+  }
+  m.before_step.reset();
+  for (const LargeSample& s : m.step.largest) ImageTile::keep_larger(m.largest, s, m.largest_wanted);
+  m.step.largest.clear();
+}
+
+void Film::drop_step() {
+  Members& m = *members_;
+  const std::lock_guard lock(m.mutex);
+  if (!m.step.begun && !m.before_step) return;  // keeps the memory for the next one
+  if (m.before_step) m.totals = std::move(*m.before_step);
+  m.before_step.reset();
+  m.step = {};
+}
+
+/// The squares that batches are judged by: for each pixel the step's mean, squared, times its samples.
+void Film::Members::note_batch(FilmSnapshot::Values& values) const {
+  std::vector<double>& batches = values.lists[batch_list];
+  batches.assign(format->pixels(), 0);
+  const bool even = values.even();
+  for (int y = format->area.y0; y < format->area.y1; ++y)
+    for (int x = format->area.x0; x < format->area.x1; ++x) {
+      const size_t pixel = format->index(x, y);
+      const double mean = values.luminance(pixel, values.scales(x, y, even));
+      batches[pixel] = double(values.counts.paths) * mean * mean;
+    }
+}
+
+/// Adds the step at hand, or the part of it that is of one block, to the sums. Throws before anything changes.
+void Film::Members::add_step() {
+  if (totals.steps >= ExactSums::most_addends)
+    throw Error(fmt::format("a film cannot take more than {} steps", ExactSums::most_addends));
+  totals.counts.require_room_for(step.counts);
+  if (estimator == Estimator::correlated) {
+    FilmSnapshot::Values values{format, estimator, std::move(step.lists), std::move(step.counts), 1};
+    note_batch(values);
+    step.lists = std::move(values.lists);
+    step.counts = std::move(values.counts);
+  }
+  for (size_t p = 0; p < planes.size(); ++p)
+    if (!step.lists[planes[p].list].empty() && totals.sums[p].empty() && kept(planes[p], estimator))
+      totals.sums[p] = ExactSums(format->pixels() * groups_per_pixel(planes[p], *format), planes[p].group);
+  over_pixels(format->pixels(), [&](size_t begin, size_t end) {
+    for (size_t p = 0; p < planes.size(); ++p) {
+      const auto& [list, offset, group] = planes[p];
+      if (step.lists[list].empty() || !kept(planes[p], estimator)) continue;
+      const size_t stride = list_stride(list, *format), groups = groups_per_pixel(planes[p], *format);
+      totals.sums[p].add(begin * groups, end * groups, step.lists[list].data() + begin * stride + offset, stride / groups);
+    }
+    for (size_t l = 0; l < list_count; ++l)
+      if (const size_t stride = list_stride(List(l), *format); !step.lists[l].empty())
+        std::fill(step.lists[l].begin() + std::ptrdiff_t(begin * stride), step.lists[l].begin() + std::ptrdiff_t(end * stride),
+                  0.0);
+  });
+  totals.counts.add(step.counts);
+  std::ranges::fill(step.counts.samples, 0);
+  std::ranges::fill(step.counts.features, FeatureCount{});
+  step.counts.paths = step.counts.bad_count = 0;
+  step.counts.bad.clear();
+  step.begun = false;
+  ++totals.steps;
+}
+
+}  // namespace etendue

@@ -1,0 +1,195 @@
+// From what the film collected to a picture, and how exact it is.
+
+#include <cmath>
+
+#include "film_values.h"
+
+namespace etendue {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::infinity();
+
+/// A channel beside the light's.
+struct Layer {
+  enum class Source { mean, hit_mean, first, variance, count } source;
+  size_t offset;  // among the features
+};
+
+std::vector<Layer> add_layers(const PictureFormat& format, std::vector<std::string>& channels) {
+  using enum Layer::Source;
+  std::vector<Layer> layers;
+  const auto add = [&](const char* name, Layer::Source source, size_t offset = 0) {
+    channels.emplace_back(name);
+    layers.push_back({source, offset});
+  };
+  for (const std::string& layer : format.layers) {
+    if (layer == "albedo")
+      add("albedo.R", mean, 0), add("albedo.G", mean, 1), add("albedo.B", mean, 2);
+    else if (layer == "normal")
+      add("normal.X", mean, 3), add("normal.Y", mean, 4), add("normal.Z", mean, 5);
+    else if (layer == "depth")
+      add("depth.Z", hit_mean, 6);
+    else if (layer == "object")
+      add("object.ID", first);
+    else if (layer == "variance")
+      add("variance.Y", variance);
+    else if (layer == "samples")
+      add("samples.N", count);
+  }
+  for (int length = 1; length <= format.path_lengths; ++length)
+    for (const char* part : {".X", ".Y", ".Z"}) channels.push_back("length_" + std::to_string(length) + part);
+  return layers;
+}
+
+Image blank(const PictureFormat& format, std::vector<std::string> channels) {
+  Image image(format.area.width(), format.area.height(), std::move(channels));
+  image.metadata["color_space"] = "xyz";
+  if (format.cropped) {
+    image.metadata["crop_x"] = std::to_string(format.area.x0);
+    image.metadata["crop_y"] = std::to_string(format.area.y0);
+    image.metadata["full_width"] = std::to_string(format.width);
+    image.metadata["full_height"] = std::to_string(format.height);
+  }
+  return image;
+}
+
+}  // namespace
+
+bool FilmSnapshot::Values::even() const {
+  for (size_t i = 0; i < counts.samples.size(); ++i)
+    if (weight(i) != weight(0)) return false;
+  return true;
+}
+
+// A pixel estimates the mean of the radiance on the film, weighted by the filter f around it, over the film F: I = int_F f L /
+// int_F f. F is that of the whole picture, in a crop as well, since samples are taken around it as far as f reaches. Let F_i
+// be the integral of f over pixel i of F.
+//   Samples of the camera, n_i of them, are spread evenly over each pixel i:   I ~ sum_k f(x_k) L_k / sum_i n_i F_i.
+//   Splats arrive with a density of their own, each already divided by it:     I ~ scale * sum_k f(x_k) s_k / sum_i F_i,
+// where the scale is the number of pixels of the whole picture (the film's area) over the number of paths. With samples of both
+// kinds the two are parts of one sum, weighted against each other by whoever made them.
+// Camera samples are divided by the sum of weights that is to be expected, not by the one that came, sum_k f(x_k): the quotient
+// of two sums that vary together is not in expectation the quotient of what is expected of each (decision 013).
+FilmSnapshot::Values::Scales FilmSnapshot::Values::scales(int x, int y, bool even) const {
+  Scales s;
+  s.filter = format->over_film(x, y);
+  const size_t pixel = format->index(x, y);
+  // A box of one pixel gives each sample to its own pixel, with weight 1.
+  const double expected = format->box ? weight(pixel)
+                          : even      ? weight(pixel) * s.filter.filter
+                                      : format->expected(x, y, [&](size_t i) { return weight(i); });
+  if (expected > 0) s.light = 1 / expected;
+  const double splat_scale = counts.paths > 0 ? double(format->width) * double(format->height) / double(counts.paths) : 0;
+  if (!lists[splat_list].empty() && s.filter.filter > 0) s.splat = splat_scale / s.filter.filter;
+  return s;
+}
+
+Image FilmSnapshot::develop() const {
+  const Values& v = *values_;
+  const PictureFormat& format = *v.format;
+  std::vector<std::string> channels = {"X", "Y", "Z"};
+  const std::vector<Layer> layers = add_layers(format, channels);
+  Image image = blank(format, std::move(channels));
+  if (v.counts.samples.empty()) return image;
+
+  const bool even = v.even();
+  const auto& [light, splats, features, lengths, length_splats, weights, batches] = v.lists;
+  const size_t by_length = list_stride(length_list, format);
+  double* out = image.values.data();
+  for (int y = format.area.y0; y < format.area.y1; ++y)
+    for (int x = format.area.x0; x < format.area.x1; ++x) {
+      const size_t pixel = format.index(x, y);
+      const Values::Scales scales = v.scales(x, y, even);
+      const auto sum = [&](const std::vector<double>& camera, const std::vector<double>& splatted, size_t at) {
+        return (camera.empty() ? 0 : scales.light * camera[at]) + (splatted.empty() ? 0 : scales.splat * splatted[at]);
+      };
+      for (size_t c = 0; c < 3; ++c) *out++ = sum(light, splats, 4 * pixel + c);
+      for (const Layer& layer : layers) {
+        const FeatureCount count = v.counts.features.empty() ? FeatureCount{} : v.counts.features[pixel];
+        const auto mean = [&](std::uint32_t n) { return n > 0 ? features[7 * pixel + layer.offset] / n : 0; };
+        switch (layer.source) {
+          case Layer::Source::mean: *out++ = mean(count.samples); break;
+          case Layer::Source::hit_mean: *out++ = mean(count.hits); break;
+          case Layer::Source::first: *out++ = count.object; break;
+          case Layer::Source::variance: *out++ = v.variance(pixel, scales); break;
+          case Layer::Source::count: *out++ = v.counts.samples[pixel]; break;
+        }
+      }
+      for (size_t i = 0; i < by_length; ++i) *out++ = sum(lengths, length_splats, by_length * pixel + i);
+    }
+  return image;
+}
+
+// ---- how exact it is --------------------------------------------------------------------------------------------------------
+
+double FilmSnapshot::Values::luminance(size_t pixel, const Scales& scales) const {
+  const auto& light = lists[light_list];
+  const auto& splats = lists[splat_list];
+  return (light.empty() ? 0 : scales.light * light[4 * pixel + 1]) +
+         (splats.empty() ? 0 : scales.splat * splats[4 * pixel + 1]);
+}
+
+double FilmSnapshot::Values::variance(size_t pixel, const Scales& scales) const {
+  if (estimator == Estimator::correlated) return variance_of_steps(pixel, scales);
+  return variance_of_samples(pixel, scales) + variance_of_splats(pixel, scales);
+}
+
+// Values L_k of n samples a pixel, independent and with the filter's weights f_k: the variance of sum f_k L_k is that of the
+// values around the mean m in the pixel's neighbourhood, sum f_k^2 (L_k - m)^2, in expectation
+//   sum (f_k L_k)^2 - n m^2 int f^2   with   m = sum f_k L_k / (n int f).
+// The m found varies itself, so this comes out too small by the factor 1 - noise / n with noise = int f^2 / (int f)^2; for a
+// box of one pixel that is the usual (n - 1) / n. Film points are taken to be spread evenly: the unevenness of the f_k that
+// independent ones would have does not count as noise, but edges within the filter's reach do.
+double FilmSnapshot::Values::variance_of_samples(size_t pixel, const Scales& scales) const {
+  const double n = weight(pixel), noise = scales.filter.noise();
+  if (counts.samples[pixel] < 2 || !(n > noise)) return unknown;
+  if (lists[light_list].empty()) return 0;
+  const double* sum = &lists[light_list][4 * pixel];
+  return scales.light * scales.light * std::max(0.0, sum[3] - sum[1] * sum[1] * noise / n) / (1 - noise / n);
+}
+
+// Each of N samples, wherever its own pixel is, brings s_k to this one, mostly nothing; the s_k are independent.
+double FilmSnapshot::Values::variance_of_splats(size_t pixel, const Scales& scales) const {
+  if (lists[splat_list].empty()) return 0;
+  const auto n = double(counts.paths);
+  if (n < 2) return unknown;
+  const double* sum = &lists[splat_list][4 * pixel];
+  return scales.splat * scales.splat * std::max(0.0, sum[3] - sum[1] * sum[1] / n) * n / (n - 1);
+}
+
+// Steps of n_b samples with means v_b: their spread is sum n_b (v_b - mean)^2 / (steps - 1), for one sample.
+double FilmSnapshot::Values::variance_of_steps(size_t pixel, const Scales& scales) const {
+  constexpr std::uint64_t enough = 8;
+  const auto n = double(counts.paths);
+  if (steps < enough || lists[batch_list].empty()) return unknown;
+  const double mean = luminance(pixel, scales);
+  return std::max(0.0, lists[batch_list][pixel] - n * mean * mean) / double(steps - 1) / n;
+}
+
+double FilmSnapshot::relative_error() const {
+  const Values& v = *values_;
+  const PictureFormat& format = *v.format;
+  if (v.counts.samples.empty()) return unknown;
+  const bool even = v.even();
+  std::vector<double> means, errors;
+  double total = 0;
+  for (int y = format.area.y0; y < format.area.y1; ++y)
+    for (int x = format.area.x0; x < format.area.x1; ++x) {
+      const size_t pixel = format.index(x, y);
+      const Values::Scales scales = v.scales(x, y, even);
+      means.push_back(std::abs(v.luminance(pixel, scales)));
+      errors.push_back(std::sqrt(v.variance(pixel, scales)));
+      total += means.back();
+    }
+  // A picture still black may only have found no light yet.
+  if (!(total > 0)) return unknown;
+  const double pixels = double(means.size()), floor = 1e-3 * total / pixels;
+  double sum = 0;
+  for (size_t i = 0; i < means.size(); ++i) sum += errors[i] / (means[i] + floor);
+  return sum / pixels;
+}
+
+std::uint64_t FilmSnapshot::samples() const { return values_->counts.paths; }
+std::uint64_t FilmSnapshot::bad_samples() const { return values_->counts.bad_count; }
+
+}  // namespace etendue

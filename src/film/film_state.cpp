@@ -1,0 +1,205 @@
+// The film's state as bytes, for checkpoints.
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <mutex>
+
+#include "film_members.h"
+
+namespace etendue {
+namespace {
+
+constexpr std::uint64_t magic = 0x34304d4c49465445;  // "ETFILM04": name and version of the format, little endian
+
+class Writer {
+ public:
+  template <class T>
+  void value(T v) {
+    static_assert(std::is_arithmetic_v<T>);
+    append(&v, sizeof v);
+  }
+  template <class T>
+  void list(const std::vector<T>& v) {
+    value(std::uint64_t(v.size()));
+    append(v.data(), v.size() * sizeof(T));
+  }
+  std::vector<std::byte> bytes;
+
+ private:
+  void append(const void* data, size_t size) {
+    const auto* from = static_cast<const std::byte*>(data);
+    bytes.insert(bytes.end(), from, from + size);
+  }
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+  template <class T>
+  T value() {
+    T v;
+    take(&v, sizeof v);
+    return v;
+  }
+  /// A list that is empty or has the expected length.
+  template <class T>
+  std::vector<T> list(size_t expected) {
+    const auto size = value<std::uint64_t>();
+    if (size != 0 && size != expected)
+      throw Error(fmt::format("the film's state holds {} values where {} belong", size, expected));
+    if (size > rest_.size() / sizeof(T)) truncated();
+    std::vector<T> v(size);
+    take(v.data(), size * sizeof(T));
+    return v;
+  }
+  bool at_end() const { return rest_.empty(); }
+
+ private:
+  [[noreturn]] static void truncated() { throw Error("the film's state ends too early"); }
+  void take(void* to, size_t size) {
+    if (size > rest_.size()) truncated();
+    if (size > 0) std::memcpy(to, rest_.data(), size);
+    rest_ = rest_.subspan(size);
+  }
+  std::span<const std::byte> rest_;
+};
+
+static_assert(std::has_unique_object_representations_v<FeatureCount>, "written as bytes");
+
+/// What a state must have in common with the film that takes it.
+std::array<std::int32_t, 9> kind_of_film(const PictureFormat& f, Estimator estimator) {
+  return {f.width, f.height, f.area.x0, f.area.y0, f.area.x1, f.area.y1, int(f.wants_features), f.path_lengths, int(estimator)};
+}
+
+void write_counts(Writer& w, const FilmCounts& counts) {
+  w.list(counts.samples);
+  w.list(counts.features);
+  w.value(counts.paths);
+  w.value(counts.bad_count);
+  w.value(std::uint64_t(counts.bad.size()));
+  for (const BadSample& b : counts.bad) {
+    w.value(std::int32_t(b.x));
+    w.value(std::int32_t(b.y));
+    w.value(b.sample);
+    w.value(std::uint8_t(b.kind));
+  }
+}
+
+FilmCounts read_counts(Reader& r, const PictureFormat& format) {
+  FilmCounts counts;
+  counts.samples = r.list<std::uint32_t>(format.pixels());
+  counts.features = r.list<FeatureCount>(format.wants_features ? format.pixels() : 0);
+  counts.paths = r.value<std::uint64_t>();
+  counts.bad_count = r.value<std::uint64_t>();
+  const auto noted = r.value<std::uint64_t>();
+  if (noted > FilmCounts::bad_kept || noted > counts.bad_count)
+    throw Error("the film's state holds an impossible number of bad samples");
+  for (std::uint64_t i = 0; i < noted; ++i) {
+    BadSample b;
+    b.x = r.value<std::int32_t>();
+    b.y = r.value<std::int32_t>();
+    b.sample = r.value<std::uint32_t>();
+    const auto kind = r.value<std::uint8_t>();
+    if (kind > std::uint8_t(BadSample::Kind::negative)) throw Error("the film's state holds an unknown kind of bad sample");
+    b.kind = BadSample::Kind(kind);
+    counts.bad.push_back(b);
+  }
+  return counts;
+}
+
+}  // namespace
+
+std::vector<std::byte> Film::save_state() const {
+  const Members& m = *members_;
+  const std::lock_guard lock(m.mutex);
+  const Totals& totals = m.ended();
+  size_t size =
+      1024 + totals.counts.samples.size() * sizeof(std::uint32_t) + totals.counts.features.size() * sizeof(FeatureCount);
+  for (const ExactSums& sums : totals.sums) size += sums.digits().size() * sizeof(std::int64_t) + sums.places().size();
+  Writer w;
+  w.bytes.reserve(size);
+  w.value(magic);
+  for (const std::int32_t i : kind_of_film(*m.format, m.estimator)) w.value(i);
+  w.value(m.format->filter_hash());
+  w.value(totals.steps);
+  for (const ExactSums& sums : totals.sums) {
+    w.list(sums.places());
+    w.list(sums.digits());
+  }
+  write_counts(w, totals.counts);
+  return std::move(w.bytes);
+}
+
+// All is read and checked before anything changes.
+Film::Totals Film::read_state(std::span<const std::byte> bytes) const {
+  const PictureFormat& format = *members_->format;
+  Reader r(bytes);
+  if (r.value<std::uint64_t>() != magic) throw Error("this is not a film's state, or one of another version");
+  for (const std::int32_t i : kind_of_film(format, members_->estimator))
+    if (r.value<std::int32_t>() != i)
+      throw Error("the film's state belongs to a picture of another size, crop or layers, or to another kind of algorithm");
+  if (r.value<std::uint64_t>() != format.filter_hash()) throw Error("the film's state was made with another filter");
+  Totals totals;
+  totals.steps = r.value<std::uint32_t>();
+  if (totals.steps > ExactSums::most_addends) throw Error("the film's state holds an impossible number of steps");
+  std::array<bool, list_count> there{};
+  for (size_t p = 0; p < planes.size(); ++p) {
+    const size_t groups = format.pixels() * groups_per_pixel(planes[p], format);
+    ExactSums& sums = totals.sums[p];
+    sums = ExactSums(0, planes[p].group);
+    sums.places() = r.list<std::uint8_t>(groups);
+    sums.digits() = r.list<std::int64_t>(groups * 2 * planes[p].group);
+    if (sums.places().empty() != sums.digits().empty()) throw Error("the film's state lacks a part");
+    if (!sums.possible(totals.steps)) throw Error("the film's state holds impossible sums");
+    if (!kept(planes[p], members_->estimator)) continue;
+    // Planes of one list are all there or none of them.
+    const bool first = planes[p].offset == 0;
+    if (first) there[planes[p].list] = !sums.empty();
+    if (!first && there[planes[p].list] == sums.empty()) throw Error("the film's state lacks a part");
+  }
+  totals.counts = read_counts(r, format);
+  if (totals.counts.samples.empty() != (totals.steps == 0)) throw Error("the film's state lacks a part");
+  if (!r.at_end()) throw Error("the film's state is longer than it should be");
+  return totals;
+}
+
+void Film::load_state(std::span<const std::byte> bytes) {
+  Members& m = *members_;
+  const std::lock_guard lock(m.mutex);
+  Totals totals = read_state(bytes);
+  m.empty();
+  m.totals = std::move(totals);
+}
+
+void Film::add_state(std::span<const std::byte> bytes) {
+  Members& m = *members_;
+  const std::lock_guard lock(m.mutex);
+  Totals other = read_state(bytes);
+  // A step at hand goes on: what comes to the sums meanwhile stays when it is dropped.
+  std::array<Totals*, 2> all = {&m.totals, m.before_step.get()};
+  for (const Totals* totals : all)
+    if (totals) totals->require_room_for(other);
+  for (Totals* totals : all)
+    if (totals) totals->add(other);
+}
+
+/// Throws Error when sums of both would be of too many steps or samples.
+void Film::Totals::require_room_for(const Totals& other) const {
+  if (other.steps > ExactSums::most_addends - steps)
+    throw Error(fmt::format("a film cannot take more than {} steps", ExactSums::most_addends));
+  counts.require_room_for(other.counts);
+}
+
+void Film::Totals::add(const Totals& other) {
+  for (size_t p = 0; p < planes.size(); ++p)
+    if (sums[p].empty())
+      sums[p] = other.sums[p];
+    else if (!other.sums[p].empty())
+      sums[p].add(other.sums[p]);
+  counts.add(other.counts);
+  steps += other.steps;
+}
+
+}  // namespace etendue

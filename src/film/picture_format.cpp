@@ -1,0 +1,74 @@
+#include "picture_format.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace etendue {
+
+// Exactly those of the table, which is constant in each of its cells.
+void PictureFormat::set_filter(std::vector<float> weights, float filter_radius) {
+  table = std::move(weights);
+  radius = filter_radius;
+  box = radius == 0.5f && std::all_of(table.begin(), table.end(), [&](float w) { return w == table[0]; });
+  filter_reach = int(std::ceil(radius - 0.5f));
+  const int side = filter_reach + 1;
+  shares.assign(size_t(side) * size_t(side), {});
+  const double cell = double(radius) / table_size;
+  // The length of a cell of the table within the pixel `away` pixels from the filter's own, on one side of its centre.
+  const auto covered = [&](int i, int away) {
+    const auto up_to = [&](double distance) { return std::clamp(distance / cell - i, 0.0, 1.0) * cell; };
+    return away == 0 ? 2 * up_to(0.5) : up_to(away + 0.5) - up_to(away - 0.5);
+  };
+  whole = {};
+  for (int dy = 0; dy < side; ++dy)
+    for (int dx = 0; dx < side; ++dx) {
+      Integral& share = shares[size_t(dy * side + dx)];
+      for (int y = 0; y < table_size; ++y) {
+        const double down = covered(y, dy);
+        if (down == 0) continue;
+        Integral row;
+        for (int x = 0; x < table_size; ++x) {
+          const double across = covered(x, dx), weight = double(table[size_t(y * table_size + x)]);
+          row.filter += across * weight;
+          row.square += across * weight * weight;
+        }
+        share.filter += down * row.filter;
+        share.square += down * row.square;
+      }
+      const int times = (dx ? 2 : 1) * (dy ? 2 : 1);
+      whole.filter += times * share.filter;
+      whole.square += times * share.square;
+    }
+}
+
+/// Whether a pixel's filter reaches nothing beside the film.
+bool PictureFormat::within_reach(int x, int y) const {
+  const int r = filter_reach;
+  return x - r >= 0 && x + r < width && y - r >= 0 && y + r < height;
+}
+
+PictureFormat::Integral PictureFormat::over_film(int x, int y) const {
+  if (within_reach(x, y)) return whole;
+  Integral sum;
+  each_share(x, y, [&](int, int, const Integral& share) {
+    sum.filter += share.filter;
+    sum.square += share.square;
+  });
+  return sum;
+}
+
+std::uint64_t PictureFormat::filter_hash() const {
+  std::uint64_t h = 0xcbf29ce484222325ull;
+  const auto add = [&](float f) { h = (h ^ std::bit_cast<std::uint32_t>(f)) * 0x100000001b3ull; };
+  add(radius);
+  for (const float w : table) add(w);
+  return h;
+}
+
+bool PictureFormat::collects_as(const PictureFormat& other) const {
+  return width == other.width && height == other.height && area == other.area && path_lengths == other.path_lengths &&
+         wants_features == other.wants_features && radius == other.radius && table == other.table;
+}
+
+}  // namespace etendue

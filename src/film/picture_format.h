@@ -1,0 +1,71 @@
+#pragma once
+// What follows from an ImageBuffer's description once it is prepared: pixels, layers, and the filter as a table.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "etendue/film/image_buffer.h"
+
+namespace etendue {
+
+struct PictureFormat {
+  int width = 0, height = 0;
+  PixelArea area, sampled_area;  ///< as ImageBuffer's functions of these names
+  bool cropped = false;
+  std::vector<std::string> layers;
+  bool wants_features = false;
+  int path_lengths = 0;
+
+  /// The filter tabulated over one quadrant, weight at ((i + 0.5) / table_size * radius).
+  static constexpr int table_size = 64;
+  std::vector<float> table;
+  float radius = 0.5f;
+  bool box = false;      ///< radius 0.5, constant: each sample counts for its own pixel alone
+  int filter_reach = 0;  ///< how many pixels to each side the filter of a pixel covers
+
+  /// Integrals of the filter around a pixel's centre over a part of the film, exactly those of the table.
+  struct Integral {
+    double filter = 0, square = 0;  ///< [pixel^2]
+    /// The variance of a mean by the filter in relation to that of the mean of as many values as lie in a pixel.
+    double noise() const { return filter != 0 ? square / (filter * filter) : 0; }
+  };
+  std::vector<Integral> shares;  ///< over the pixels around its own, over one quadrant of (filter_reach + 1)^2 pixels
+  Integral whole;                ///< over all
+
+  size_t pixels() const { return size_t(area.width()) * size_t(area.height()); }
+  size_t index(int x, int y) const { return size_t(y - area.y0) * size_t(area.width()) + size_t(x - area.x0); }
+  /// How many pixels to each side a sample anywhere in a pixel may count for: at the edge of its pixel it lies half a pixel
+  /// from the centre, and counts for what is closer than the radius.
+  int reach() const { return box ? 0 : filter_reach; }
+  /// Of a pixel's filter, over the film.
+  Integral over_film(int x, int y) const;
+  /// The weight sum to be expected of camera samples in a pixel, where pixel i has `weight(i)` of them. Around a crop each
+  /// pixel has as many as this one.
+  template <class Weight>
+  double expected(int x, int y, Weight weight) const {
+    double sum = 0;
+    each_share(x, y, [&](int i, int j, const Integral& share) {
+      sum += share.filter * weight(area.contains(i, j) ? index(i, j) : index(x, y));
+    });
+    return sum;
+  }
+  /// FNV-1a over the filter: sums made with another filter must not be added to.
+  std::uint64_t filter_hash() const;
+  /// Whether sums collected for one are valid for the other.
+  bool collects_as(const PictureFormat&) const;
+
+  void set_filter(std::vector<float> weights, float filter_radius);
+
+ private:
+  bool within_reach(int x, int y) const;
+  template <class F>
+  void each_share(int x, int y, F f) const {
+    const int r = filter_reach;
+    for (int j = std::max(y - r, 0); j <= std::min(y + r, height - 1); ++j)
+      for (int i = std::max(x - r, 0); i <= std::min(x + r, width - 1); ++i)
+        f(i, j, shares[size_t(std::abs(j - y) * (r + 1) + std::abs(i - x))]);
+  }
+};
+
+}  // namespace etendue
