@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "etendue/core/ray.h"
+#include "etendue/core/spectrum.h"
 #include "etendue/core/transform.h"
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
@@ -19,6 +20,12 @@ struct LensSample {
   float density = 0;     ///< [1/sr] at the scene point; a pinhole: distance^2 / cos (a delta in area, converted)
   float importance = 0;  ///< W_e [1/(m^2 sr)] of the connection, normalized as `Camera::importance`
   Point2 film;           ///< where on the film light from the point arrives
+};
+
+/// A ray that a camera sends, and what its light counts.
+struct CameraRay {
+  Ray ray;
+  Spectrum weight{1.0f};  ///< of the radiance that arrives along it: what glass and the lens's rim leave of it, over its density
 };
 
 /// Densities with which a camera ray is drawn when film points are uniform over the whole film.
@@ -52,9 +59,16 @@ class Camera : public Component {
 
   /// Told by the Job before rendering: the size of the whole picture in pixels.
   virtual void set_film(int width, int height) = 0;
-  /// The ray that brings light to a film point through a lens point given by `lens` (two uniform numbers). Its weight
-  /// is 1: a pixel's value is the mean radiance of its rays. The ray's cone covers a pixel.
+  /// The ray that brings light to a film point through a lens point given by `lens` (two uniform numbers), as far as it is a
+  /// matter of geometry. The ray's cone covers a pixel.
   virtual Ray ray(Point2 film, Point2 lens, float time) const = 0;
+  /// The same with what real lenses do to light: it may be held back (false: the sample is black, and counts), weakened, and go
+  /// ways of its own for each wavelength (Wavelengths::drop_secondary; the factor belongs into the weight). By default `ray`, with
+  /// weight 1: a pixel's value is then the mean radiance of its rays. `sample_lens` and `importance` must tell of the same.
+  virtual bool sample_ray(Point2 film, Point2 lens, float time, Wavelengths&, CameraRay& sample) const {
+    sample.ray = ray(film, lens, time);
+    return true;
+  }
   /// Whether `ray` looks at its lens point; cameras that do not may say so, which saves drawing two numbers.
   virtual bool has_lens() const { return true; }
   /// Whether all its rays are parallel: directions are then given by places.
@@ -63,7 +77,10 @@ class Camera : public Component {
   /// have sent (from the lens outward).
   virtual std::optional<Point2> film_point(const Ray&) const = 0;
   /// A lens point seen from a point of the scene; empty when light from there cannot reach the film.
+  /// `importance` is then without what depends on wavelengths; light is multiplied by `lens_weight`, too.
   virtual std::optional<LensSample> sample_lens(const Point3& from, float time, Point2 u) const = 0;
+  /// What the lens leaves of light of these wavelengths that comes by a sample of `sample_lens`.
+  virtual Spectrum lens_weight(const LensSample&, const Wavelengths&) const { return Spectrum(1.0f); }
   /// Importance W_e of a ray the camera could have sent [1/(m^2 sr)]; 0 outside the film. Its integral over lens area
   /// and projected solid angle is 1 for the whole film (per steradian alone for a pinhole, per area for parallel rays).
   virtual float importance(const Ray&) const = 0;

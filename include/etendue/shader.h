@@ -232,7 +232,7 @@ class Shader : public Component {
   /// Whether light that goes into the body by `specular_transmission`, `glossy_transmission` or `diffuse_transmission` leaves
   /// it elsewhere: renderers then ask `sample_exit` instead of following it inside.
   virtual bool moves_exit() const { return false; }
-  /// Where light that enters at a point leaves. `random` gives as many numbers as are needed.
+  /// Where light that enters at a point leaves. The stream gives as many numbers as are needed.
   virtual std::optional<SubsurfaceExit> sample_exit(const SurfacePoint&, const Scene&, const Wavelengths&, NumberStream&,
                                                     Arena&) const {
     return std::nullopt;

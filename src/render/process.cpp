@@ -80,6 +80,14 @@ void record_camera(PathRecord& record, const Camera& camera, const Ray& ray) {
   record.vertices.push_back(std::move(v));
 }
 
+/// What observers were told of the sample's own value is weighted as that is.
+void weigh_parts(const Spectrum& weight, const PathObserver& observe) {
+  for (Spectrum& light : observe.lengths) light *= weight;
+  if (observe.record) [[unlikely]]
+    for (PathRecord::Contribution& part : observe.record->contributions)
+      if (!part.splat) part.value *= weight;
+}
+
 }  // namespace
 
 RenderProcess::RenderProcess(const Renderer& r, const RenderContext& c) : renderer(r), context(c) {}
@@ -101,13 +109,16 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   const bool still = !(camera.shutter_close > camera.shutter_open);
   const float time = still ? (numbers.skip(), camera.shutter_open) : camera.shutter_time(numbers.next());
   s.wavelengths = context.wavelengths.sample(key, numbers.next());
-  Ray ray = camera.ray(s.film, lens, time);
-  ray.width *= renderer.map_filter;
-  ray.spread *= renderer.map_filter;
+  CameraRay from;
   PathRecord* const record = request.observe.record;
-  if (record) [[unlikely]]
-    record_camera(*record, camera, ray);
-  s.value = radiance(ray, sample);
+  if (camera.sample_ray(s.film, lens, time, s.wavelengths, from)) {
+    from.ray.width *= renderer.map_filter;
+    from.ray.spread *= renderer.map_filter;
+    if (record) [[unlikely]]
+      record_camera(*record, camera, from.ray);
+    s.value = from.weight * radiance(from.ray, sample);
+    weigh_parts(from.weight, request.observe);
+  }
   arena.reset();
   if (record) [[unlikely]] {
     record->wavelengths = s.wavelengths;

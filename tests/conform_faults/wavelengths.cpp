@@ -19,21 +19,21 @@ Wavelengths spread(float u, float low, float high, float density) {
 class UltravioletWavelengths final : public WavelengthSampler {
  public:
   static void describe(Description<UltravioletWavelengths>& d) { d.summary("Goes beyond what is seen."); }
-  Wavelengths sample(const SampleKey&, float u) const override { return spread(u, 300, 900, 1.0f / 600); }
+  Wavelengths sample(SampleKey, float u) const override { return spread(u, 300, 900, 1.0f / 600); }
 };
 const Register<UltravioletWavelengths> ultraviolet;
 
 class OverstatedWavelengths final : public WavelengthSampler {
  public:
   static void describe(Description<OverstatedWavelengths>& d) { d.summary("Says a density that integrates to 1.02."); }
-  Wavelengths sample(const SampleKey&, float u) const override { return spread(u, 400, 700, 1.02f / 300); }
+  Wavelengths sample(SampleKey, float u) const override { return spread(u, 400, 700, 1.02f / 300); }
 };
 const Register<OverstatedWavelengths> overstated;
 
 class ReddishWavelengths final : public WavelengthSampler {
  public:
   static void describe(Description<ReddishWavelengths>& d) { d.summary("Draws more of the long ones than it says."); }
-  Wavelengths sample(const SampleKey&, float u) const override {
+  Wavelengths sample(SampleKey, float u) const override {
     Wavelengths w;
     for (int i = 0; i < spectrum_size; ++i) {
       float v = u + float(i) / spectrum_size;

@@ -69,7 +69,7 @@ Ref<Job> lit_balls(const std::string& renderer, const std::string& filter, const
     scene: BruteForceScene {{ objects: [
       Sphere {{ shader: Lambertian {{ color: 0.5 }} }}
       Rectangle {{ corner: [-3, -1, -2] m, edge_u: [0, 0, 5] m, edge_v: [6, 0, 0] m, shader: Lambertian {{ color: 0.7 }} }}
-      Sphere {{ center: [0, 2.5, -1] m, radius: 0.7 m, emission: DiffuseEmission {{ radiance: 5 }} }}
+      Sphere {{ centre: [0, 2.5, -1] m, radius: 0.7 m, emission: DiffuseEmission {{ radiance: 5 }} }}
     ] }} }})",
                                    renderer, sampler, filter),
                        "balls.etd");

@@ -67,7 +67,7 @@ TEST(Noise, FadesAsAnAverageOverTheFootprintDoes) {
     double formula, off;
   };
   test::Random random(3);
-  for (const Row& row : {Row{0.5f, 0.880743, 0.012}, Row{1, 0.586182, 0.006}, Row{2, 0.0625, 0.1}}) {
+  for (const Row& row : {Row{0.5f, 0.880738, 0.012}, Row{1, 0.586182, 0.006}, Row{2, 0.0625, 0.1}}) {
     EXPECT_NEAR(double(noise_remains(row.width)), row.formula, 2e-6);
     double product = 0, squares = 0, residuals = 0;
     constexpr int n = 300000;

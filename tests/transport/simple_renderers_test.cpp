@@ -129,7 +129,7 @@ TEST(SimpleRenderers, SayWhatTheyMiss) {
   mirrors.areas = {"'lamp'"};
   EXPECT_EQ(lost("WhittedRenderer", {}, mirrors), "");
   EXPECT_EQ(lost("DistributionRenderer", {}, mirrors), "");
-  EXPECT_NE(lost("DirectRenderer", {{"strategy", "light"}}, mirrors).find("seen in 'mirror'"), std::string::npos);
+  EXPECT_NE(lost("DirectRenderer", {{"strategy", "light"}}, mirrors).find("sees in or through 'mirror'"), std::string::npos);
 
   SceneTraits bulb = matt_room;
   bulb.areas.clear();

@@ -97,7 +97,7 @@ TEST(ThinMedia, AFurnaceStaysOneWithFogBehindSheets) {
   for (const char* shader : {"ThinDielectric { ior: 1.5 }", "DiffuseTransmitter { reflectance: 0.4, transmittance: 0.6 }",
                              "MixShader { first: ThinDielectric { ior: 1.5 }, second: Lambertian { color: 1 } }"})
     for (const char* r :
-         {"PathTracer { samples: 1024, max_depth: 100000 }", "BidirectionalPathTracer { samples: 512, max_depth: 400 }"})
+         {"PathTracer { samples: 1024, max_depth: 100000 }", "BidirectionalPathTracer { samples: 16384, max_depth: 400 }"})
       expect(r, "PerspectiveCamera { from: [0, 0, 4], to: [0, 0, 0], fov: 25 deg }",
              fmt::format("Sphere {{ shader: {}, interior: HomogeneousVolume {{ scattering: 2 }} }}\n", shader) + sky, 1,
              shader);

@@ -36,7 +36,7 @@ struct PathRequest {
 
 class RenderProcess {
  public:
-  /// Both must outlive it.
+  /// The renderer and all that the context refers to must outlive it.
   RenderProcess(const Renderer&, const RenderContext&);
   virtual ~RenderProcess();
   RenderProcess(const RenderProcess&) = delete;

@@ -15,7 +15,9 @@ class Schedule {
  public:
   virtual ~Schedule() = default;
 
-  /// Runs `work(item, tile, arena)` for items 0 … count-1 on all threads and adds the tiles to the film.
+  /// Runs `work(item, tile, arena)` for items 0 … count-1 on all threads and adds the tiles to the film, in the order of items. Work
+  /// begins its tile (ImageTile::begin; an empty area for splats alone) and counts its paths. An item should take some milliseconds.
+  /// A step may do this several times. What work throws ends the step, which then leaves nothing.
   template <class Work>
   void film(std::uint64_t count, Work&& work) {
     using W = std::remove_reference_t<Work>;
@@ -26,7 +28,7 @@ class Schedule {
   }
 
   /// Runs `work(item, results, arena)`, which appends to its own std::vector<T>, and returns all that came, in the order of
-  /// items: photons, training samples, bounds.
+  /// items: photons, training samples.
   template <class T, class Work>
   std::vector<T> collect(std::uint64_t count, Work&& work) {
     struct Collection final : Results {

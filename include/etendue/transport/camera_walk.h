@@ -22,6 +22,7 @@ class CameraWalk : public Walk<clear> {
 
   CameraWalk(const Scene& scene_, SampleContext& sample_, const Ray& ray_, int longest_)
       : Base(scene_, sample_, ray_, longest_), memory_(sample_.arena.mark()), one_luminaire_(scene_.luminaires().size() == 1) {
+    this->gathers = true;
     this->watched = sample.observe.features || sample.observe.record;
     if (!clear && scene.has_interiors()) media_at(scene, ray.origin, ray.time, this->media);
   }
@@ -29,7 +30,7 @@ class CameraWalk : public Walk<clear> {
   Spectrum radiance;  ///< L, as far as it is gathered
 
   /// Goes to the next vertex and adds the light of luminaires it meets, each with `weight(its point)`. False: the walk has
-  /// ended, and all that was added has arrived.
+  /// ended, and all that was added has arrived (light of one vertex is settled on the way to the next).
   template <class Weight>
   [[gnu::always_inline]] bool next_vertex(const Weight& weight) {
     if (!goes_on_ || moved_) {
@@ -80,7 +81,7 @@ class CameraWalk : public Walk<clear> {
     direct_.light *= throughput;
     if constexpr (!clear) {
       MediumStack scratch;
-      NumberStream way = numbers.fork("shadow");
+      NumberStream way = numbers.fork("shadow", std::uint32_t(length));
       direct_.light *= visible_fraction(scene, direct_.shadow, media_towards(vertex, direct_.shadow.direction, scratch),
                                         sample.wavelengths, way, sample.arena);
       if (direct_.light.black()) return;
@@ -94,6 +95,10 @@ class CameraWalk : public Walk<clear> {
     const std::optional<ScatterSample> next = this->sample_direction(u.lobe_choice, u.direction);
     if (!next) return false;
     sample.observe.scattered(*next);
+    if (!clear && next->lobe == pass_through) {
+      this->pass_on(*next);
+      return goes_on_ = true;
+    }
     if (vertex.on_surface() && !vertex.moved && enters_body(vertex.point, *next))
       return moved_ = goes_on_ = this->leave_body(*next);
     this->leave(*next);

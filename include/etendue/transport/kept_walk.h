@@ -21,9 +21,9 @@
 
 namespace etendue {
 
-/// A vertex of such a walk.
+/// A vertex of such a walk. What it points to lies in the sample's arena.
 struct KeptVertex : Vertex {
-  bool specular = false;           ///< the walk was scattered on by a specular lobe
+  bool specular = false;           ///< the walk left it by a specular lobe
   bool infinite = false;           ///< a luminaire at infinity, or an escaped ray
   bool single = false;             ///< the throughput holds the hero only
   bool parallel = false;           ///< of a camera whose rays are parallel: its directions are given by places, not angles
@@ -57,7 +57,7 @@ struct WalkListener {
 void walk_from_camera(const RenderContext&, const Ray&, const WalkLimits&, SampleContext&, std::vector<KeptVertex>& walk,
                       WalkListener&);
 
-/// A walk that begins at a luminaire, chosen by power. Null: no light leaves there, and the walk is empty. The context's
+/// A walk that begins at a luminaire, chosen by power. False: no light leaves there, and the walk is empty. The context's
 /// wavelengths and numbers are the walk's.
 bool walk_from_luminaire(const Scene&, const LightSampler&, float time, const WalkLimits&, SampleContext&,
                          std::vector<KeptVertex>& walk, EmittedLight&);

@@ -5,7 +5,7 @@
 
 namespace etendue {
 
-/// balance: w = p/(p+q); power: w = p^2/(p^2+q^2); none: the strategy counts alone.
+/// balance: w = p/(p+q); power: w = p^2/(p^2+q^2).
 enum class Heuristic : std::uint8_t { balance, power };
 
 /// The weight of a sample that the strategy with density p gave and the one with density q could have given; both in

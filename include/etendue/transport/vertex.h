@@ -19,6 +19,7 @@ struct Vertex {
   bool moved = false;
   SurfacePoint point;                  ///< in a medium only the position and time mean something; of an escape nothing
   const Scatter* scatter = nullptr;    ///< of a surface; null: black
+  Lobes lobes = vertex_lobes;          ///< those of a surface among which a walk chooses
   Medium medium;                       ///< of a vertex in a medium
   const MediumStack* media = nullptr;  ///< around, on the side of `out`; null: nothing is tracked
   Vector3 out;                         ///< unit, to the vertex before; of an escape: against the ray
@@ -38,12 +39,12 @@ inline ScatterValue scattering(const Vertex& v, const Vector3& out, const Vector
     const float phase = v.medium.phase(v.point.position, v.point.time, out, in);
     return {Spectrum(phase), phase};
   }
-  return v.scatter ? v.scatter->value_and_density(out, in, transport, vertex_lobes) : ScatterValue{};
+  return v.scatter ? v.scatter->value_and_density(out, in, transport, v.lobes) : ScatterValue{};
 }
 /// The same density alone.
 inline float scattering_density(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
   if (v.in_medium()) return v.medium.phase(v.point.position, v.point.time, out, in);
-  return v.scatter ? v.scatter->density(out, in, transport, vertex_lobes) : 0;
+  return v.scatter ? v.scatter->density(out, in, transport, v.lobes) : 0;
 }
 
 /// A ray from one vertex to another that ends just before it.

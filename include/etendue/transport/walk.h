@@ -52,7 +52,7 @@ class Walk {
   NumberStream& numbers;  ///< the sample's
   Ray ray;                ///< along which it goes next
   Spectrum throughput;    ///< T
-  MediumStack media;      ///< around the ray's origin
+  MediumStack media;      ///< around the ray's origin; where a walk begins, its maker fills it (media_at)
   const int longest;
   const Transport transport;
 
@@ -78,10 +78,14 @@ class Walk {
   /// Goes along the ray to the next vertex; `found` is what the scene said of it, with `hit` filled. False: the walk has ended.
   template <class Listener>
   [[gnu::always_inline]] bool come_to_vertex(bool found, const Listener& listener) {
-    ++length;
-    edge = Spectrum(1.0f);
-    crossed = 0;
-    for (int crossings = 0; crossings <= most_crossings; found = scene.nearest(ray, hit), ++crossings) {
+    if (!passing_) {
+      ++length;
+      edge = Spectrum(1.0f);
+      crossed = 0;
+      crossings_ = 0;
+    }
+    passing_ = false;
+    for (; crossings_ <= most_crossings; found = scene.nearest(ray, hit), ++crossings_) {
       if (tracks_)
         if (const Medium medium = medium_in(media)) {
           const float reach = found ? hit.distance : infinity;
@@ -113,7 +117,13 @@ class Walk {
       }
       if (length < longest || watched || null_surfaces_)
         vertex.scatter = scattering_at(vertex.point, vertex.out, sample.wavelengths, sample.arena);
-      if (!null_surfaces_ || !vertex.scatter || !vertex.scatter->has(pass_through) || !passes(listener)) return true;
+      vertex.lobes = vertex_lobes;
+      if (!null_surfaces_ || !vertex.scatter || !vertex.scatter->has(pass_through)) return true;
+      if (gathers && length < longest && vertex.scatter->has(smooth_lobes)) {
+        vertex.lobes = all_lobes;
+        return true;
+      }
+      if (!passes(listener)) return true;
     }
     return false;
   }
@@ -131,7 +141,7 @@ class Walk {
       return s;
     }
     if (!vertex.scatter) return std::nullopt;
-    return vertex.scatter->sample(vertex.out, choice, u, transport, vertex_lobes);
+    return vertex.scatter->sample(vertex.out, choice, u, transport, vertex.lobes);
   }
 
   /// Goes on in such a direction.
@@ -156,6 +166,15 @@ class Walk {
     ray.width = vertex.point.footprint;
   }
 
+  /// Goes straight on through the surface of the last vertex, which is then none: the last direction stays the one that was chosen.
+  void pass_on(const ScatterSample& next) {
+    throughput *= next.weight;
+    edge *= next.weight;
+    cross();
+    passing_ = true;
+    ++crossings_;
+  }
+
   /// Of light that goes into a body which scatters it: comes to where it leaves again. The way inside is one segment. False: it
   /// does not.
   bool leave_body(const ScatterSample& next) {
@@ -177,6 +196,8 @@ class Walk {
 
   /// Whether vertices are kept: what lies around them is then, too. Else it is that of the last alone.
   bool keeps = false;
+  /// Whether light is gathered at vertices.
+  bool gathers = false;
   /// Whether someone wants to know of the last segment's end although it does not shine.
   bool watched = false;
 
@@ -223,6 +244,8 @@ class Walk {
 
   const Spectrum begun;
   float eta_squared_ = 1;
+  int crossings_ = 0;  // of the last segment
+  bool passing_ = false;
   const bool tracks_, null_surfaces_;
 };
 

@@ -35,7 +35,7 @@ std::string bytes_of(const std::vector<double>& values) {
 std::string rendered(Job& job) {
   job.threads = 1;
   job.render();
-  return bytes_of(job.image->develop().values);
+  return bytes_of(job.film().develop().values);
 }
 
 Ref<Component> placed(const char* text, const char* member, const Ref<Component>& part) {

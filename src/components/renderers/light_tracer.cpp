@@ -57,7 +57,7 @@ class LightTracer final : public Renderer {
     } else {
       value = v.throughput * scattering(v, v.out, lens->direction, Transport::importance).value;
     }
-    value *= lens->importance / lens->density;
+    value *= lens->importance / lens->density * context.camera.lens_weight(*lens, sample.wavelengths);
     if (value.black()) return;
 
     const Ray ray = lens_ray(v, *lens);
