@@ -39,6 +39,7 @@ void Film::Members::empty() {
   totals = {};
   before_step.reset();
   step = {};
+  splatted.clear();
   largest.clear();
 }
 
@@ -93,7 +94,7 @@ void Film::add_tile(const ImageTile& tile) {
         good &= std::abs(target[i]) <= ExactSums::largest_addend;
       }
       if (!good) [[unlikely]]
-        m.complain(target, row, stride, part.x0, y);
+        m.complain({target, row}, stride, part.x0, y);
     }
   };
   FilmCounts& counts = m.step.counts;
@@ -117,63 +118,69 @@ void Film::add_tile(const ImageTile& tile) {
   counts.bad_count += tile.bad_count_;
 }
 
-void Film::Members::complain(const double* values, size_t count, size_t stride, int x0, int y) const {
-  for (size_t i = 0; i < count; ++i)
-    if (!(std::abs(values[i]) <= ExactSums::largest_addend))
-      throw Error(fmt::format("the light of pixel {},{} adds up to {}, which is too large to be summed", x0 + int(i / stride),
-                              y, values[i]));
+namespace {
+
+bool summable(double value) { return std::abs(value) <= ExactSums::largest_addend; }  // no for what is no number
+
+}  // namespace
+
+void Film::Members::complain(std::span<const double> values, size_t stride, int x0, int y) const {
+  const auto i = size_t(std::ranges::find_if_not(values, summable) - values.begin());
+  throw Error(fmt::format("the light of pixel {},{} adds up to {}, which is too large to be summed", x0 + int(i / stride), y,
+                          values[std::min(i, values.size() - 1)]));
 }
 
 // The splats of one sample are one outcome: what they bring to a pixel is added before it is squared, as (a + b)^2 =
-// a^2 + b^2 + 2 a b where two of them meet.
+// a^2 + b (b + 2 a) when b comes to a.
 void Film::add_splats(const ImageTile& tile) {
   Members& m = *members_;
   const PictureFormat& format = *m.format;
   std::vector<double>& sums = m.list(splat_list);
   double* by_length = format.path_lengths > 0 ? m.list(length_splat_list).data() : nullptr;
-  constexpr int size = PictureFormat::table_size;
-  struct Window {
-    FilterWindow across, down;
-    double luminance;
-    float weight(const PictureFormat& f, int x, int y) const {
-      return f.table[size_t(down.cells[size_t(y - down.first)]) * size + size_t(across.cells[size_t(x - across.first)])];
+  std::vector<double>& of_path = m.splatted;  // what the path at hand brought so far; zero but in the pixels it reached
+  if (of_path.empty()) of_path.resize(format.pixels());
+  std::vector<size_t> reached;
+  const auto end_path = [&] {
+    for (const size_t pixel : reached) of_path[pixel] = 0;
+    reached.clear();
+  };
+  const auto add = [&](const ImageTile::Splat& splat, int x, int y, double weight) {
+    const size_t pixel = format.index(x, y);
+    const Xyz value{weight * splat.value.x, weight * splat.value.y, weight * splat.value.z};
+    double* sum = &sums[4 * pixel];
+    sum[0] += value.x;
+    sum[1] += value.y;
+    sum[2] += value.z;
+    sum[3] += value.y * (value.y + 2 * of_path[pixel]);
+    if (!std::all_of(sum, sum + 4, summable)) [[unlikely]] {
+      end_path();
+      m.complain({sum, 4}, 4, x, y);
     }
+    of_path[pixel] += value.y;
+    reached.push_back(pixel);
+    if (!by_length || splat.length < 1) return;
+    const auto length = size_t(std::min(splat.length, format.path_lengths)) - 1;
+    double* part = &by_length[3 * (size_t(format.path_lengths) * pixel + length)];
+    part[0] += value.x;
+    part[1] += value.y;
+    part[2] += value.z;
   };
-  const auto along = [&](float film, int low, int high) {
-    return format.box ? FilterWindow::pixel(std::min(int(film), high - 1)) : FilterWindow(film, format.radius, size, low, high);
-  };
-  std::vector<Window> path;
+  constexpr int size = PictureFormat::table_size;
   for (const ImageTile::Splat& splat : tile.splats_) {
-    if (!splat.same_path) path.clear();
-    const Xyz& value = splat.value;
-    const Window window{along(splat.film.x, format.area.x0, format.area.x1),
-                        along(splat.film.y, format.area.y0, format.area.y1), value.y};
-    const int x1 = window.across.first + window.across.count, y1 = window.down.first + window.down.count;
-    for (int y = window.down.first; y < y1; ++y)
-      for (int x = window.across.first; x < x1; ++x) {
-        const double weight = double(window.weight(format, x, y));
-        double* sum = &sums[4 * format.index(x, y)];
-        sum[0] += weight * value.x;
-        sum[1] += weight * value.y;
-        sum[2] += weight * value.z;
-        sum[3] += weight * value.y * weight * value.y;
-        if (!(std::abs(sum[3]) + std::abs(sum[0]) + std::abs(sum[2]) <= ExactSums::largest_addend)) [[unlikely]]
-          m.complain(sum, 4, 4, x, y);
-        if (!by_length || splat.length < 1) continue;
-        double* part = &by_length[3 * (size_t(format.path_lengths) * format.index(x, y) +
-                                       size_t(std::min(splat.length, format.path_lengths)) - 1)];
-        part[0] += weight * value.x;
-        part[1] += weight * value.y;
-        part[2] += weight * value.z;
-      }
-    for (const Window& other : path)
-      for (int y = std::max(window.down.first, other.down.first); y < std::min(y1, other.down.first + other.down.count); ++y)
-        for (int x = std::max(window.across.first, other.across.first);
-             x < std::min(x1, other.across.first + other.across.count); ++x)
-          sums[4 * format.index(x, y) + 3] += 2 * (double(window.weight(format, x, y)) * window.luminance) *
-                                              (double(other.weight(format, x, y)) * other.luminance);
-    path.push_back(window);
+    if (!splat.same_path) end_path();
+    if (format.box) {
+      add(splat, std::min(int(splat.film.x), format.area.x1 - 1), std::min(int(splat.film.y), format.area.y1 - 1),
+          double(format.table[0]));
+      continue;
+    }
+    const FilterWindow across(splat.film.x, format.radius, size, format.area.x0, format.area.x1);
+    const FilterWindow down(splat.film.y, format.radius, size, format.area.y0, format.area.y1);
+    for (int j = 0; j < down.count; ++j) {
+      const float* row = &format.table[size_t(down.cells[size_t(j)]) * size];
+      for (int i = 0; i < across.count; ++i) add(splat, across.first + i, down.first + j, double(row[across.cells[size_t(i)]]));
+    }
   }
+  end_path();
 }
 
 // ---- whole steps ----------------------------------------------------------------------------------------------------------

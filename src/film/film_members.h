@@ -23,6 +23,7 @@ struct Film::Members {
   Totals totals;
   std::unique_ptr<Totals> before_step;  ///< where a step has several blocks: the sums before it
   Step step;
+  std::vector<double> splatted;  ///< zero, between splats
   std::vector<LargeSample> largest;
   size_t largest_wanted = 0;
 
@@ -32,7 +33,7 @@ struct Film::Members {
   std::vector<double>& list(List);
   void add_step();
   void note_batch(FilmSnapshot::Values&) const;
-  [[noreturn]] void complain(const double* values, size_t count, size_t stride, int x0, int y) const;
+  [[noreturn]] void complain(std::span<const double> values, size_t stride, int x0, int y) const;
 };
 
 }  // namespace etendue

@@ -13,9 +13,6 @@ struct FilterWindow {
   int first = 0, count = 0;
   std::array<int, 2 * int(maximum_filter_radius) + 2> cells;  ///< table cell of each pixel from the first
 
-  /// One pixel, of a filter that reaches no others.
-  static FilterWindow pixel(int x) { return FilterWindow(x); }
-
   /// The pixels of [low, high) whose centres lie closer than the radius to a film coordinate. The coordinate must be
   /// finite and of ordinary size.
   FilterWindow(float film, float radius, int table_size, int low, int high) {
@@ -26,9 +23,6 @@ struct FilterWindow {
     for (int i = first; i < end; ++i)
       cells[size_t(count++)] = std::min(table_size - 1, int(std::abs(float(i) - x) * cells_per_pixel));
   }
-
- private:
-  explicit FilterWindow(int x) : first(x), count(1) { cells[0] = 0; }
 };
 
 }  // namespace etendue

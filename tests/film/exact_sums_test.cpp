@@ -63,6 +63,7 @@ constexpr int place_bits = 40, lowest = -960;
 
 /// N(x, place) of exact_sums.h, by integers.
 std::int64_t rounded(double x, int place) {
+  if (x == 0) return 0;
   int exponent = 0;
   const auto mantissa = std::int64_t(std::frexp(std::abs(x), &exponent) * 0x1p53);
   const int down = lowest + place_bits * place - (exponent - 53);  // bits below the unit
