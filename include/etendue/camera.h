@@ -25,7 +25,8 @@ struct LensSample {
 /// A ray that a camera sends, and what its light counts.
 struct CameraRay {
   Ray ray;
-  Spectrum weight{1.0f};  ///< of the radiance that arrives along it: what glass and the lens's rim leave of it, over its density
+  Spectrum weight{
+      1.0f};  ///< of the radiance that arrives along it: what glass and the lens's rim leave of it, over its density
 };
 
 /// Densities with which a camera ray is drawn when film points are uniform over the whole film.
@@ -63,8 +64,9 @@ class Camera : public Component {
   /// matter of geometry. The ray's cone covers a pixel.
   virtual Ray ray(Point2 film, Point2 lens, float time) const = 0;
   /// The same with what real lenses do to light: it may be held back (false: the sample is black, and counts), weakened, and go
-  /// ways of its own for each wavelength (Wavelengths::drop_secondary; the factor belongs into the weight). By default `ray`, with
-  /// weight 1: a pixel's value is then the mean radiance of its rays. `sample_lens` and `importance` must tell of the same.
+  /// ways of its own for each wavelength (Wavelengths::drop_secondary; the factor belongs into the weight). By default `ray`,
+  /// with weight 1: a pixel's value is then the mean radiance of its rays. `sample_lens` and `importance` must tell of the
+  /// same.
   virtual bool sample_ray(Point2 film, Point2 lens, float time, Wavelengths&, CameraRay& sample) const {
     sample.ray = ray(film, lens, time);
     return true;

@@ -21,8 +21,8 @@ class VolumeShader : public Component {
   using Parent = Component;
   static void describe(Description<VolumeShader>&);
 
-  // Points are in the own coordinates of the object whose inside the medium fills, as they are written (a medium that is the same
-  // everywhere may get others); directions are those of the scene.
+  // Points are in the own coordinates of the object whose inside the medium fills, as they are written (a medium that is the
+  // same everywhere may get others); directions are those of the scene.
 
   virtual VolumeCoefficients coefficients(const Point3&, float time, const Wavelengths&) const = 0;
   /// Coefficients are the same everywhere: free paths then have a closed form.

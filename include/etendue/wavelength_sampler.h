@@ -15,7 +15,8 @@ class WavelengthSampler : public Component {
   static void describe(Description<WavelengthSampler>&);
 
   /// Wavelengths for one sample; `u` is uniform in [0, 1). Densities are per nanometre, such that `to_xyz` estimates
-  /// without bias. The key serves those that take turns over a pixel's samples; paths of one that looks at it cannot be mutated.
+  /// without bias. The key serves those that take turns over a pixel's samples; paths of one that looks at it cannot be
+  /// mutated.
   virtual Wavelengths sample(SampleKey, float u) const = 0;
 };
 

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "words.h"
 #include "etendue/describe/color.h"
 #include "etendue/describe/description.h"
+#include "words.h"
 
 namespace etendue::detail {
 

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "support/component_test_support.h"
 #include "etendue/describe/color.h"
+#include "support/component_test_support.h"
 
 namespace etendue {
 namespace {

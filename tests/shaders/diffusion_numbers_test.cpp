@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "support/component_test_support.h"
-#include "components/shaders/subsurface/diffusion_profile.h"
 #include "components/shaders/fresnel.h"
+#include "components/shaders/subsurface/diffusion_profile.h"
+#include "support/component_test_support.h"
 
 namespace etendue {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <complex>
 
+#include "components/shaders/microfacet/microfacet.h"
 #include "etendue/object_map.h"
 #include "support/shader_formulas_support.h"
-#include "components/shaders/microfacet/microfacet.h"
 
 namespace etendue::formulas_test {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "support/component_test_support.h"
-#include "etendue/describe/color.h"
 #include "components/shaders/fresnel.h"
 #include "components/shaders/hair/hair.h"
+#include "etendue/describe/color.h"
+#include "support/component_test_support.h"
 
 namespace etendue {
 namespace {

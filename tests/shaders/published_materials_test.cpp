@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "support/component_test_support.h"
-#include "etendue/describe/color.h"
 #include "components/shaders/fresnel.h"
+#include "etendue/describe/color.h"
+#include "support/component_test_support.h"
 
 namespace etendue {
 namespace {

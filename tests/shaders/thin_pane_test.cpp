@@ -3,9 +3,9 @@
 
 #include <complex>
 
+#include "components/shaders/microfacet/film_interference.h"
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
-#include "components/shaders/microfacet/film_interference.h"
 #include "support/component_test_support.h"
 
 namespace etendue {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "render/checkpoint.h"
 #include "program_support.h"
+#include "render/checkpoint.h"
 #include "render_support.h"
 
 namespace etendue::checkpoint_test {

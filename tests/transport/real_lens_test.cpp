@@ -9,8 +9,8 @@
 namespace etendue {
 namespace {
 
-/// An orthographic camera that looks down from z = 5 at 2 m by 2 m around the origin. Its left quarter is behind the rim; the rest
-/// weakens light to `clear` of it, and in its right half to half of that beyond 550 nm.
+/// An orthographic camera that looks down from z = 5 at 2 m by 2 m around the origin. Its left quarter is behind the rim; the
+/// rest weakens light to `clear` of it, and in its right half to half of that beyond 550 nm.
 class RealLensCamera final : public Camera {
  public:
   static void describe(Description<RealLensCamera>& d) {
@@ -39,7 +39,8 @@ class RealLensCamera final : public Camera {
   bool parallel() const override { return true; }
   std::optional<Point2> film_point(const Ray& r) const override {
     const Point2 film{(r.origin.x + 1) / 2 * width_, (1 - r.origin.y) / 2 * height_};
-    if (r.direction.z > -0.9999f || film.x < width_ / 4 || film.x >= width_ || film.y < 0 || film.y >= height_) return std::nullopt;
+    if (r.direction.z > -0.9999f || film.x < width_ / 4 || film.x >= width_ || film.y < 0 || film.y >= height_)
+      return std::nullopt;
     return film;
   }
   std::optional<LensSample> sample_lens(const Point3& from, float, Point2) const override {
@@ -68,17 +69,18 @@ class RealLensCamera final : public Camera {
   float width_ = 1, height_ = 1;
 };
 
-// A white plate under even light from above has radiance 1 everywhere. What comes of it: nothing in the left quarter, 0.8 in the
-// second, and in the right half 0.8 (Y below 550 nm + half of Y above) over all Y.
+// A white plate under even light from above has radiance 1 everywhere. What comes of it: nothing in the left quarter, 0.8 in
+// the second, and in the right half 0.8 (Y below 550 nm + half of Y above) over all Y.
 TEST(RealLens, WeakensTheSameForAllAlgorithms) {
   static const Register<RealLensCamera> registered;
   const auto picture = [](const std::string& renderer, const std::string& camera, const std::string& radiance, int samples) {
     const Ref<Job> job = load_job_text(
-        fmt::format("Job {{ renderer: {}, camera: {}, image: ImageBuffer {{ width: 4, height: 2, filter: BoxFilter {{}} }}, scene: "
-                    "EmbreeScene {{ objects: [ Rectangle {{ corner: [-4, -4, 0], edge_u: [8, 0, 0], edge_v: [0, 8, 0], shader: "
-                    "Lambertian {{ color: 1 }} }}, Rectangle {{ corner: [-1.5, -1.5, -1], edge_u: [0, 3, 0], edge_v: [3, 0, 0] }}, "
-                    "Environment {{ emission: DiffuseEmission {{ radiance: {} }} }} ] }} }}",
-                    renderer, camera, radiance),
+        fmt::format(
+            "Job {{ renderer: {}, camera: {}, image: ImageBuffer {{ width: 4, height: 2, filter: BoxFilter {{}} }}, scene: "
+            "EmbreeScene {{ objects: [ Rectangle {{ corner: [-4, -4, 0], edge_u: [8, 0, 0], edge_v: [0, 8, 0], shader: "
+            "Lambertian {{ color: 1 }} }}, Rectangle {{ corner: [-1.5, -1.5, -1], edge_u: [0, 3, 0], edge_v: [3, 0, 0] }}, "
+            "Environment {{ emission: DiffuseEmission {{ radiance: {} }} }} ] }} }}",
+            renderer, camera, radiance),
         "lens.etd");
     job->renderer->samples = samples;
     job->render();

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "support/component_test_support.h"
 #include "etendue/describe/color.h"
+#include "support/component_test_support.h"
 #include "support/render_support.h"
 
 namespace etendue::test {

@@ -15,9 +15,9 @@ class Schedule {
  public:
   virtual ~Schedule() = default;
 
-  /// Runs `work(item, tile, arena)` for items 0 … count-1 on all threads and adds the tiles to the film, in the order of items. Work
-  /// begins its tile (ImageTile::begin; an empty area for splats alone) and counts its paths. An item should take some milliseconds.
-  /// A step may do this several times. What work throws ends the step, which then leaves nothing.
+  /// Runs `work(item, tile, arena)` for items 0 … count-1 on all threads and adds the tiles to the film, in the order of items.
+  /// Work begins its tile (ImageTile::begin; an empty area for splats alone) and counts its paths. An item should take some
+  /// milliseconds. A step may do this several times. What work throws ends the step, which then leaves nothing.
   template <class Work>
   void film(std::uint64_t count, Work&& work) {
     using W = std::remove_reference_t<Work>;

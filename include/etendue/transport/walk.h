@@ -166,7 +166,8 @@ class Walk {
     ray.width = vertex.point.footprint;
   }
 
-  /// Goes straight on through the surface of the last vertex, which is then none: the last direction stays the one that was chosen.
+  /// Goes straight on through the surface of the last vertex, which is then none: the last direction stays the one that was
+  /// chosen.
   void pass_on(const ScatterSample& next) {
     throughput *= next.weight;
     edge *= next.weight;

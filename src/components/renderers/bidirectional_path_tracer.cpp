@@ -228,7 +228,8 @@ class BidirectionalPathTracer final : public Renderer {
     const auto lens = s.context.camera.sample_lens(y.point.position, y.point.time, numbers.next_pair());
     if (!lens || !(lens->density > 0)) return;
     const ScatterValue f = scattering(y, y.out, lens->direction, Transport::importance);
-    Spectrum light = y.throughput * f.value * (lens->importance / lens->density) * s.context.camera.lens_weight(*lens, s.light_wavelengths);
+    Spectrum light =
+        y.throughput * f.value * (lens->importance / lens->density) * s.context.camera.lens_weight(*lens, s.light_wavelengths);
     if (light.black()) return;
     MediumStack scratch;
     Spectrum likely;
