@@ -257,7 +257,11 @@ Drawn default_part(const ClassInfo& info, const Fixtures& fixtures, std::mt19937
 }
 
 Value draw_value(const ClassInfo& info, const Member& m, const Fixtures& fixtures, std::mt19937_64& random) {
-  return Drawer(fixtures, random).any_value(info, m);
+  try {
+    return Drawer(fixtures, random).any_value(info, m);
+  } catch (const Error&) {
+    return {};  // a component that was drawn for it is refused
+  }
 }
 
 Drawn part_with_files(const ClassInfo& info, const Fixtures& fixtures, std::mt19937_64& random) {
