@@ -38,7 +38,7 @@ class ReddishWavelengths final : public WavelengthSampler {
     for (int i = 0; i < spectrum_size; ++i) {
       float v = u + float(i) / spectrum_size;
       if (v >= 1) v -= 1;
-      w.place(i, 360 + 470 * std::pow(v, 0.95f), 1.0f / 470);
+      w.place(i, 360 + 470 * std::pow(v, 0.9f), 1.0f / 470);
     }
     return w;
   }

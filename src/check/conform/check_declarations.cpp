@@ -239,6 +239,7 @@ void check_meaning(Trial& trial, const Member& m) {
 }
 
 void check_declarations(Trial& trial) {
+  load_job_text(stage, "stage");  // throws if it is wrong: what a part refuses is passed over below
   for (const Member& m : trial.part().class_info().members) {
     if (!m.conditions.empty()) ConditionTrial(trial, m).check();
     if (m.meaning != Meaning::plain && !m.list) check_meaning(trial, m);

@@ -50,6 +50,7 @@ class Drawer {
       const std::string path = fixtures_->file_for(info, m);
       return path.empty() || m.list ? Value() : Value(FilePath{path, ""});
     }
+    if (m.kind == Kind::string && !m.choices.empty() && !m.list) return Value(m.choices[index(m.choices.size())]);
     if (!m.list) return value_for(m, 1);
     if (m.kind == Kind::component) return component_list(m, 1);
     Numbers n;
@@ -91,9 +92,7 @@ class Drawer {
       case Kind::transform: return Value(transform());
       case Kind::component: return component_for(m, depth);
       case Kind::string:
-        if (!m.choices.empty()) return Value(m.choices[index(m.choices.size())]);
-        return {};  // nothing is known of which are valid
-      case Kind::file: return {};
+      case Kind::file: return {};  // nothing is known of which are valid
     }
     return {};
   }
@@ -258,7 +257,11 @@ Drawn default_part(const ClassInfo& info, const Fixtures& fixtures, std::mt19937
 }
 
 Value draw_value(const ClassInfo& info, const Member& m, const Fixtures& fixtures, std::mt19937_64& random) {
-  return Drawer(fixtures, random).any_value(info, m);
+  try {
+    return Drawer(fixtures, random).any_value(info, m);
+  } catch (const Error&) {
+    return {};  // a component that was drawn for it is refused
+  }
 }
 
 Drawn part_with_files(const ClassInfo& info, const Fixtures& fixtures, std::mt19937_64& random) {
