@@ -111,14 +111,17 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   s.wavelengths = context.wavelengths.sample(key, numbers.next());
   CameraRay from;
   PathRecord* const record = request.observe.record;
-  if (camera.sample_ray(s.film, lens, time, s.wavelengths, from)) {
-    from.ray.width *= renderer.map_filter;
-    from.ray.spread *= renderer.map_filter;
-    if (record) [[unlikely]]
-      record_camera(*record, camera, from.ray);
-    s.value = from.weight * radiance(from.ray, sample);
-    weigh_parts(from.weight, request.observe);
+  if (!camera.sample_ray(s.film, lens, time, s.wavelengths, from)) {
+    // Held back. What the algorithm brings elsewhere by paths from luminaires does not go this way, and comes all the same.
+    from.ray = camera.ray(s.film, lens, time);
+    from.weight = {};
   }
+  from.ray.width *= renderer.map_filter;
+  from.ray.spread *= renderer.map_filter;
+  if (record) [[unlikely]]
+    record_camera(*record, camera, from.ray);
+  s.value = from.weight * radiance(from.ray, sample);
+  weigh_parts(from.weight, request.observe);
   arena.reset();
   if (record) [[unlikely]] {
     record->wavelengths = s.wavelengths;

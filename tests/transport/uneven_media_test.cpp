@@ -45,7 +45,7 @@ void register_ramp() { static const Register<RampVolume> registered; }  // once 
 /// 1, in its own units of 2 m.
 std::string box(const std::string& volume) {
   return "Box { centre: [0, 0, 0.5], size: [2, 2, 1], shader: PassThrough {}, interior: RampVolume { " + volume +
-         " }, transform: translate([-1, 0, 0] m) * rotate(90 deg, \"y\") * scale(2) }";
+         " }, transform: translate([-1, 0, 0] m) * rotate(90 deg, \"y\") * scale(2) }\n";
 }
 
 struct Outcome {
@@ -79,7 +79,7 @@ void expect(const Outcome& found, double known, const std::string& what) {
 }
 
 const char* const plate_behind =
-    "Rectangle { corner: [-3, -40, -40], edge_u: [0, 80, 0], edge_v: [0, 0, 80], emission: DiffuseEmission { radiance: 1, "
+    "Rectangle { corner: [-3, -0.4, -0.4], edge_u: [0, 0.8, 0], edge_v: [0, 0, 0.8], emission: DiffuseEmission { radiance: 1, "
     "sides: "
     "both } }";
 
@@ -95,7 +95,8 @@ TEST(UnevenMedia, LetThroughWhatTheIntegralSays) {
     expect(picture_mean(renderer, samples, "[3, 0, 0]", "[0, 0, 0]", medium + plate_behind), std::exp(-1.5), renderer);
     // From the middle, looking to the dense end and past it: what lies there is lit through 0.5 <= z <= 1.
     const char* const ahead =
-        " Rectangle { corner: [3, -40, -40], edge_u: [0, 80, 0], edge_v: [0, 0, 80], emission: DiffuseEmission { radiance: 1, "
+        " Rectangle { corner: [3, -0.4, -0.4], edge_u: [0, 0.8, 0], edge_v: [0, 0, 0.8], emission: DiffuseEmission { radiance: "
+        "1, "
         "sides: both } }";
     expect(picture_mean(renderer, samples, "[0, 0, 0]", "[1, 0, 0]", medium + ahead), std::exp(-(0.3 + 0.9 * 0.75)), renderer);
   }
@@ -106,7 +107,7 @@ TEST(UnevenMedia, DimsWhatIsLitThroughIt) {
   register_ramp();
   const std::string scene =
       box("low: 0.3, slope: 0.9, top: 1") +
-      " Rectangle { corner: [-1.5, -40, -40], edge_u: [0, 80, 0], edge_v: [0, 0, 80], shader: Lambertian { color: 0.5 } }"
+      " Rectangle { corner: [-1.5, -40, -40], edge_u: [0, 80, 0], edge_v: [0, 0, 80], shader: Lambertian { color: 0.5 } }\n"
       " Distant { direction: [-1, 0, 0], emission: DiffuseEmission { radiance: 1 } }";
   // Seen from the far side of the plate's front, aslant under the box, where nothing lies between.
   const double known = 0.5 / M_PI * std::exp(-1.5);
