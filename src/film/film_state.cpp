@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "film_members.h"
+#include "film_state.h"
 
 namespace etendue {
 namespace {
@@ -72,6 +73,8 @@ static_assert(std::has_unique_object_representations_v<FeatureCount>, "written a
 std::array<std::int32_t, 9> kind_of_film(const PictureFormat& f, Estimator estimator) {
   return {f.width, f.height, f.area.x0, f.area.y0, f.area.x1, f.area.y1, int(f.wants_features), f.path_lengths, int(estimator)};
 }
+
+constexpr size_t place_of_estimator = 8;  // in those numbers
 
 void write_counts(Writer& w, const FilmCounts& counts) {
   w.list(counts.samples);
@@ -200,6 +203,16 @@ void Film::Totals::add(const Totals& other) {
       sums[p].add(other.sums[p]);
   counts.add(other.counts);
   steps += other.steps;
+}
+
+Estimator estimator_of(std::span<const std::byte> state) {
+  Reader r(state);
+  if (r.value<std::uint64_t>() != magic) throw Error("this is not a film's state, or one of another version");
+  for (size_t i = 0; i < place_of_estimator; ++i) r.value<std::int32_t>();
+  const auto estimator = r.value<std::int32_t>();
+  if (estimator != int(Estimator::independent) && estimator != int(Estimator::correlated))
+    throw Error("the film's state is of an unknown kind of algorithm");
+  return Estimator(estimator);
 }
 
 }  // namespace etendue

@@ -9,6 +9,7 @@
 
 #include "etendue/describe/registry.h"
 #include "etendue/language/language.h"
+#include "film/film_state.h"
 
 namespace etendue {
 
@@ -165,19 +166,20 @@ Checkpoint merge_checkpoints(const std::vector<std::string>& paths) {
   const Ref<ImageBuffer> image = ref_cast<ImageBuffer>(parse_component(merged.image, "the checkpoint's description"));
   if (!image) throw Error(fmt::format("'{}' describes no image", parts.front().path));
   prepare_tree(*image);
-  Film film(*image);
+  std::unique_ptr<Film> film;
   for (const Part& part : parts) {
     const Checkpoint c = read_checkpoint(part.path);
     if (c.done != part.header.done) throw Error(fmt::format("'{}' changed while it was read", part.path));
     if (!c.state.renderer.empty())
       throw Error(fmt::format("cannot merge '{}': {} learns from one pass to the next, so its passes belong together",
                               part.path, c.metadata.at("renderer")));
-    film.add_state(c.state.image);
+    if (!film) film = std::make_unique<Film>(*image, estimator_of(c.state.image));
+    film->add_state(c.state.image);
     merged.seconds += c.seconds;
     merged.samples_wanted = std::max(merged.samples_wanted, c.samples_wanted);
     for (const IndexRange& range : c.done) insert(merged.done, range);
   }
-  merged.state.image = film.save_state();
+  merged.state.image = film->save_state();
   return merged;
 }
 

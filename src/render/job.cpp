@@ -6,6 +6,7 @@
 
 #include "checkpoint.h"
 #include "describe/guard.h"
+#include "film/film_state.h"
 #include "geometry/rendering_space.h"
 #include "parallel_schedule.h"
 
@@ -144,7 +145,10 @@ Ended Job::resume(const std::string& checkpoint) {
 }
 
 void Job::restore(const Checkpoint& c) {
-  begin_film();
+  if (renderer)
+    begin_film();
+  else  // the picture alone
+    film_ = std::make_unique<Film>(*image, estimator_of(c.state.image));
   film_->load_state(c.state.image);
   if (process_) process_->load_state(c.state.renderer);
   done_ = c.done;

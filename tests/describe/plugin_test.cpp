@@ -82,6 +82,29 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
                 &output),
             0)
       << output;
+
+  // The photon mapper goes on, and is put together from parts, to the same bytes without a line for it.
+  const std::string mapper = program + " render " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --size 24x24 --quiet --plugin " +
+                             f +
+                             "/build/libsmall_photon_mapper.so --set 'renderer=SmallPhotonMapper { photons: 2000 }' --samples ";
+  const auto film = [&](const std::string& name) { return " -o " + f + "/" + name + ".npy"; };
+  EXPECT_EQ(run(mapper + "6" + film("whole"), &output), 0) << output;
+  EXPECT_EQ(run(mapper + "3 --checkpoint " + f + "/half" + film("half"), &output), 0) << output;
+  EXPECT_EQ(run(mapper + "6 --resume " + f + "/half" + film("resumed"), &output), 0) << output;
+  EXPECT_EQ(run("cmp " + f + "/whole.npy " + f + "/resumed.npy", &output), 0) << output;
+  EXPECT_EQ(run(mapper + "6 --passes 0:2 --checkpoint " + f + "/a" + film("a"), &output), 0) << output;
+  EXPECT_EQ(run(mapper + "6 --passes 2:6 --checkpoint " + f + "/b" + film("b"), &output), 0) << output;
+  EXPECT_EQ(run(program + " image merge " + f + "/b " + f + "/a" + film("merged"), &output), 0) << output;
+  EXPECT_EQ(run("cmp " + f + "/whole.npy " + f + "/merged.npy", &output), 0) << output;
+  EXPECT_EQ(run(mapper + "6 --pixel 12,20 --sample 4", &output), 0) << output;
+  // What holds a path tracer inside finds what that finds.
+  EXPECT_EQ(
+      run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
+              "/build/libprimary_sample_metropolis.so --renderers 'PathTracer,PrimarySampleMetropolis { inner: PathTracer "
+              "{}, bootstrap: 1024 }' --samples 256 --size 32x32 --quiet",
+          &output),
+      0)
+      << output;
 }
 
 TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
