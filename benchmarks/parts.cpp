@@ -25,7 +25,7 @@ struct Box {
     prepare_tree(*job);
     const Ref<Sampler> random = ref_cast<Sampler>(Registry::instance().create("IndependentSampler"));
     for (int i = 0; i < 4096; ++i) {
-      Numbers s(*random, SampleKey(1, i, 0, 0));
+      NumberStream s(*random, SampleKey(1, i, 0, 0));
       Ray ray;
       ray.origin = {0.01f + 0.53f * s.next(), 0.01f + 0.53f * s.next(), 0.01f + 0.53f * s.next()};
       ray.direction = warp::sphere(s.next_pair());

@@ -65,7 +65,7 @@ std::vector<Ref<SceneObject>> objects_of(const std::string& world) {
   std::vector<Ref<SceneObject>> spheres;
   const Ref<Sampler> random = make_part<Sampler>("IndependentSampler");
   for (int i = 0; i < 1000; ++i) {
-    Numbers s(*random, SampleKey(2, i, 0, 0));
+    NumberStream s(*random, SampleKey(2, i, 0, 0));
     spheres.push_back(make_part<SceneObject>("Sphere"));
     set(*spheres.back(), "radius", Value(Number{0.02 + 0.06 * double(s.next())}));
     spheres.back()->transform = Transform::translate({2 * s.next() - 1, 2 * s.next() - 1, 2 * s.next() - 1});
@@ -100,7 +100,7 @@ struct Bench {
       ray.origin = from;
       ray.direction = normalize(forward + x * right + y * up);
       coherent.push_back(ray);
-      Numbers s(*numbers, SampleKey(1, int(i), 0, 0));
+      NumberStream s(*numbers, SampleKey(1, int(i), 0, 0));
       ray.origin = scene->centre() + size * Vector3{2 * s.next() - 1, 2 * s.next() - 1, 2 * s.next() - 1};
       ray.direction = warp::sphere(s.next_pair());
       random.push_back(ray);

@@ -12,7 +12,7 @@
 #include <map>
 #include <memory>
 
-#include "check/conform/fixtures.h"
+#include "check/conform/fixtures/fixtures.h"
 #include "etendue/core/arena.h"
 #include "etendue/core/warp.h"
 #include "etendue/language/language.h"
@@ -63,7 +63,7 @@ struct Bench {
     const Ref<Sampler> random = make<Sampler>("IndependentSampler");
     const Frame frame(point.normal);
     for (size_t i = 0; i < count; ++i) {
-      Numbers s(*random, SampleKey(1, int(i), 0, 0));
+      NumberStream s(*random, SampleKey(1, int(i), 0, 0));
       Query& q = queries[i];
       q.out = frame.to_world(warp::cosine_hemisphere(s.next_pair()));
       q.in = through ? warp::sphere(s.next_pair()) : frame.to_world(warp::cosine_hemisphere(s.next_pair()));
