@@ -61,9 +61,11 @@ template <class At>
 bool collide(const VolumeShader& volume, const Ray& local, float reach, float m, const Wavelengths& w, NumberStream& numbers,
              const At& at) {
   if (!(m > 0)) return true;
-  for (float t = 0;;) {
-    t -= std::log1p(-numbers.next()) / m;
-    if (!(t < reach)) return true;
+  // In double: far along the ray a step through dense matter would be lost in a float, and the loop would never end.
+  for (double along = 0;;) {
+    along -= double(std::log1p(-numbers.next())) / double(m);
+    if (!(along < double(reach))) return true;
+    const auto t = float(along);
     if (!at(t, volume.coefficients(local(t), local.time, w))) return false;
   }
 }

@@ -106,7 +106,7 @@ void LayerStack::trace_back(const Vector3& in, Transport transport, HashedRandom
 }
 
 // The depth of the next scattering along w is drawn for one wavelength, chosen in proportion to what is carried; all are
-// divided by the density of the mixture, as on long distances (transport/media.h). True: scattered before the face is reached.
+// divided by the density of the mixture, as on long distances (transport/medium.h). True: scattered before the face is reached.
 bool LayerStack::fly(const Vector3& w, float& z, Spectrum& carried, HashedRandom& random) const {
   const int towards = side(w);
   const float reach = towards == 0 ? z : 1 - z;

@@ -6,7 +6,7 @@
 // function, and so on. At the boundary it is reflected, by Fresnel's equations, or leaves.
 //
 // The coefficients differ between the path's wavelengths. Distances are drawn for one of them, chosen in proportion to the
-// throughputs W, and all use the density of the mixture (as in transport/media.h): with w_k = W_k / sum W,
+// throughputs W, and all use the density of the mixture (as in transport/medium.h): with w_k = W_k / sum W,
 //     scattered at t:      W_j *= s_s,j T_j(t) / sum_k w_k s_t,k T_k(t),       T = exp(-s_t t) [s_t in 1/m],
 //     boundary at t:       W_j *= T_j(t) / sum_k w_k T_k(t).
 // The boundary reflects with the mean of F by the same shares: W_j *= F_j / sum_k w_k F_k, or (1 - F_j) / (1 - sum).
