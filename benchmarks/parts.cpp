@@ -7,7 +7,7 @@
 #include "etendue/core/warp.h"
 #include "etendue/describe/color.h"
 #include "etendue/language/language.h"
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 
 namespace {
 
@@ -96,7 +96,7 @@ BENCHMARK_CAPTURE(evaluate, glass, glass_index("N-BK7"));
 
 void path(benchmark::State& state, const char* structure) {
   const Box box(structure);
-  const std::unique_ptr<RenderProcess> process = box.job->start_at(0);
+  const std::unique_ptr<RenderProcess> process = Render(box.job).start_at(0);
   Arena arena;
   std::uint32_t n = 0;
   for ([[maybe_unused]] auto _ : state) {

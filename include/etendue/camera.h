@@ -50,10 +50,15 @@ class Camera : public Component {
   /// How far open the shutter is at a time, from 0 to 1.
   float shutter_efficiency(float time) const;
 
-  /// Where it is when the shutter opens, in the coordinates of the world: asked before it is prepared. The renderer counts
-  /// from there or from the middle of what is seen, so that floats are fine where they have to be. A camera that does not say
-  /// has everything counted from the origin.
-  virtual std::optional<DoublePoint3> place() const { return std::nullopt; }
+  /// Where a camera is, in the coordinates of the world, and about how far from it what it looks at [m]; 0: unknown.
+  struct Place {
+    DoublePoint3 position;
+    double distance = 0;
+  };
+  /// Where it is when the shutter opens: asked before it is prepared. The renderer counts from near there, or from the middle of
+  /// what is seen, so that floats are fine where they have to be. A camera that does not say has everything counted from the
+  /// origin.
+  virtual std::optional<Place> place() const { return std::nullopt; }
   /// The point of the world that the renderer counts from: for a camera that says its place, rays, lens points and points it is
   /// asked about are relative to it. Set by the Job before the camera is prepared.
   DoublePoint3 world_centre;

@@ -84,6 +84,7 @@ class Scene : public SceneObject {
 
   // As an object in another scene: transforms the ray and asks itself.
   void prepare() override;
+  void prepare_again() override;
   Bounds3 bounds() const override;
   bool unbounded() const override { return unbounded_; }
   std::vector<SceneObject*> placed_within() const override;
@@ -101,6 +102,8 @@ class Scene : public SceneObject {
 
  private:
   friend class Instance;
+  void require_good_objects();
+  std::vector<const SceneObject*> survey();
   void choose_centre();
   void locate_nested(const Ray&, const Hit&, SurfacePoint&) const;
   Bounds3 placed_bounds(const AnimatedTransform& placed) const;

@@ -10,12 +10,12 @@
 
 namespace etendue {
 
-std::string fireflies_text(const Job& job, const std::string& picture_command) {
-  const std::vector<LargeSample> largest = job.film().largest_samples();
+std::string fireflies_text(const Render& render, const std::string& picture_command) {
+  const std::vector<LargeSample> largest = render.film().largest_samples();
   if (largest.empty()) return "No sample brought any light.\n";
 
-  const Image picture = job.film().develop();
-  const PixelArea& area = job.image->area();
+  const Image picture = render.film().develop();
+  const PixelArea& area = render.job().image->area();
   std::string text = largest.size() == 1
                          ? "The sample that brought most light; to see its path:\n"
                          : fmt::format("The {} samples that brought most light; to see the path of one:\n", largest.size());
@@ -35,8 +35,8 @@ std::string fireflies_text(const Job& job, const std::string& picture_command) {
   return text;
 }
 
-void report_fireflies(const Job& job, const std::string& picture_command, std::FILE* to) {
-  fmt::print(to, "{}", fireflies_text(job, picture_command));
+void report_fireflies(const Render& render, const std::string& picture_command, std::FILE* to) {
+  fmt::print(to, "{}", fireflies_text(render, picture_command));
   std::fflush(to);
 }
 

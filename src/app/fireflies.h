@@ -4,15 +4,15 @@
 #include <cstdio>
 #include <string>
 
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 
 namespace etendue {
 
 /// Tells the samples a finished render kept (Film::keep_largest, before it), largest first: what each brought, how
 /// that compares to its pixel, and the command that replays it alone.
-std::string fireflies_text(const Job&, const std::string& picture_command);
+std::string fireflies_text(const Render&, const std::string& picture_command);
 
 /// The same, printed.
-void report_fireflies(const Job&, const std::string& picture_command, std::FILE* to = stdout);
+void report_fireflies(const Render&, const std::string& picture_command, std::FILE* to = stdout);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// Ctrl-C while a job renders.
+// Ctrl-C while it renders.
 
 #include "interruption.h"
 
@@ -13,26 +13,26 @@ namespace etendue {
 
 namespace {
 
-std::atomic<Job*> running{nullptr};
+std::atomic<Render*> running{nullptr};
 std::atomic<int> requests{0};  // 1: finish, 2: abort
-static_assert(std::atomic<Job*>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
+static_assert(std::atomic<Render*>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free);
 
 void say(std::string_view text) { [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size()); }
 
 // Only what is safe in a signal handler: atomics and write().
 void handle(int signal) {
-  Job* job = running.load();
-  if (!job) return;
+  Render* render = running.load();
+  if (!render) return;
   const int error = errno;  // of whatever was interrupted
   int none = 0;
   if (requests.compare_exchange_strong(none, 1)) {
     say("\nfinishing this pass and writing what there is; Ctrl-C again aborts\n");
-    job->finish();
+    render->stop();
   } else if (signal == SIGINT) {
     requests.store(2);
     say("\naborting\n");
-    job->abort();
+    render->abort();
     std::signal(SIGINT, SIG_DFL);
   }
   errno = error;
@@ -52,9 +52,9 @@ void install(void (*handler)(int)) {
 
 }  // namespace
 
-Interruption::Interruption(Job& job) {
+Interruption::Interruption(Render& render) {
   requests = 0;
-  running = &job;
+  running = &render;
   install(handle);
 }
 

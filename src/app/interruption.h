@@ -1,15 +1,15 @@
 #pragma once
-// Ctrl-C while a job renders.
+// Ctrl-C while it renders.
 
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 
 namespace etendue {
 
-/// While it lives, the first SIGINT, SIGTERM or SIGHUP lets the job finish its pass and a second SIGINT aborts it, within the
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP lets the render finish its pass and a second SIGINT aborts it, within the
 /// paths it is at; a third ends the program. Under nohup SIGHUP stays ignored. One at a time.
 class Interruption {
  public:
-  explicit Interruption(Job&);
+  explicit Interruption(Render&);
   ~Interruption();
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;

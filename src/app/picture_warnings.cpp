@@ -44,10 +44,9 @@ Shown shown(const Image& radiance, const Image& display) {
 
 }  // namespace
 
-std::vector<SceneWarning> picture_warnings(const Job& job) {
+std::vector<SceneWarning> picture_warnings(const Job& job, const std::vector<Ref<Output>>& outputs, const Image& radiance) {
   std::vector<SceneWarning> list;
   if (!shows_light(*job.renderer)) return list;
-  const Image radiance = job.picture();
   if (radiance.channels.size() < 3) return list;
   const bool any = std::any_of(radiance.values.begin(), radiance.values.end(), [](double v) { return v > 0; });
   if (!any) {
@@ -57,7 +56,7 @@ std::vector<SceneWarning> picture_warnings(const Job& job) {
          job.location_of("renderer")});
     return list;
   }
-  for (const Ref<Output>& output : job.outputs) {
+  for (const Ref<Output>& output : outputs) {
     const ToneMap* tone = output->tone_map ? output->tone_map.get() : job.tone_map.get();
     if (!output->for_display() || !tone) continue;
     const Shown s = shown(radiance, tone->apply(radiance));

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 
 namespace etendue {
 

@@ -135,11 +135,7 @@ std::vector<RenderOptions::Override> RenderOptions::overrides() const {
 Ref<Job> RenderOptions::load() const {
   // A command line that makes no sense is told before a long load.
   const std::vector<Override> list = overrides();
-  const std::optional<IndexRange> range = parse_passes();
-  double interval = make<Job>()->checkpoint_interval;
-  if (!every.empty()) interval = every == "0" || every == "0s" ? 0 : parse_duration(every, "--every");
-  if (!every.empty() && checkpoint_file().empty())
-    throw Error("there is no checkpoint to be written: give --checkpoint as well", {intern("--every"), 0, 0});
+  settings();
   if (const std::string from = resumed_file(); !from.empty()) read_checkpoint_header(from);
   Ref<Job> job = SceneOptions::load();
   std::vector<Error> errors;
@@ -156,14 +152,22 @@ Ref<Job> RenderOptions::load() const {
     errors.emplace_back(fmt::format("an error of {} is no limit: give one that a picture can reach, such as 0.01", error),
                         Location{intern("--error"), 0, 0});
   if (!errors.empty()) throw Errors(std::move(errors));
-  job->threads = threads;
-  job->checkpoint_file = checkpoint_file();
-  job->checkpoint_interval = interval;
-  job->passes = range;
   job->metadata["file"] = file;
   job->metadata["file_hash"] = file_hash();
   job->metadata["command_line"] = picture_command();
   return job;
+}
+
+RenderSettings RenderOptions::settings() const {
+  RenderSettings settings;
+  settings.threads = threads;
+  settings.steps = parse_passes();
+  settings.checkpoint_file = checkpoint_file();
+  if (every.empty()) return settings;
+  if (settings.checkpoint_file.empty())
+    throw Error("there is no checkpoint to be written: give --checkpoint as well", {intern("--every"), 0, 0});
+  settings.checkpoint_interval = every == "0" || every == "0s" ? 0 : parse_duration(every, "--every");
+  return settings;
 }
 
 std::string RenderOptions::picture_command() const {
@@ -219,11 +223,11 @@ Ref<Output> output_for(const std::string& file) {
 
 }  // namespace
 
-void choose_outputs(Job& job, const std::vector<std::string>& files) {
+std::vector<Ref<Output>> chosen_outputs(const std::vector<Ref<Output>>& described, const std::vector<std::string>& files) {
   std::vector<Ref<Output>> outputs;
   for (const std::string& file : files) {
     Ref<Output> output = output_for(file);
-    for (const Ref<Output>& had : job.outputs)
+    for (const Ref<Output>& had : described)
       if (had && &had->class_info() == &output->class_info()) {
         output = ref_cast<Output>(copy(*had));
         break;
@@ -231,27 +235,25 @@ void choose_outputs(Job& job, const std::vector<std::string>& files) {
     set(*output, "file", Value(FilePath{file, ""}));
     outputs.push_back(output);
   }
-  if (outputs.empty() && job.outputs.empty()) outputs.push_back(output_for(".default.png"));
-  if (!outputs.empty()) job.outputs = std::move(outputs);
+  if (!outputs.empty()) return outputs;
+  return described.empty() ? std::vector{output_for(".default.png")} : described;
 }
 
-std::vector<std::string> write_each_output(Job& job, const std::string& stem, std::vector<Error>& errors) {
+std::vector<std::string> write_each(const std::vector<Ref<Output>>& outputs, const Job& job, const Image& picture,
+                                    const std::string& stem, std::vector<Error>& errors) {
   std::vector<std::string> written;
-  const std::vector<Ref<Output>> outputs = job.outputs;
   for (const Ref<Output>& output : outputs) {
-    job.outputs = {output};
     try {
-      for (const std::string& path : job.write_outputs(stem)) written.push_back(path);
+      written.push_back(write_output(job, *output, picture, stem));
     } catch (const Error& error) {
       errors.push_back(error);
     }
   }
-  job.outputs = outputs;
   return written;
 }
 
-void add_outputs(const Job& job, const std::string& stem, OutputFiles& files) {
-  for (const Ref<Output>& output : job.outputs) {
+void add_outputs(const std::vector<Ref<Output>>& outputs, const std::string& stem, OutputFiles& files) {
+  for (const Ref<Output>& output : outputs) {
     if (!output) continue;  // preparing the job says so
     const Location at = output->location_of("file");
     files.add(output->path(stem), at.known() ? at : Location{intern("--output"), 0, 0});

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "etendue/render/render.h"
 #include "files/output_files.h"
 #include "scene_options.h"
 
@@ -25,8 +26,10 @@ struct RenderOptions : SceneOptions {
 
   void add_to(CLI::App& command);
 
-  /// Loads the file and applies all overrides but the outputs. Throws Errors.
+  /// Loads the file and applies all overrides but the outputs, and checks the settings. Throws Errors.
   Ref<Job> load() const;
+  /// How it is to be run. Throws Error when that makes no sense.
+  RenderSettings settings() const;
   /// The file to go on from; empty: the render begins.
   std::string resumed_file() const;
   /// The file to keep the state in; empty: none.
@@ -50,15 +53,14 @@ struct RenderOptions : SceneOptions {
   std::optional<IndexRange> parse_passes() const;
 };
 
-/// Replaces a job's outputs by files whose endings choose the format. The settings of an output of the same class that
-/// the job has are kept. Without files, a job that has no output gets a PNG.
-void choose_outputs(Job&, const std::vector<std::string>& files);
-
-/// Writes each output by itself, with file names from `stem` for those without: when one fails, the others are still
+/// Outputs to files whose endings choose the format, with the settings of a described output of the same class if there is one.
+/// Without files the described ones; if there are none, a PNG.
+std::vector<Ref<Output>> chosen_outputs(const std::vector<Ref<Output>>& described, const std::vector<std::string>& files);
+/// Writes a picture to each output by itself, with file names from `stem` for those without: when one fails, the others are still
 /// written. Returns what was written.
-std::vector<std::string> write_each_output(Job&, const std::string& stem, std::vector<Error>& errors);
-
-/// Adds the files of all outputs, with file names from `stem` for those without.
-void add_outputs(const Job&, const std::string& stem, OutputFiles&);
+std::vector<std::string> write_each(const std::vector<Ref<Output>>& outputs, const Job&, const Image& picture,
+                                    const std::string& stem, std::vector<Error>& errors);
+/// Adds the files of outputs, with file names from `stem` for those without.
+void add_outputs(const std::vector<Ref<Output>>& outputs, const std::string& stem, OutputFiles&);
 
 }  // namespace etendue

@@ -83,7 +83,7 @@ ReplayedPath replay(const RenderProcess& process, int x, int y, std::uint32_t sa
   return path;
 }
 
-PixelReplay begin(Job& job, int x, int y) {
+PixelReplay begin(const Job& job, int x, int y) {
   if (!job.image->sampled_area().contains(x, y)) throw Error(fmt::format("there is no pixel {},{} in the picture", x, y));
   PixelReplay result;
   result.x = x;
@@ -94,18 +94,18 @@ PixelReplay begin(Job& job, int x, int y) {
 
 }  // namespace
 
-PixelReplay replay_sample(Job& job, int x, int y, std::uint32_t sample) {
-  PixelReplay result = begin(job, x, y);
-  result.paths.push_back(replay(*job.start_at(sample), x, y, sample));
+PixelReplay replay_sample(const Render& render, int x, int y, std::uint32_t sample) {
+  PixelReplay result = begin(render.job(), x, y);
+  result.paths.push_back(replay(*render.start_at(sample), x, y, sample));
   return result;
 }
 
-PixelReplay replay_pixel(Job& job, int x, int y, size_t most) {
-  PixelReplay result = begin(job, x, y);
+PixelReplay replay_pixel(const Render& render, int x, int y, size_t most) {
+  PixelReplay result = begin(render.job(), x, y);
 
   // In parts of a fixed size, put together in their order: sums are the same on any number of threads. What a renderer makes
   // for a step serves the samples of that step alone.
-  const std::uint32_t step = job.samples_per_pass(), part_size = std::min(step, 1024u);
+  const std::uint32_t step = render.samples_per_step(), part_size = std::min(step, 1024u);
   struct Part {
     double sum = 0;
     std::vector<Bright> brightest;
@@ -129,16 +129,16 @@ PixelReplay replay_pixel(Job& job, int x, int y, size_t most) {
       double luminance = 0;
       luminance_of(s.value, s.wavelengths, luminance);
       part.sum += luminance;
-      part.brightest.push_back({luminance + splatted_luminance(*job.image, memory.splats), n});
+      part.brightest.push_back({luminance + splatted_luminance(*render.job().image, memory.splats), n});
     }
     keep_brightest(part.brightest, most);
   };
-  const int threads = job.threads > 0 ? job.threads : tbb::info::default_concurrency();
+  const int wanted = render.settings().threads, threads = wanted > 0 ? wanted : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
   tbb::task_arena tasks(threads);
   const auto parts_before = [&](std::uint32_t sample) { return size_t((sample + part_size - 1) / part_size); };
   for (std::uint32_t begin = 0; begin < result.samples; begin += step) {
-    process = job.start_at(begin);
+    process = render.start_at(begin);
     const std::uint32_t end = std::min(begin + step, result.samples);
     tasks.execute([&] { tbb::parallel_for(parts_before(begin), parts_before(end), compute); });
   }
@@ -152,7 +152,7 @@ PixelReplay replay_pixel(Job& job, int x, int y, size_t most) {
   keep_brightest(brightest, most);
   result.luminance = sum / result.samples;
   for (const Bright& bright : brightest) {
-    ReplayedPath path = replay(*job.start_at(bright.sample), x, y, bright.sample);
+    ReplayedPath path = replay(*render.start_at(bright.sample), x, y, bright.sample);
     if (sum > 0) path.share = path.luminance / sum;
     result.paths.push_back(std::move(path));
   }

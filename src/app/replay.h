@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 
 namespace etendue {
 
@@ -29,10 +29,10 @@ struct PixelReplay {
   std::vector<ReplayedPath> paths;  ///< brightest first
 };
 
-/// One sample alone, as it is in the picture. The job must be prepared, here and below.
-PixelReplay replay_sample(Job&, int x, int y, std::uint32_t sample);
+/// One sample alone, as it is in the picture.
+PixelReplay replay_sample(const Render&, int x, int y, std::uint32_t sample);
 /// Computes all samples of a pixel and tells the paths of the `most` that bring most light.
-PixelReplay replay_pixel(Job&, int x, int y, size_t most);
+PixelReplay replay_pixel(const Render&, int x, int y, size_t most);
 
 /// For people to read. `picture_command` is the command line that renders the picture.
 std::string replay_text(const PixelReplay&, const std::string& picture_command);

@@ -22,8 +22,8 @@ void warn_of_view(const Job&, std::vector<SceneWarning>&);
 /// Of a component and all it refers to: members that were written, differ from the default, and do not matter.
 void warn_of_members(const Component&, std::vector<SceneWarning>&);
 
-/// Of the picture so far: an output for display that is nearly all black or nearly all white, and by how much.
-std::vector<SceneWarning> picture_warnings(const Job&);
+/// Of a picture of a job: an output for display that is nearly all black or nearly all white, and by how much.
+std::vector<SceneWarning> picture_warnings(const Job&, const std::vector<Ref<Output>>&, const Image& picture);
 
 /// Prints them on standard error: the first few of each kind, and how many more there are.
 void show_warnings(const std::vector<SceneWarning>&);

@@ -38,7 +38,7 @@ std::string detail::bare_class_name(const std::type_info& type) {
 }
 
 std::string_view name(Effect e) {
-  constexpr std::array<std::string_view, 3> names = {"retone", "rerender", "rebuild"};
+  constexpr std::array<std::string_view, 4> names = {"none", "retone", "rerender", "rebuild"};
   return names[size_t(e)];
 }
 

@@ -21,10 +21,11 @@ Film::~Film() = default;
 
 Estimator Film::estimator() const { return members_->estimator; }
 
-bool Film::follow(const ImageBuffer& image) {
+bool Film::follow(const ImageBuffer& image, Estimator estimator) {
   const std::lock_guard lock(members_->mutex);
-  const bool same = members_->format->collects_as(*image.format());
+  const bool same = members_->format->collects_as(*image.format()) && members_->estimator == estimator;
   members_->format = image.format();
+  members_->estimator = estimator;
   if (!same) members_->empty();
   return same;
 }

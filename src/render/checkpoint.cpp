@@ -9,6 +9,7 @@
 
 #include "etendue/describe/registry.h"
 #include "etendue/language/language.h"
+#include "etendue/render/render.h"
 #include "film/film_state.h"
 
 namespace etendue {
@@ -65,12 +66,12 @@ void drop_short_pass(std::vector<IndexRange>& ranges, std::uint32_t samples_per_
 
 // ---- of a job -----------------------------------------------------------------------------------------------------------
 
-Checkpoint empty_checkpoint(const Job& job) {
+Checkpoint empty_checkpoint(const Job& job, const Identity& identity, std::uint32_t samples_per_step) {
   Checkpoint c;
   c.version = ETENDUE_VERSION ", " + std::string(abi_string());
-  c.identity = identity_of(job);
+  c.identity = identity;
   c.seed = job.seed;
-  c.samples_per_pass = job.samples_per_pass();
+  c.samples_per_pass = samples_per_step;
   c.samples_wanted = std::uint32_t(job.renderer->samples);
   c.image = write_description(*job.image);
   if (job.tone_map) c.tone_map = write_description(*job.tone_map);
@@ -87,7 +88,7 @@ Checkpoint empty_checkpoint(const Job& job) {
   return c;
 }
 
-Ref<Job> job_with_picture(const Checkpoint& c) {
+KeptPicture picture_of(const Checkpoint& c) {
   const auto part = [](const std::string& text) {
     const Ref<Component> component = parse_component(text, "the checkpoint's description");
     prepare_tree(*component);
@@ -101,8 +102,10 @@ Ref<Job> job_with_picture(const Checkpoint& c) {
   if (!job->image) throw Error("the checkpoint describes no image");
   job->seed = c.seed;
   job->metadata = c.metadata;
-  job->restore(c);
-  return job;
+  Film film(*job->image, estimator_of(c.state.image));
+  film.load_state(c.state.image);
+  RenderSnapshot kept{film.snapshot(), {}, picture_metadata(*job, count(c.done))};
+  return {job, kept.picture()};
 }
 
 // ---- compared and merged --------------------------------------------------------------------------------------------------

@@ -1,11 +1,13 @@
 #pragma once
 // The state of a render at a pass boundary: in a file, compared with a job, and added to that of other parts.
 
+#include <iosfwd>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "etendue/film/film.h"
 #include "etendue/render/job.h"
 
 namespace etendue {
@@ -58,12 +60,16 @@ struct Checkpoint {
 };
 
 /// The checkpoint of a prepared job that has not begun: all but the state.
-Checkpoint empty_checkpoint(const Job&);
+Checkpoint empty_checkpoint(const Job&, const Identity&, std::uint32_t samples_per_step);
 
 /// Writes beside the path and renames: a file is whole or as it was. Throws Error naming the path and the reason.
 void write_checkpoint(const Checkpoint&, const std::string& path);
+/// The same bytes. Throws Error when the stream does not take them.
+void write_checkpoint(const Checkpoint&, std::ostream&);
 /// Throws Error naming the path and what is wrong: no checkpoint, too short, damaged, of another version.
 Checkpoint read_checkpoint(const std::string& path);
+/// Of a stream that holds one, and no more.
+Checkpoint read_checkpoint(std::istream&);
 /// The same without the states, which are large and are not looked at.
 Checkpoint read_checkpoint_header(const std::string& path);
 /// Removes what processes that were killed while they wrote this checkpoint left beside it.
@@ -76,8 +82,12 @@ std::string mismatch(const Checkpoint&, const std::string& whose, const Checkpoi
 /// does not matter. Throws Error.
 Checkpoint merge_checkpoints(const std::vector<std::string>& paths);
 
-/// A job that holds the picture of a checkpoint and can write it, but has no scene.
-Ref<Job> job_with_picture(const Checkpoint&);
+/// What writes the picture of a checkpoint: a job without a scene, and the picture.
+struct KeptPicture {
+  Ref<Job> job;
+  Image picture;
+};
+KeptPicture picture_of(const Checkpoint&);
 
 // ---- sorted lists of ranges -------------------------------------------------------------------------------------------
 

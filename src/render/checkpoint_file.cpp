@@ -13,6 +13,9 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <istream>
+#include <iterator>
+#include <ostream>
 
 #include "checkpoint.h"
 #include "core/hash.h"
@@ -169,7 +172,9 @@ bool read_header(const Bytes& bytes, Checkpoint& c) {
   return before;
 }
 
-Checkpoint read(RegularFile& file, bool states) {
+/// Of a RegularFile, or of what can be read like one.
+template <class Source>
+Checkpoint read(Source& file, bool states) {
   const std::uint64_t size = file.size();
   Preamble p;
   const auto get = [&](void* to, std::uint64_t bytes) { file.read(to, bytes); };
@@ -226,27 +231,72 @@ Checkpoint read(const std::string& path, bool states) {
 
 }  // namespace
 
-void write_checkpoint(const Checkpoint& c, const std::string& path) {
-  const Bytes head = header(c), nothing;
-  const bool before = c.before_short_pass.has_value();
-  const std::array<const Bytes*, parts> bytes = {&head, &c.state.image, &c.state.renderer,
-                                                 before ? &c.before_short_pass->image : &nothing,
-                                                 before ? &c.before_short_pass->renderer : &nothing};
-  Preamble p;
-  p.length = sizeof p + sizeof(std::uint64_t);
-  for (size_t i = 0; i < parts; ++i) {
-    p.lengths[i] = bytes[i]->size();
-    p.length += bytes[i]->size();
+namespace {
+
+/// The bytes of a checkpoint, as pieces of it and of what belongs to it.
+class Pieces {
+ public:
+  explicit Pieces(const Checkpoint& c) : head_(header(c)) {
+    static const Bytes nothing;
+    const bool before = c.before_short_pass.has_value();
+    const std::array<const Bytes*, parts> bytes = {&head_, &c.state.image, &c.state.renderer,
+                                                   before ? &c.before_short_pass->image : &nothing,
+                                                   before ? &c.before_short_pass->renderer : &nothing};
+    preamble_.length = sizeof preamble_ + sizeof sum_;
+    for (size_t i = 0; i < parts; ++i) {
+      preamble_.lengths[i] = bytes[i]->size();
+      preamble_.length += bytes[i]->size();
+    }
+    preamble_.header_check = hash_of(head_);
+    preamble_.check = preamble_.hash();
+    all_.push_back(std::as_bytes(std::span(&preamble_, 1)));
+    for (const Bytes* part : bytes) all_.push_back(*part);
+    Hash hash;
+    for (const auto& piece : all_) hash.add(piece);
+    sum_ = hash.value();
+    all_.push_back(std::as_bytes(std::span(&sum_, 1)));
   }
-  p.header_check = hash_of(head);
-  p.check = p.hash();
-  Hash hash;
-  std::vector<std::span<const std::byte>> pieces = {std::as_bytes(std::span(&p, 1))};
-  for (const Bytes* part : bytes) pieces.push_back(*part);
-  for (const auto& piece : pieces) hash.add(piece);
-  const std::uint64_t sum = hash.value();
-  pieces.push_back(std::as_bytes(std::span(&sum, 1)));
-  write_whole_file(path, pieces);
+  Pieces(const Pieces&) = delete;
+  Pieces& operator=(const Pieces&) = delete;
+
+  std::span<const std::span<const std::byte>> all() const { return all_; }
+
+ private:
+  Bytes head_;
+  Preamble preamble_;
+  std::uint64_t sum_ = 0;
+  std::vector<std::span<const std::byte>> all_;
+};
+
+}  // namespace
+
+void write_checkpoint(const Checkpoint& c, const std::string& path) { write_whole_file(path, Pieces(c).all()); }
+
+void write_checkpoint(const Checkpoint& c, std::ostream& to) {
+  const Pieces pieces(c);
+  for (const auto& piece : pieces.all())
+    to.write(reinterpret_cast<const char*>(piece.data()), std::streamsize(piece.size()));
+  if (!to.flush()) throw Error("the state could not be written: the stream does not take it");
+}
+
+Checkpoint read_checkpoint(std::istream& from) {
+  struct Source {
+    std::string bytes;
+    size_t at = 0;
+    std::uint64_t size() const { return bytes.size(); }
+    void seek(std::uint64_t offset) { at = size_t(offset); }
+    void read(void* to, std::uint64_t count) {
+      if (count > bytes.size() - at) throw Error("it ends too early");
+      std::memcpy(to, bytes.data() + at, size_t(count));
+      at += size_t(count);
+    }
+  } source;
+  source.bytes.assign(std::istreambuf_iterator<char>(from), {});
+  try {
+    return read(source, true);
+  } catch (const Error& e) {
+    throw Error(fmt::format("cannot use the state: {}", e.what()));
+  }
 }
 
 Checkpoint read_checkpoint(const std::string& path) { return read(path, true); }

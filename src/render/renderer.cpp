@@ -19,7 +19,7 @@ void Renderer::describe(Description<Renderer>& d) {
        "scattering in a medium count, and the way inside a body that scatters light beneath its surface counts as one segment; "
        "what goes straight on (through holes, thin panes, the bounds of media, bodies within others of higher priority) does "
        "not.")
-      .member<&Renderer::samples>("samples", "1", "samples per pixel", range(1, 1 << 30))
+      .member<&Renderer::samples>("samples", "1", "samples per pixel", range(1, 1 << 30), Effect::none)
       .member<&Renderer::sampler>("sampler", "", "where random numbers come from")
       .member<&Renderer::light_sampler>("light_sampler", "", "how luminaires are chosen")
       .member<&Renderer::map_filter>(

@@ -34,6 +34,10 @@ class Component {
   /// Called once, after all members are set and after the members that are components were prepared; again after an
   /// edit. May throw an Error; `fail` throws one with the place where a member was written.
   virtual void prepare() {}
+  /// Called instead of `prepare` after an edit that left alone all that members of Effect::rebuild say, here and in the parts
+  /// which such members hold: a colour, not a shape. By default `prepare`. What takes long and depends on those members only can
+  /// be kept.
+  virtual void prepare_again() { prepare(); }
 
   /// Where a component and its members were written, and the name it was given there. Absent for one made in code.
   struct Origin {

@@ -15,8 +15,14 @@
 
 namespace etendue {
 
-/// What an edit of a member forces to be done again.
-enum class Effect : std::uint8_t { retone, rerender, rebuild };
+/// What an edit of a member forces to be done again. What holds the edited component is concerned as much, as far as the member
+/// that holds it says: a colour of a map by which a mesh is displaced rebuilds the mesh.
+enum class Effect : std::uint8_t {
+  none,      ///< nothing: it is a limit, or how many samples are wanted
+  retone,    ///< what was collected is shown in another way
+  rerender,  ///< samples are collected anew; what is searched by rays stays
+  rebuild,   ///< shapes are made anew, and what finds them
+};
 std::string_view name(Effect);
 
 /// The numbers a member may hold, in the member's unit, ends included unless said.

@@ -41,18 +41,19 @@ int merge(const MergeOptions& options) {
   for (const std::string& part : options.parts) note_input(part);
   const Checkpoint merged = merge_checkpoints(options.parts);
   if (merged.done.empty()) throw Error("the parts hold no samples");
-  const Ref<Job> job = job_with_picture(merged);
-  choose_outputs(*job, options.outputs);
+  const auto [job, picture] = picture_of(merged);
+  const std::vector<Ref<Output>> outputs = chosen_outputs(job->outputs, options.outputs);
+  for (const Ref<Output>& output : outputs) prepare_tree(*output);
   const auto file = merged.metadata.find("file");
   const std::string stem = stem_of(file == merged.metadata.end() ? "merged" : file->second);
   OutputFiles files;
-  add_outputs(*job, stem, files);
+  add_outputs(outputs, stem, files);
   if (!options.checkpoint.empty()) files.add(options.checkpoint, {intern("--checkpoint"), 0, 0});
   files.raise();
   report_gaps(merged);
 
   std::vector<Error> errors;
-  const std::vector<std::string> written = write_each_output(*job, stem, errors);
+  const std::vector<std::string> written = write_each(outputs, *job, picture, stem, errors);
   if (!options.checkpoint.empty()) {
     try {
       write_checkpoint(merged, options.checkpoint);

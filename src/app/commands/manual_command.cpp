@@ -10,7 +10,7 @@
 #include "describe/guard.h"
 #include "etendue/describe/reflection.h"
 #include "etendue/language/language.h"
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 #include "files/whole_file.h"
 #include "manual_examples.h"
 
@@ -32,22 +32,22 @@ std::string picture_file(const ClassInfo& info) { return fmt::format("{}/{}.png"
 void render_picture(const PictureScene& scene, const std::string& name, const std::string& file, int samples) {
   const Ref<Job> job = load_job_text(scene.description, "the picture of " + name);
   job->renderer->samples = samples;
-  if (job->render() != Ended::samples) throw Error("interrupted");
+  Render render(job);
+  if (render.run() != Ended::samples) throw Error("interrupted");
+  const Image picture = render.picture();
   if (scene.measured) {  // the mean luminance becomes that of a grey card
-    const Image image = job->film().develop();
     double sum = 0;
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) sum += image.at(x, y, 1);
-    const double mean = sum / (double(image.width) * image.height);
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x) sum += picture.at(x, y, 1);
+    const double mean = sum / (double(picture.width) * picture.height);
     if (mean > 0)
       job->tone_map = ref_cast<ToneMap>(parse_component(fmt::format("ExposureToneMap {{ stops: {} }}", std::log2(0.2 / mean))));
   }
   const Ref<Output> output = ref_cast<Output>(parse_component("PngOutput {}"));
   set(*output, "file", Value(FilePath{file, ""}));
-  job->outputs = {output};
   prepare_tree(*output);
   if (job->tone_map) prepare_tree(*job->tone_map);
-  job->write_outputs(name);
+  write_output(*job, *output, picture, name);
 }
 
 /// Returns how many could not be made.

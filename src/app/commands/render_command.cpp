@@ -21,21 +21,21 @@ namespace etendue {
 
 namespace {
 
-int replay(Job& job, const RenderOptions& options) {
+int replay(const Ref<Job>& job, const RenderOptions& options) {
   int pixel[2];
   parse_integers(options.pixel, ',', 2, pixel, "--pixel", "X,Y");
   if (!options.replay.empty()) {
-    note_inputs_of(job);
+    note_inputs_of(*job);
     OutputFiles files;
     files.add(options.replay, {intern("--replay"), 0, 0});
     files.raise();
   }
-  prepare_tree(job);
-  const PixelReplay paths = options.sample ? replay_sample(job, pixel[0], pixel[1], *options.sample)
-                                           : replay_pixel(job, pixel[0], pixel[1], size_t(options.paths));
+  const Render render(job, options.settings());
+  const PixelReplay paths = options.sample ? replay_sample(render, pixel[0], pixel[1], *options.sample)
+                                           : replay_pixel(render, pixel[0], pixel[1], size_t(options.paths));
   const std::string command = options.picture_command();
   if (!options.replay.empty()) {
-    const std::string json = replay_json(job, paths, options.file, command);
+    const std::string json = replay_json(*job, paths, options.file, command);
     write_whole_file(options.replay, json.data(), json.size());
   }
   if (!options.quiet) fmt::print("{}", replay_text(paths, command));
@@ -76,85 +76,87 @@ std::string reason_text(Ended ended) {
 }
 
 /// What was rendered of the whole, when not all of it was asked for.
-std::string passes_text(const Job& job) {
-  if (!job.passes) return "";
-  const auto step = std::int64_t(job.samples_per_pass());
-  return fmt::format("passes {}:{} of 0:{}, {} samples per pixel each\n", job.passes->begin, job.passes->end,
-                     (job.renderer->samples + step - 1) / step, step);
+std::string passes_text(const Render& render) {
+  const std::optional<IndexRange>& passes = render.settings().steps;
+  if (!passes) return "";
+  const auto step = std::int64_t(render.samples_per_step());
+  return fmt::format("passes {}:{} of 0:{}, {} samples per pixel each\n", passes->begin, passes->end,
+                     (render.job().renderer->samples + step - 1) / step, step);
 }
 
 void report_result(const Progress& progress, Ended ended, const std::vector<std::string>& written, ProgressDisplay::Kind kind,
-                   const Job& job, const RenderOptions& options) {
+                   const Render& render, const RenderOptions& options) {
+  const std::string& checkpoint = render.settings().checkpoint_file;
   if (kind == ProgressDisplay::Kind::json) {
     nlohmann::ordered_json json = {{"event", "done"},
                                    {"outputs", written},
                                    {"seconds", progress.seconds},
                                    {"samples", progress.samples},
                                    {"samples_per_second", progress.samples_per_second},
-                                   {"bad_samples", job.film().bad_samples()},
+                                   {"bad_samples", render.film().bad_samples()},
                                    {"ended", name(ended)}};
-    if (!job.checkpoint_file.empty()) json["checkpoint"] = job.checkpoint_file;
-    if (job.passes) json["samples_per_pass"] = job.samples_per_pass();
+    if (!checkpoint.empty()) json["checkpoint"] = checkpoint;
+    if (render.settings().steps) json["samples_per_pass"] = render.samples_per_step();
     fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   } else if (!options.quiet) {
     for (const std::string& path : written) fmt::print("{}\n", path);
     fmt::print("{} samples per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, duration_text(progress.seconds),
-               progress.samples_per_second * 1e-6, reason_text(ended), passes_text(job));
-    if (ended == Ended::interrupted && !job.checkpoint_file.empty()) fmt::print("to go on: {}\n", options.resume_command());
+               progress.samples_per_second * 1e-6, reason_text(ended), passes_text(render));
+    if (ended == Ended::interrupted && !checkpoint.empty()) fmt::print("to go on: {}\n", options.resume_command());
   }
   std::fflush(stdout);
 }
 
 /// All that will be written, before hours are spent on it.
-void require_outputs(const Job& job, const RenderOptions& options) {
+void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, const RenderOptions& options) {
   note_inputs_of(job);
   OutputFiles files;
-  add_outputs(job, stem_of(options.file), files);
+  add_outputs(outputs, stem_of(options.file), files);
   const std::string checkpoint_option = !options.continue_file.empty() ? "--continue"
                                         : options.checkpoint.empty()   ? "--resume"
                                                                        : "--checkpoint";
-  if (!job.checkpoint_file.empty()) files.add(job.checkpoint_file, {intern(checkpoint_option), 0, 0}, options.resumed_file());
+  if (const std::string& checkpoint = options.checkpoint_file(); !checkpoint.empty())
+    files.add(checkpoint, {intern(checkpoint_option), 0, 0}, options.resumed_file());
   files.raise();
 }
 
 int render(const RenderOptions& options) {
   const Ref<Job> job = options.load();
-  if (!options.pixel.empty()) return replay(*job, options);
+  if (!options.pixel.empty()) return replay(job, options);
 
-  // A checkpoint remembers the outputs of the file, whatever -o says; a part of the passes is not what they are for.
-  const std::vector<Ref<Output>> described = job->outputs;
-  const bool no_outputs = job->passes && options.outputs.empty();
-  choose_outputs(*job, options.outputs);
-  if (no_outputs) job->outputs.clear();
-  const std::vector<Ref<Output>> chosen = job->outputs;
-  require_outputs(*job, options);
-  prepare_tree(*job);
-  show_warnings(scene_warnings(*job));
-  advise(*job);
-  if (options.fireflies > 0) job->film().keep_largest(size_t(options.fireflies));
-
+  // The job keeps the outputs of the file, as a checkpoint does, whatever -o says; a part of the passes is not what they are for.
+  RenderSettings settings = options.settings();
+  std::vector<Ref<Output>> outputs;
+  if (!settings.steps || !options.outputs.empty()) outputs = chosen_outputs(job->outputs, options.outputs);
+  require_outputs(*job, outputs, options);
   const ProgressDisplay::Kind kind = ProgressDisplay::kind_for(options.progress, options.quiet);
   ProgressDisplay display(kind, options.open_ended());
-  const std::string resumed = options.resumed_file();
+  settings.on_progress = [&](const Progress& progress) { display.show(progress); };
+  Render render(job, settings);
+  for (const Ref<Output>& output : outputs) prepare_tree(*output);
+  show_warnings(scene_warnings(*job));
+  advise(*job);
+  if (options.fireflies > 0) render.film().keep_largest(size_t(options.fireflies));
+
   Ended ended;
   std::vector<Error> errors;
   std::vector<std::string> written;
+  Image picture;
   {
-    const Interruption interruption(*job);
-    job->on_progress = [&](const Progress& progress) { display.show(progress); };
-    job->outputs = described;
-    ended = resumed.empty() ? job->render() : job->resume(resumed);
-    job->outputs = chosen;
+    const Interruption interruption(render);
+    if (const std::string resumed = options.resumed_file(); !resumed.empty()) render.load(resumed);
+    ended = render.run();
     display.clear();
-    if (ended != Ended::aborted) written = write_each_output(*job, stem_of(options.file), errors);
+    picture = render.picture();
+    if (ended != Ended::aborted) written = write_each(outputs, *job, picture, stem_of(options.file), errors);
   }
 
-  if (!job->checkpoint_failure().empty()) errors.emplace_back(job->checkpoint_failure());
-  if (!written.empty()) show_warnings(picture_warnings(*job));
-  report_bad_samples(job->film(), options);
-  report_result(display.last(), ended, written, kind, *job, options);
+  if (const std::string failure = render.checkpoint_failure(); !failure.empty()) errors.emplace_back(failure);
+  if (!written.empty()) show_warnings(picture_warnings(*job, outputs, picture));
+  report_bad_samples(render.film(), options);
+  report_result(display.last(), ended, written, kind, render, options);
   if (options.fireflies > 0 && ended != Ended::aborted)
-    report_fireflies(*job, options.picture_command(), kind == ProgressDisplay::Kind::json ? stderr : stdout);
+    report_fireflies(render, options.picture_command(), kind == ProgressDisplay::Kind::json ? stderr : stdout);
   for (const Error& error : errors) fmt::print(stderr, "{}\n", show(error));
   if (!errors.empty()) return exit_status::failed;
   return ended == Ended::interrupted || ended == Ended::aborted ? exit_status::interrupted : exit_status::done;

@@ -86,7 +86,6 @@ Ref<Job> VerifyOptions::load() const {
     change("image.width", std::to_string(n[0]));
     change("image.height", std::to_string(n[1]));
   }
-  job->threads = threads;
   return job;
 }
 
@@ -121,14 +120,14 @@ Ref<ToneMap> display_tone_map(const Job& job) {
   return map;
 }
 
-verify::Collected collect(Job& job, const verify::Choice& choice, const VerifyOptions& options) {
+verify::Collected collect(Render& render, const verify::Choice& choice, const VerifyOptions& options) {
   verify::CollectOptions collecting;
   collecting.passes = options.passes;
-  collecting.samples = std::max(1, job.renderer->samples / options.passes);
+  collecting.samples = std::max(1, render.job().renderer->samples / options.passes);
   collecting.inject = options.inject;
   if (!options.time.empty()) collecting.seconds = parse_duration(options.time, "--time");
   const bool show = !options.quiet && isatty(STDERR_FILENO);
-  const Interruption interruption(job);
+  const Interruption interruption(render);
   collecting.go_on = [&](size_t renderer, size_t passes) {
     if (show) {
       fmt::print(stderr, "\r\x1b[K[{}/{}] {}: {} passes", renderer + 1, choice.candidates.size(),
@@ -138,7 +137,7 @@ verify::Collected collect(Job& job, const verify::Choice& choice, const VerifyOp
     return !interruption.asked();
   };
   verify::Collected collected =
-      verify::collect(job, choice.candidates, options.tile > 0 ? options.tile : verify::default_tile(*job.image), collecting);
+      verify::collect(render, choice.candidates, options.tile > 0 ? options.tile : verify::default_tile(*render.job().image), collecting);
   if (show) fmt::print(stderr, "\r\x1b[K");
   return collected;
 }
@@ -152,7 +151,7 @@ int verify_file(const VerifyOptions& options) {
     files.raise();
   }
   verify::prepare_picture(*job, options.lengths + 1);
-  prepare_tree(*job);
+  Render render(job, {.threads = options.threads});
 
   const verify::Choice choice = verify::choose_renderers(*job, options.renderers, options.force);
   if (choice.candidates.size() < 2) {
@@ -163,7 +162,7 @@ int verify_file(const VerifyOptions& options) {
     throw Error(message +
                 "\nname others with --renderers, such as 'PathTracer{next_event: false}'; --force keeps those that miss light");
   }
-  const verify::Collected collected = collect(*job, choice, options);
+  const verify::Collected collected = collect(render, choice, options);
   if (!collected.complete) {
     fmt::print(stderr, "interrupted: no verdict\n");
     return exit_status::interrupted;

@@ -13,7 +13,7 @@
 #include "draw.h"
 #include "etendue/language/language.h"
 #include "etendue/object_map.h"
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 
 namespace etendue::conform {
 namespace {
@@ -32,10 +32,10 @@ std::string bytes_of(const std::vector<double>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)};
 }
 
-std::string rendered(Job& job) {
-  job.threads = 1;
-  job.render();
-  return bytes_of(job.film().develop().values);
+std::string rendered(const Ref<Job>& job) {
+  Render render(job, {.threads = 1});
+  render.run();
+  return bytes_of(render.film().develop().values);
 }
 
 Ref<Component> placed(const char* text, const char* member, const Ref<Component>& part) {
@@ -107,7 +107,7 @@ std::string behaviour(const Ref<Component>& part, const Trial& trial) {
     return written(*output, trial);
   }
   const Ref<Job> job = load_job_text(stage, "stage");
-  return put(*job, part) ? rendered(*job) : "";
+  return put(*job, part) ? rendered(job) : "";
 }
 
 /// What another member may be left at or changed to so that a condition does not hold.

@@ -6,7 +6,7 @@
 
 #include "conformance.h"
 #include "etendue/language/language.h"
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 #include "statistics.h"
 
 namespace etendue::conform {
@@ -38,13 +38,13 @@ constexpr KnownScene known_scenes[] = {
 };
 
 /// The mean over pixels of Y, of renders with different seeds: their spread counts whatever correlates within one.
-statistics::Mean picture_means(Job& job, int renders, std::uint64_t& bad) {
+statistics::Mean picture_means(Render& render, int renders, std::uint64_t& bad) {
   statistics::Mean means;
   for (int i = 0; i < renders; ++i) {
-    job.seed = std::uint64_t(i + 1);
-    job.render();
-    bad += job.film().bad_samples();
-    const Image image = job.film().develop();
+    render.restart(std::uint64_t(i + 1));
+    render.run();
+    bad += render.film().bad_samples();
+    const Image image = render.film().develop();
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) sum += image.at(x, y, 1);
@@ -62,17 +62,16 @@ std::string check_scene(Trial& trial, const KnownScene& known) {
                                      "known");
   const Ref<Renderer> renderer = ref_cast<Renderer>(parse_component(trial.text(), "drawn"));
   job->renderer = renderer;
-  job->threads = 1;
   // Paths may be cut off where nothing is left of them, and not before.
   if (renderer->class_info().find("max_depth")) set(*renderer, "max_depth", Value(Number{64}));
   renderer->samples = trial.samples(16);
-  prepare_tree(*job);
+  Render render(job, {.threads = 1});
   const std::vector<Advice> missed = renderer->misses(scene_traits(*job->scene, *job->camera));
   if (!missed.empty()) return missed.front().lost;
   // Student's distribution with 15 degrees of freedom is beyond 9.2 standard errors as seldom as the normal one beyond 5.33.
   constexpr double errors = 9.2;
   std::uint64_t bad = 0;
-  const statistics::Mean means = picture_means(*job, 16, bad);
+  const statistics::Mean means = picture_means(render, 16, bad);
   trial.expect(bad == 0, "no sample is not a number, infinite or negative", [&] { return fmt::format("{} are", bad); });
   if (means.error() > 0.05 * known.expected) {
     trial.not_tried(what, fmt::format("all is noise: {:.5f} ± {:.5f}", means.mean(), means.error()));

@@ -167,35 +167,17 @@ int default_tile(const ImageBuffer& image) {
 
 namespace {
 
-/// Puts back what measuring changes.
-class Restored {
- public:
-  explicit Restored(Job& job) : job_(job), renderer_(job.renderer), seed_(job.seed) {}
-  ~Restored() {
-    job_.renderer = renderer_;
-    job_.seed = seed_;
-  }
-  Restored(const Restored&) = delete;
-  Restored& operator=(const Restored&) = delete;
-  std::uint64_t seed() const { return seed_; }
-
- private:
-  Job& job_;
-  const Ref<Renderer> renderer_;
-  const std::uint64_t seed_;
-};
-
 /// One more pass; false when it was interrupted.
-bool add_pass(Job& job, const Layout& layout, double factor, Measured& measured, RendererRun& run) {
-  if (job.render() != Ended::samples) return false;
-  const Image picture = job.film().develop();
+bool add_pass(Render& render, const Layout& layout, double factor, Measured& measured, RendererRun& run) {
+  if (render.run() != Ended::samples) return false;
+  const Image picture = render.film().develop();
   measured.passes.push_back(means(layout, picture));
   for (double& value : measured.passes.back()) value *= factor;
   const size_t channels = picture.channels.size();
   for (size_t i = 0; i < run.picture.values.size(); ++i)
     run.picture.values[i] += factor * picture.values[i / 3 * channels + i % 3];
-  run.bad_samples += job.film().bad_samples();
-  run.samples += job.film().samples();
+  run.bad_samples += render.film().bad_samples();
+  run.samples += render.film().samples();
   return true;
 }
 
@@ -210,42 +192,54 @@ double share_with_length(const Layout& layout, const Measured& measured) {
   return total > 0 ? told / total : 1;
 }
 
+/// All passes of one renderer; nothing when they were interrupted.
+bool measure(Render& render, size_t number, const Candidate& candidate, const CollectOptions& options, std::uint64_t seed,
+             Collected& all) {
+  const Ref<Renderer>& renderer = candidate.renderer;
+  render.edit(render.job(), "renderer", Value(Ref<Component>(renderer)));
+  const int own_samples = renderer->samples;
+  render.edit(*renderer, "samples", Value(Number{double(options.samples)}));
+  Measured measured;
+  measured.name = candidate.name;
+  RendererRun run;
+  const PixelArea& area = render.job().image->area();
+  run.picture = Image(area.width(), area.height(), {"X", "Y", "Z"});
+  run.picture.metadata["color_space"] = "xyz";
+  const auto enough = [&](size_t passes) {
+    constexpr size_t least = 8;
+    return options.seconds > 0 ? passes >= least && run.seconds >= options.seconds : passes >= size_t(options.passes);
+  };
+  bool going = true;
+  const double begun = now();
+  for (size_t pass = 0; going && !enough(pass); ++pass) {
+    // No two passes share random numbers, of whatever renderers.
+    render.restart(seed + ((std::uint64_t(number) << 32) + pass) * 0x9e3779b97f4a7c15ull);
+    going = (!options.go_on || options.go_on(number, pass)) &&
+            add_pass(render, all.layout, number == 0 ? options.inject : 1, measured, run);
+    run.seconds = now() - begun;
+  }
+  render.edit(*renderer, "samples", Value(Number{double(own_samples)}));
+  if (!going) return false;
+  for (double& value : run.picture.values) value /= double(measured.passes.size());
+  run.length_share = share_with_length(all.layout, measured);
+  measured.tells_lengths = run.length_share > 0;
+  all.measured.push_back(std::move(measured));
+  all.runs.push_back(std::move(run));
+  return true;
+}
+
 }  // namespace
 
-Collected collect(Job& job, const std::vector<Candidate>& candidates, int tile, const CollectOptions& options) {
-  const Restored before(job);
+Collected collect(Render& render, const std::vector<Candidate>& candidates, int tile, const CollectOptions& options) {
+  const Ref<Renderer> own = render.job().renderer;
+  const std::uint64_t seed = render.job().seed;
   Collected all;
-  all.layout = Layout::of(job.image->area(), tile, job.image->path_lengths);
-  for (size_t i = 0; i < candidates.size(); ++i) {
-    job.renderer = candidates[i].renderer;
-    const int own_samples = std::exchange(job.renderer->samples, options.samples);
-    Measured measured;
-    measured.name = candidates[i].name;
-    RendererRun run;
-    run.picture = Image(job.image->area().width(), job.image->area().height(), {"X", "Y", "Z"});
-    run.picture.metadata["color_space"] = "xyz";
-    const auto enough = [&](size_t passes) {
-      constexpr size_t least = 8;
-      return options.seconds > 0 ? passes >= least && run.seconds >= options.seconds : passes >= size_t(options.passes);
-    };
-    bool going = true;
-    const double begun = now();
-    for (size_t pass = 0; going && !enough(pass); ++pass) {
-      // No two passes share random numbers, of whatever renderers.
-      job.seed = before.seed() + ((std::uint64_t(i) << 32) + pass) * 0x9e3779b97f4a7c15ull;
-      going =
-          (!options.go_on || options.go_on(i, pass)) && add_pass(job, all.layout, i == 0 ? options.inject : 1, measured, run);
-      run.seconds = now() - begun;
-    }
-    job.renderer->samples = own_samples;
-    if (!going) return all;
-    for (double& value : run.picture.values) value /= double(measured.passes.size());
-    run.length_share = share_with_length(all.layout, measured);
-    measured.tells_lengths = run.length_share > 0;
-    all.measured.push_back(std::move(measured));
-    all.runs.push_back(std::move(run));
-  }
+  all.layout = Layout::of(render.job().image->area(), tile, render.job().image->path_lengths);
   all.complete = true;
+  for (size_t i = 0; all.complete && i < candidates.size(); ++i)
+    all.complete = measure(render, i, candidates[i], options, seed, all);
+  render.edit(render.job(), "renderer", Value(Ref<Component>(own)));
+  render.restart(seed);
   return all;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "agreement.h"
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 
 namespace etendue::verify {
 
@@ -67,7 +67,7 @@ void prepare_picture(Job&, int lengths);
 /// A side [pixels] of tiles that divides a picture into enough of them.
 int default_tile(const ImageBuffer&);
 
-/// Runs all passes. The job must be prepared; meanwhile it has other renderers and seeds.
-Collected collect(Job&, const std::vector<Candidate>&, int tile, const CollectOptions&);
+/// Runs all passes. Meanwhile the job has other renderers and seeds.
+Collected collect(Render&, const std::vector<Candidate>&, int tile, const CollectOptions&);
 
 }  // namespace etendue::verify

@@ -23,7 +23,7 @@ class OrthographicCamera final : public Camera {
                                             more_than(0), soft(0.01, 100), logarithmic);
   }
 
-  std::optional<DoublePoint3> place() const override { return transform.written(shutter_open)(from); }
+  std::optional<Place> place() const override { return Place{transform.written(shutter_open)(from), length(to - from)}; }
   void prepare() override {
     check_shutter(*this);
     placement_.set(*this, from, to, up, transform);

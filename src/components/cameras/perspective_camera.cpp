@@ -43,7 +43,7 @@ class PerspectiveCamera final : public Camera {
             soft(0.1, 100), logarithmic, when("lens_radius"));
   }
 
-  std::optional<DoublePoint3> place() const override { return transform.written(shutter_open)(from); }
+  std::optional<Place> place() const override { return Place{transform.written(shutter_open)(from), length(to - from)}; }
   void prepare() override {
     check_shutter(*this);
     placement_.set(*this, from, to, up, transform);

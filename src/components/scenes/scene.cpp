@@ -126,12 +126,43 @@ void Scene::choose_centre() {
 }
 
 void Scene::prepare() {
+  require_good_objects();
+  if (chooses_centre) choose_centre();
+  build(survey());
+}
+
+// The structure knows where objects are, which stays.
+void Scene::prepare_again() {
+  require_good_objects();
+  survey();
+}
+
+void Scene::require_good_objects() {
+  nesting_ = 0;
+  std::unordered_set<const SceneObject*> seen;
+  for (size_t i = 0; i < objects.size(); ++i) {
+    if (!objects[i]) fail("objects", "object " + std::to_string(i + 1) + " of the scene is none");
+    if (!seen.insert(objects[i].get()).second) {
+      const std::string name = objects[i]->origin ? objects[i]->origin->name : "";
+      fail("objects", (name.empty() ? "object " + std::to_string(i + 1) : "'" + name + "'") +
+                          " stands twice in the same scene; put it into a scene, and that into an Instance for each place");
+    }
+    if (!objects[i]->transform.valid())
+      objects[i]->fail("transform",
+                       "the transform is singular or beyond what can be counted with, or mirrors at some of its times only");
+    if (const Scene* inner = scene_within(*objects[i])) nesting_ = std::max(nesting_, 1 + inner->nesting_);
+  }
+  if (nesting_ > Hit::deepest_nesting)
+    fail("objects", "scenes nest more than " + std::to_string(Hit::deepest_nesting) + " deep");
+}
+
+/// Finds out what is in the scene, and returns the objects that rays meet.
+std::vector<const SceneObject*> Scene::survey() {
   luminaires_.clear();
   infinite_.clear();
   interiors_.clear();
   interior_tree_.clear();
   bounds_ = {};
-  nesting_ = 0;
   static std::atomic<std::uint64_t> versions{0};
   version_ = ++versions;
   has_interiors_ = has_null_surfaces_ = unbounded_ = false;
@@ -148,23 +179,6 @@ void Scene::prepare() {
     has_interiors_ = true;
     interiors_.push_back(object.bounds());
   };
-
-  std::unordered_set<const SceneObject*> seen;
-  for (size_t i = 0; i < objects.size(); ++i) {
-    if (!objects[i]) fail("objects", "object " + std::to_string(i + 1) + " of the scene is none");
-    if (!seen.insert(objects[i].get()).second) {
-      const std::string name = objects[i]->origin ? objects[i]->origin->name : "";
-      fail("objects", (name.empty() ? "object " + std::to_string(i + 1) : "'" + name + "'") +
-                          " stands twice in the same scene; put it into a scene, and that into an Instance for each place");
-    }
-    if (!objects[i]->transform.valid())
-      objects[i]->fail("transform",
-                       "the transform is singular or beyond what can be counted with, or mirrors at some of its times only");
-    if (const Scene* inner = scene_within(*objects[i])) nesting_ = std::max(nesting_, 1 + inner->nesting_);
-  }
-  if (nesting_ > Hit::deepest_nesting)
-    fail("objects", "scenes nest more than " + std::to_string(Hit::deepest_nesting) + " deep");
-  if (chooses_centre) choose_centre();
 
   // Others stand for luminaires of nested scenes; those scenes gave them places in their own lists before.
   std::unordered_set<const Scene*> visited;
@@ -230,7 +244,7 @@ void Scene::prepare() {
       luminaires_.push_back(luminaire.get());
     }
   }
-  build(finite);
+  return finite;
 }
 
 void Scene::build_interior_tree(std::span<Bounds3> boxes) {

@@ -45,6 +45,8 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
                               range(0.5, 45), Effect::rebuild, unless("basis", "linear"));
   }
 
+  /// Its shape alone takes time, and light changes nothing of it.
+  void prepare_again() override {}
   void prepare() override {
     check();
     vertices_.clear();

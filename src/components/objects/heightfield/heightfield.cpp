@@ -43,6 +43,8 @@ class Heightfield final : public PlacedObject {
         .member<&Heightfield::smooth>("smooth", "", "shading normals hide that the surface is made of cells", Effect::rebuild);
   }
 
+  /// Its shape alone takes time, and light changes nothing of it.
+  void prepare_again() override {}
   void prepare() override {
     if (!(size.x > 0 && size.y > 0 && size.x < infinity && size.y < infinity)) fail("size", "must be positive and finite");
     if (!std::isfinite(height)) fail("height", "must be finite");

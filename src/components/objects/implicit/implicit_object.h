@@ -19,6 +19,8 @@ using Place = std::array<double, 3>;
 class ImplicitObject : public PlacedObject {
  public:
   ~ImplicitObject() override;
+  /// Its shape alone takes time, and light changes nothing of it.
+  void prepare_again() override {}
   bool closed() const override { return closed_; }
   float area(float time) const override;
   float area_error(float time) const override;

@@ -63,13 +63,16 @@ void TriangleObject::adopt(std::shared_ptr<const MeshData> mesh, MeshMotion moti
     }
   }
   bounds_ = transform.animated() ? swept(transform, stored_bounds_) : stored_bounds_;
-  // What will surely be asked for is made now, the rest when it is.
-  light_tree_ = {};
-  if (emission) {
-    cumulative_areas();
-    if (!moves() && mesh_.triangles.size() > few) build_light_tree();
-  }
+  prepare_light();
   if (transform.animated() && mesh_.triangles.size() > few) accelerator();
+}
+
+/// What will surely be asked for is made now, the rest when it is.
+void TriangleObject::prepare_light() {
+  light_tree_ = {};
+  if (!emission) return;
+  cumulative_areas();
+  if (!moves() && mesh_.triangles.size() > few) build_light_tree();
 }
 
 void TriangleObject::bake(const Transform& t) {

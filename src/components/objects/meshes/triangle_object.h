@@ -52,6 +52,7 @@ class TriangleObject : public SceneObject, public NumberedParts {
   std::uint64_t part_count() const override { return mesh_.triangles.size(); }
   /// The triangles when they change their shape and nothing else moves.
   std::optional<MovingTriangleView> moving_triangles() const;
+  void prepare_again() override { prepare_light(); }
 
  protected:
   /// Takes triangles in the object's coordinates; to be called by prepare.
@@ -96,6 +97,7 @@ class TriangleObject : public SceneObject, public NumberedParts {
   /// The same as seen from a point, by the tree when there is one.
   std::uint32_t choose_visible(const Point3& from, Point2& u, float& chance) const;
   float visible_chance(const Point3& from, std::uint32_t primitive) const;
+  void prepare_light();
   void build_light_tree();
   const std::vector<double>& cumulative_areas() const;
   const EmbreeTriangles& accelerator() const;

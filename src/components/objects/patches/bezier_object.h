@@ -16,6 +16,8 @@ class BezierObject : public PlacedObject, public NumberedParts {
  public:
   BezierObject();
   ~BezierObject() override;
+  /// Its shape alone takes time, and light changes nothing of it.
+  void prepare_again() override {}
   bool closed() const override { return closed_; }
   std::uint64_t part_count() const override { return patches_.size(); }
 

@@ -18,8 +18,8 @@ void SceneObject::describe(Description<SceneObject>& d) {
                                        Effect::rebuild)
       .group("Material")
       .member<&SceneObject::shader>("shader", "", "how its surface scatters light; none: black")
-      .member<&SceneObject::emission>("emission", "", "how it emits light; none: it does not", Effect::rebuild)
-      .member<&SceneObject::interior>("interior", "", "the medium inside; none: vacuum", Effect::rebuild)
+      .member<&SceneObject::emission>("emission", "", "how it emits light; none: it does not")
+      .member<&SceneObject::interior>("interior", "", "the medium inside; none: vacuum")
       .member<&SceneObject::sides>(
           "sides", "",
           "which sides scatter light; with one alone, the other side absorbs what would be scattered there, and no light is "

@@ -1,0 +1,32 @@
+// What comes out of a render: pictures with their texts, and files of them.
+
+#include "etendue/render/render.h"
+
+namespace etendue {
+
+std::map<std::string, std::string> picture_metadata(const Job& job, std::uint32_t samples) {
+  std::map<std::string, std::string> texts = job.metadata;
+  texts["seed"] = std::to_string(job.seed);
+  texts["samples"] = std::to_string(samples);
+  if (job.renderer) {
+    texts["renderer"] = job.renderer->class_info().name;
+    if (const std::string bias = job.renderer->bias(); !bias.empty()) texts["bias"] = bias;
+  }
+  texts["version"] = ETENDUE_VERSION;
+  return texts;
+}
+
+Image RenderSnapshot::picture() const {
+  Image picture = film.develop();
+  for (const auto& [key, text] : metadata) picture.metadata[key] = text;
+  return picture;
+}
+
+std::string write_output(const Job& job, const Output& output, const Image& picture, const std::string& default_stem) {
+  const Ref<ToneMap>& tone = output.tone_map ? output.tone_map : (output.for_display() ? job.tone_map : output.tone_map);
+  const std::string path = output.path(default_stem);
+  output.write_image(tone ? tone->apply(picture) : picture, path);
+  return path;
+}
+
+}  // namespace etendue

@@ -1,0 +1,365 @@
+// Render: steps, and what is told of them.
+
+#include "etendue/render/render.h"
+
+#include <fmt/format.h>
+
+#include "consequences.h"
+#include "describe/guard.h"
+#include "render_members.h"
+
+namespace etendue {
+namespace {
+
+thread_local const Render::Members* within = nullptr;
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Does something in which any part of the job may throw: those of plugins whatever they like.
+template <class Step>
+auto rendering(const Job& job, Step step) {
+  try {
+    return step();
+  } catch (...) {
+    blame(job, "rendering");
+  }
+}
+
+}  // namespace
+
+// ---- turns ------------------------------------------------------------------------------------------------------------------
+
+BetweenSteps::BetweenSteps(const Render::Members& m, bool interrupt) {
+  if (within == &m) throw Error("a render cannot be changed from within its own step: do it from another thread");
+  {
+    const std::lock_guard lock(m.turn);
+    ++m.waiting;
+  }
+  if (interrupt) m.give_up = true;
+  lock_ = std::unique_lock(m.description);
+  const std::lock_guard lock(m.turn);
+  if (--m.waiting == 0) m.give_up = m.abort.load();
+  m.turned.notify_all();
+}
+
+WithinStep::WithinStep(const Render::Members& m) : before_(std::exchange(within, &m)) {}
+WithinStep::~WithinStep() { within = before_; }
+
+// ---- making one -------------------------------------------------------------------------------------------------------------
+
+Render::Render(Ref<Job> job, RenderSettings settings) : m(std::make_unique<Members>(std::move(job), std::move(settings))) {
+  if (!m->job) throw Error("there is no job to render");
+  prepare_tree(*m->job);
+  m->film = std::make_unique<Film>(*m->job->image, m->job->renderer->estimator());
+  m->step_size = m->samples_per_step();
+}
+Render::~Render() = default;
+
+const Job& Render::job() const { return *m->job; }
+const RenderSettings& Render::settings() const { return m->settings; }
+Film& Render::film() const { return *m->film; }
+
+std::uint32_t Render::Members::samples_per_step() const {
+  const std::uint32_t usual = etendue::samples_per_step(job->image->area());
+  return std::max(job->renderer->samples_per_step(usual), 1u);
+}
+
+std::uint32_t Render::samples_per_step() const {
+  const std::shared_lock sharing(m->description);
+  return m->samples_per_step();
+}
+
+IndexRange Render::Members::wanted() const {
+  const auto samples = std::uint32_t(job->renderer->samples);
+  const std::optional<IndexRange>& some = settings.steps;
+  if (!some) return {0, samples};
+  const std::uint64_t step = samples_per_step(), count = (samples + step - 1) / step;
+  if (some->begin >= some->end)
+    throw Error(fmt::format("passes {}:{} are none: the second number is the first pass left out", some->begin, some->end));
+  if (some->end > count)
+    throw Error(fmt::format("there are no passes {}:{}: {} samples per pixel are {} pass{} of {} each", some->begin, some->end,
+                            samples, count, count == 1 ? "" : "es", step));
+  return {std::uint32_t(some->begin * step), std::uint32_t(std::min<std::uint64_t>(some->end * step, samples))};
+}
+
+std::unique_ptr<RenderProcess> Render::Members::fresh_process() const {
+  return rendering(*job, [&] { return job->renderer->start(context()); });
+}
+
+/// What it refers to is about to change.
+void Render::Members::park_process() {
+  if (process) process_state = process->save_state();
+  process.reset();
+}
+
+void Render::Members::empty() {
+  before_short_step.reset();
+  process.reset();
+  process_state.clear();
+  const std::lock_guard lock(counts);
+  film->clear();
+  done.clear();
+  seconds = error = 0;
+}
+
+void Render::restart(std::optional<std::uint64_t> seed) {
+  const BetweenSteps alone(*m, true);
+  if (seed) m->job->seed = *seed;
+  m->empty();
+}
+
+// ---- a step -----------------------------------------------------------------------------------------------------------------
+
+std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
+  while (true) {
+    {
+      std::unique_lock lock(turn);
+      turned.wait(lock, [&] { return waiting == 0; });
+    }
+    const std::shared_lock sharing(description);
+    if (abort.load()) return Ended::aborted;
+    if (!broken.empty()) throw Error(broken);
+    const IndexRange part = wanted();
+    if (!process) {
+      process = fresh_process();
+      if (!process_state.empty()) process->load_state(process_state);
+    }
+    const std::uint32_t size = samples_per_step();
+    if (before_short_step && !done.empty() && part.end > done.back().end) {
+      const std::lock_guard lock(counts);
+      film->load_state(before_short_step->image);
+      process->load_state(before_short_step->renderer);
+      drop_short_pass(done, size);
+      before_short_step.reset();
+    }
+    const std::vector<IndexRange> rest = missing(done, part);
+    if (rest.empty()) return Ended::samples;
+    const IndexRange samples{rest.front().begin, std::min(rest.front().end, (rest.front().begin / size + 1) * size)};
+    if (job->renderer->steps_depend() && !missing(done, {0, samples.begin}).empty())
+      job->renderer->fail({}, "learns from one pass to the next, so passes cannot be rendered without those before them");
+    process_state = process->save_state();
+    const bool is_short = samples.end % size != 0 && samples.end == part.end;
+    std::optional<Checkpoint::State> before;
+    if (is_short) before = Checkpoint::State{film->save_state(), process_state};
+    {
+      const std::lock_guard lock(counts);
+      at_hand = samples;
+      part_at_hand = 0;
+      step_began = std::chrono::steady_clock::now();
+    }
+    // A step that is not finished leaves nothing behind, whatever ends it.
+    struct AtHand {
+      Members& m;
+      bool finished = false;
+      ~AtHand() {
+        const std::lock_guard lock(m.counts);
+        m.at_hand = {};
+        if (finished) return;
+        m.film->drop_step();
+        m.process.reset();  // which may be anywhere within the step
+      }
+    } guard{*this};
+    const WithinStep no_edits(*this);
+    rendering(*job, [&] {
+      process->prepare_step(schedule, samples);
+      process->step(schedule, samples);
+    });
+    if (give_up.load()) {
+      if (abort.load()) return Ended::aborted;
+      continue;
+    }
+    const std::lock_guard lock(counts);
+    film->end_step();
+    insert(done, samples);
+    seconds += seconds_since(step_began);
+    before_short_step = std::move(before);
+    guard.finished = true;
+    break;
+  }
+  return {};
+}
+
+namespace {
+
+/// What was asked of this run is not asked of the next one.
+struct Forgotten {
+  Render::Members& m;
+  ~Forgotten() { m.stop = m.abort = m.give_up = false; }
+};
+
+}  // namespace
+
+std::optional<Ended> Render::step() {
+  const Forgotten forgotten{*m};
+  ParallelSchedule schedule(*m->film, m->settings.threads, m->give_up);
+  return m->step(schedule);
+}
+
+// ---- many -------------------------------------------------------------------------------------------------------------------
+
+std::optional<Ended> Render::Members::reason_to_stop() {
+  const std::shared_lock sharing(description);
+  const double now = job->error_limit > 0 ? film->relative_error() : 0;
+  const std::lock_guard lock(counts);
+  error = now;
+  if (missing(done, wanted()).empty()) return Ended::samples;
+  if (stop.load()) return Ended::interrupted;
+  if (job->time_limit > 0 && seconds >= job->time_limit) return Ended::time;
+  if (job->error_limit > 0 && error <= job->error_limit) return Ended::error;
+  return {};
+}
+
+Ended Render::run() {
+  const Forgotten forgotten{*m};
+  const bool keeps = !m->settings.checkpoint_file.empty();
+  {
+    const std::shared_lock sharing(m->description);
+    m->wanted();
+    if (keeps) {
+      m->identity_now();  // of the files as they are now
+      remove_leftovers(m->settings.checkpoint_file);
+    }
+  }
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point shown = Clock::now(), kept = shown;
+  const auto report = [&](bool finished) {
+    if (!m->settings.on_progress || (!finished && seconds_since(shown) < m->settings.progress_interval)) return;
+    shown = Clock::now();
+    Progress p = progress();
+    p.finished = finished;
+    m->settings.on_progress(p);
+  };
+  ParallelSchedule schedule(*m->film, m->settings.threads, m->give_up, [&](std::uint64_t item, std::uint64_t count) {
+    const WithinStep no_edits(*m);
+    {
+      const std::lock_guard lock(m->counts);
+      m->part_at_hand = double(item) / double(count);
+    }
+    report(false);
+  });
+  std::optional<Ended> ended;
+  bool written = false;
+  if (!samples_done().empty()) {
+    ended = m->reason_to_stop();
+    written = keeps && m->loaded_from == m->settings.checkpoint_file;
+  }
+  while (!ended) {
+    ended = m->step(schedule);
+    if (ended == Ended::aborted) return *ended;
+    if (ended) break;
+    written = false;
+    ended = m->reason_to_stop();
+    if (keeps && !ended && seconds_since(kept) >= m->settings.checkpoint_interval) {
+      m->keep();
+      kept = Clock::now();
+      written = true;
+    }
+  }
+  if (keeps && !written) m->keep();
+  report(true);
+  return *ended;
+}
+
+void Render::stop() { m->stop.store(true); }
+void Render::abort() {
+  m->abort.store(true);
+  m->give_up.store(true);
+}
+
+// ---- looking ----------------------------------------------------------------------------------------------------------------
+
+Progress Render::Members::progress_now() const {
+  const bool stepping = at_hand.begin < at_hand.end;
+  const double pixels = double(job->image->area().width()) * job->image->area().height();
+  Progress p;
+  p.samples = count(done);
+  std::vector<IndexRange> all = done;
+  insert(all, settings.steps ? wanted() : IndexRange{0, std::uint32_t(job->renderer->samples)});
+  p.samples_wanted = count(all);
+  p.seconds = seconds + (stepping ? seconds_since(step_began) : 0);
+  p.error = error;
+  const double samples = p.samples + (stepping ? part_at_hand * (at_hand.end - at_hand.begin) : 0);
+  p.samples_per_second = samples * pixels / std::max(p.seconds, 1e-9);
+  p.fraction = samples / p.samples_wanted;
+  if (job->time_limit > 0) p.fraction = std::max(p.fraction, p.seconds / job->time_limit);
+  // The error falls with the root of the number of samples.
+  if (job->error_limit > 0 && error > 0 && std::isfinite(error))
+    p.fraction = std::max(p.fraction, (job->error_limit / error) * (job->error_limit / error));
+  p.fraction = std::min(p.fraction, 1.0);
+  p.seconds_left = p.fraction > 0 ? p.seconds * (1 - p.fraction) / p.fraction : -1;
+  return p;
+}
+
+namespace {
+
+/// Shares the description, unless this thread is in a step, which does.
+std::shared_lock<std::shared_mutex> share(const Render::Members& m) {
+  return within == &m ? std::shared_lock<std::shared_mutex>() : std::shared_lock(m.description);
+}
+
+}  // namespace
+
+Progress Render::progress() const {
+  const std::shared_lock sharing = share(*m);
+  const std::lock_guard lock(m->counts);
+  return m->progress_now();
+}
+
+RenderSnapshot Render::snapshot() const {
+  const std::shared_lock sharing = share(*m);
+  const std::lock_guard lock(m->counts);
+  return {m->film->snapshot(), m->progress_now(), picture_metadata(*m->job, count(m->done))};
+}
+
+std::vector<IndexRange> Render::samples_done() const {
+  const std::lock_guard lock(m->counts);
+  return m->done;
+}
+
+Image Render::display(const Image& picture) const {
+  const std::shared_lock sharing(m->look);
+  return m->job->tone_map ? m->job->tone_map->apply(picture) : picture;
+}
+
+std::vector<std::string> Render::write_outputs(const std::string& default_stem) const {
+  const Image picture = this->picture();
+  const std::shared_lock sharing(m->look);
+  std::vector<std::string> written;
+  for (const Ref<Output>& output : m->job->outputs) written.push_back(write_output(*m->job, *output, picture, default_stem));
+  return written;
+}
+
+// ---- single samples -----------------------------------------------------------------------------------------------------------
+
+std::unique_ptr<RenderProcess> Render::start_at(std::uint32_t sample) const {
+  const std::shared_lock sharing = share(*m);
+  const Job& job = *m->job;
+  const std::uint32_t step = m->samples_per_step(), begin = sample / step * step;
+  Film film(*job.image);  // what steps before leave there is not looked at
+  const std::atomic<bool> never{false};
+  ParallelSchedule schedule(film, m->settings.threads, never);
+  return rendering(job, [&] {
+    std::unique_ptr<RenderProcess> process = job.renderer->start(m->context());
+    for (std::uint32_t first = job.renderer->steps_depend() ? 0 : begin;; first += step) {
+      process->prepare_step(schedule, {first, first + step});
+      if (first == begin) return process;
+      process->step(schedule, {first, first + step});
+    }
+  });
+}
+
+Point2 Render::replay(int x, int y, std::uint32_t sample, PathRecord& record) const {
+  if (!m->job->image->sampled_area().contains(x, y))
+    throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
+  const std::unique_ptr<RenderProcess> process = start_at(sample);
+  Arena arena;
+  PathRequest request;
+  request.observe.record = &record;
+  const Point2 film = rendering(*m->job, [&] { return process->sample(x, y, sample, arena, request); }).film;
+  record.count_from_world(m->job->world_centre());
+  return film;
+}
+
+}  // namespace etendue

@@ -1,0 +1,101 @@
+// Edits of a Render: made whole, or not at all.
+
+#include "consequences.h"
+#include "describe/guard.h"
+#include "render_members.h"
+
+namespace etendue {
+namespace {
+
+/// Whoever looks at a render sees its parts as they are; here is where they change.
+Component& editable(const Edit& edit) { return const_cast<Component&>(*edit.component); }
+
+/// Sets members, and puts all back unless it is told to keep them.
+class Settings {
+ public:
+  explicit Settings(std::span<const Edit> edits) {
+    for (const Edit& edit : edits) {
+      before_.push_back({edit.component, edit.member, get(*edit.component, edit.member)});
+      try {
+        set(editable(edit), edit.member, edit.value);
+      } catch (...) {
+        before_.pop_back();
+        put_back();
+        throw;
+      }
+    }
+  }
+  void put_back() {
+    while (!before_.empty()) {
+      const Edit& edit = before_.back();
+      set(editable(edit), edit.member, edit.value);
+      before_.pop_back();
+    }
+  }
+
+ private:
+  std::vector<Edit> before_;
+};
+
+}  // namespace
+
+void Render::edit(const Component& component, const std::string& member, const Value& value) {
+  const Edit one{Ref<const Component>(&component), member, value};
+  edit(std::span(&one, 1));
+}
+
+void Render::edit(std::span<const Edit> edits) {
+  const std::lock_guard one_at_a_time(m->editing);
+  if (!m->holders) m->holders = std::make_unique<Holders>(*m->job);
+  Consequences consequences;
+  for (const Edit& edit : edits) {
+    if (!edit.component || !m->holders->knows(*edit.component))
+      throw Error("what is to be edited is no part of the job that is rendered");
+    const Member* member = edit.component->class_info().find(edit.member);
+    if (!member) get(*edit.component, edit.member);  // says what there is
+    consequences.note(*m->holders, editable(edit), *member, edit.value);
+  }
+
+  std::optional<BetweenSteps> alone;
+  if (consequences.effect() != Effect::retone) alone.emplace(*m, consequences.effect() >= Effect::rerender);
+  const std::unique_lock unseen(m->look);
+  Settings settings(edits);
+  if (alone) m->park_process();
+  try {
+    consequences.prepare(*m->job, *m->holders);
+    m->follow(consequences);
+  } catch (...) {
+    const std::exception_ptr reason = std::current_exception();
+    try {
+      settings.put_back();
+      consequences.prepare(*m->job, *m->holders);
+    } catch (const std::exception& e) {
+      m->broken = std::string("an edit that failed could not be undone: ") + e.what();
+    }
+    std::rethrow_exception(reason);
+  }
+  if (consequences.structure()) m->holders.reset();
+}
+
+/// After an edit: goes on, or begins anew. Throws before anything that was collected is lost.
+void Render::Members::follow(const Consequences& consequences) {
+  if (consequences.effect() == Effect::retone) return;
+  wanted();
+  identity.reset();
+  const std::uint32_t size = samples_per_step();
+  if (consequences.effect() == Effect::none) {
+    // More samples go on from those that are there; fewer are another picture.
+    const bool too_many = !done.empty() && done.back().end > std::uint32_t(job->renderer->samples);
+    if (too_many || size != step_size) empty();
+  } else {
+    std::unique_ptr<RenderProcess> next = fresh_process();
+    const bool kept = film->follow(*job->image, job->renderer->estimator());
+    if (!kept || !consequences.concern_only(*job->image)) {
+      empty();
+      process = std::move(next);
+    }
+  }
+  step_size = size;
+}
+
+}  // namespace etendue
