@@ -45,6 +45,10 @@ class EmissionShader : public Component {
   /// Whether it only makes sense at infinity: its light depends on where it comes from, not on a surface.
   virtual bool only_at_infinity() const { return false; }
 
+  /// The objects that have it are others than before, or were prepared again: what was found out about them is forgotten. By
+  /// Scene::prepare, for every luminaire.
+  virtual void objects_changed() {}
+
   /// A point without a normal, on an object without extent, emits in all directions.
   bool emits(const SurfacePoint& p, const Vector3& direction) const {
     if (sides == Sides::both || p.normal == Normal3{}) return true;

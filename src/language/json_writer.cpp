@@ -97,7 +97,7 @@ class JsonWriter : public Writer {
     if (const auto* number = v.as<Number>()) {
       double factor = 1;
       unit_suffix(number->dimension, &member, factor);
-      return number_text(number->value, factor, member.kind == Kind::integer);
+      return number_text(number->value, factor, member.kind == Kind::integer, member.in_double);
     }
     if (const auto* text = v.as<std::string>()) return quoted_json(*text);
     if (const auto* n = v.as<Numbers>()) return numbers(*n, member, indent);

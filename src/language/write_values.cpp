@@ -12,13 +12,26 @@
 
 namespace etendue::language {
 
+namespace {
+
+/// The fewest digits that give back the same double, once they are read in a unit.
+std::string exact_text(double value, double factor) {
+  const double x = value / factor;
+  for (const double near : {x, std::nextafter(x, -HUGE_VAL), std::nextafter(x, HUGE_VAL)})
+    if (near * factor == value) return fmt::format("{}", near);
+  return fmt::format("{}", x);
+}
+
+}  // namespace
+
 std::string number_text(double value, double factor, bool whole, bool exact) {
   if (!std::isfinite(value)) throw Error("a number that is not finite cannot be written");
   const double x = value / factor;
   if (x == std::floor(x) && std::abs(x) < (whole ? 0x1p53 : 1e9) && x * factor == value)
     return fmt::format("{}", std::int64_t(x));
+  if (exact) return exact_text(value, factor);
   const auto narrow = float(x);
-  if (!exact && std::isfinite(narrow) && double(narrow) * factor == value) {
+  if (std::isfinite(narrow) && double(narrow) * factor == value) {
     const std::string text = etendue::number_text(narrow);
     double read = 0;
     std::from_chars(text.data(), text.data() + text.size(), read);

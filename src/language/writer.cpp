@@ -154,7 +154,7 @@ std::string Writer::value(const Value& v, const Member* member, int indent, int 
   if (const auto* number = v.as<Number>()) {
     double factor = 1;
     const std::string suffix = unit_suffix(number->dimension, member, factor);
-    return number_text(number->value, factor, member && member->kind == Kind::integer) + suffix;
+    return number_text(number->value, factor, member && member->kind == Kind::integer, member && member->in_double) + suffix;
   }
   if (const auto* text = v.as<std::string>()) {
     const bool word = member && member->kind == Kind::choice && usable_name(*text);

@@ -8,7 +8,6 @@
 #include "check/verify/collect.h"
 #include "check/verify/report_pictures.h"
 #include "etendue/language/language.h"
-#include "etendue/render/job.h"
 #include "support/process.h"
 #include "support/render_support.h"
 
@@ -68,13 +67,13 @@ TEST(VerifyChoose, those_that_miss_light_are_left_out_unless_forced) {
 }
 
 TEST(VerifyCollect, means_are_those_of_the_passes_and_lengths_add_up) {
-  const Ref<Job> job = small_job();
+  Render render(small_job());
   CollectOptions options;
   options.samples = 2;
   options.passes = 3;
   options.inject = 2;
   const Collected c =
-      collect(*job, choose_renderers(*job, "PathTracer,PathTracer{next_event:false}", false).candidates, 8, options);
+      collect(render, choose_renderers(render.job(), "PathTracer,PathTracer{next_event:false}", false).candidates, 8, options);
   ASSERT_TRUE(c.complete);
   ASSERT_EQ(c.measured.size(), 2u);
   for (size_t i = 0; i < 2; ++i) {
@@ -94,7 +93,7 @@ TEST(VerifyCollect, means_are_those_of_the_passes_and_lengths_add_up) {
   }
   // The same again without the injected factor.
   options.inject = 1;
-  const Collected d = collect(*job, choose_renderers(*job, "PathTracer", false).candidates, 8, options);
+  const Collected d = collect(render, choose_renderers(render.job(), "PathTracer", false).candidates, 8, options);
   EXPECT_NEAR(c.measured[0].passes[2][3], 2 * d.measured[0].passes[2][3], 1e-12);
 }
 

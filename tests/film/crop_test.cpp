@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "etendue/render/job.h"
 #include "support/filter_support.h"
 #include "support/render_support.h"
 
@@ -34,12 +33,12 @@ Ref<Job> room(const std::string& renderer, const Ref<Filter>& filter) {
   return job;
 }
 
-Image render(const Ref<Job>& job, std::vector<int> crop) {
+Image render(const Ref<Job>& job, std::vector<int> crop, int threads = 0) {
   job->image->crop = std::move(crop);
   prepare_tree(*job);
-  job->render();
-  EXPECT_EQ(job->film().bad_samples(), 0u);
-  return job->film().develop();
+  const auto done = test::rendered(job, {.threads = threads});
+  EXPECT_EQ(done->film().bad_samples(), 0u);
+  return done->film().develop();
 }
 
 /// Pieces that have edges on and off the tiles' edges, one of a single pixel among them.
@@ -122,10 +121,7 @@ TEST(Crop, passes_of_the_whole_are_those_of_its_pieces) {
 
 TEST(Crop, does_not_depend_on_threads) {
   const Ref<Job> job = room("PathTracer { samples: 9, max_depth: 3 }", test::make_filter("LanczosFilter"));
-  job->threads = 1;
-  const Image one = render(job, {10, 5, 29, 30});
-  job->threads = 4;
-  expect_same(one, render(job, {10, 5, 29, 30}), "threads");
+  expect_same(render(job, {10, 5, 29, 30}, 1), render(job, {10, 5, 29, 30}, 4), "threads");
 }
 
 // What light paths bring depends on which were begun: those of the crop's pixels only. The mean is the same, at the crop's edge

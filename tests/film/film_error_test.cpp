@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "etendue/render/job.h"
 #include "support/filter_support.h"
+#include "support/render_support.h"
 
 namespace etendue {
 namespace {
@@ -77,10 +77,10 @@ Ref<Job> lit_balls(const std::string& renderer, const std::string& filter, const
 
 Spread spread_of(const Ref<Job>& job, int runs) {
   Spread spread;
+  Render render(job);
   for (int run = 0; run < runs; ++run) {
-    job->seed = std::uint64_t(run + 1);
-    EXPECT_EQ(job->render(), Ended::samples);
-    spread.add(job->film().develop());
+    test::render_again(render, std::uint64_t(run + 1));
+    spread.add(render.film().develop());
   }
   return spread;
 }
@@ -112,14 +112,14 @@ TEST(FilmError, low_discrepancy_samples_spread_less_than_reported) {
 TEST(FilmError, relative_error_is_that_of_the_pixels) {
   const Ref<Job> job = lit_balls("LightTracer", "BoxFilter", "IndependentSampler");
   job->renderer->samples = 1024;
+  Render render(job);
   constexpr int runs = 100;
   std::vector<double> sum(80), squares(80);
   double reported = 0;
   for (int run = 0; run < runs; ++run) {
-    job->seed = std::uint64_t(1000 + run);
-    job->render();
-    reported += job->film().relative_error() / runs;
-    const Image picture = job->film().develop();
+    test::render_again(render, std::uint64_t(1000 + run));
+    reported += render.film().relative_error() / runs;
+    const Image picture = render.film().develop();
     for (size_t i = 0; i < 80; ++i) {
       const double value = picture.at(int(i % 10), int(i / 10), 1);
       sum[i] += value / runs;

@@ -335,13 +335,13 @@ TEST(Film, PreparingAgainKeepsThePictureUnlessTheFilmChanged) {
   const Image before = film.develop();
   buffer->layers = {"variance"};
   buffer->prepare();
-  EXPECT_TRUE(film.follow(*buffer));
+  EXPECT_TRUE(film.follow(*buffer, Estimator::independent));
   const Image after = film.develop();
   for (int x = 0; x < 6; ++x) EXPECT_EQ(after.at(x, 3, 1), before.at(x, 3, 1));
   EXPECT_EQ(after.channels.size(), 4u);
   buffer->filter = make_filter("BoxFilter");
   buffer->prepare();
-  EXPECT_FALSE(film.follow(*buffer));
+  EXPECT_FALSE(film.follow(*buffer, Estimator::independent));
   EXPECT_EQ(film.samples(), 0u);
   for (const double v : film.develop().values) EXPECT_EQ(v, 0);
 }

@@ -10,8 +10,8 @@
 #include "etendue/exposed_tone_map.h"
 #include "etendue/film/image_tools.h"
 #include "etendue/language/language.h"
-#include "etendue/render/job.h"
 #include "support/process.h"
+#include "support/render_support.h"
 
 namespace etendue {
 namespace {
@@ -390,9 +390,9 @@ Job {
     outputs: [ PngOutput {}, TgaOutput {}, ExrOutput {}, NpyOutput {}, HdrOutput {} ]
 })",
                                      "a job");
-  job->render();
-  const Image radiance = job->picture();
-  job->write_outputs(folder / "out");
+  const auto render = test::rendered(job);
+  const Image radiance = render->picture();
+  render->write_outputs(folder / "out");
   double brightest = 0;
   for (const double v : radiance.values) brightest = std::max(brightest, v);
   ASSERT_LT(brightest, 1e-4);

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <functional>
 
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 #include "support/language_test_support.h"
 
 namespace etendue::language_test {
@@ -90,10 +90,8 @@ TEST(Expansion, OfWhatIsWrittenIsAllowed) {
 // Just below the bound it renders.
 TEST(Expansion, BelowTheBoundRenders) {
   const std::string text = chain("Lambertian {}", "MixShader { first: @, second: @ }", 11) + lit("Sphere { shader: a11 }");
-  const Ref<Job> job = load_job_text(text, "text");
-  prepare_tree(*job);
-  job->threads = 1;
-  EXPECT_LT(seconds([&] { job->render(); }), 5.0);
+  Render render(load_job_text(text, "text"), {.threads = 1});
+  EXPECT_LT(seconds([&] { render.run(); }), 5.0);
 }
 
 TEST(Expansion, OfListsIsBounded) {

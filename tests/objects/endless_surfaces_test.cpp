@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "etendue/render/job.h"
 #include "support/closed_form_rows.h"
 
 namespace etendue::closed_form {
@@ -43,18 +42,17 @@ struct Tiles {
   double mean[tiles] = {}, variance[tiles] = {};
 };
 
-Tiles render(const std::string& renderer, const std::string& objects) {
-  const Ref<Job> job = load_job_text("Job {\n renderer: " + renderer + R"(
+Tiles measured(const std::string& renderer, const std::string& objects) {
+  Render render(load_job_text("Job {\n renderer: " + renderer + R"(
     camera: PerspectiveCamera { from: [0, -3, 1.5], to: [0, 0, 0.6], up: [0, 0, 1], fov: 50 }
     image: ImageBuffer { width: 24, height: 16, filter: BoxFilter {} }
-    scene: EmbreeScene { objects: [ )" + objects +
-                                         "] }\n}\n",
-                                     "tiles.etd");
+    scene: EmbreeScene { objects: [ )" +
+                                  objects + "] }\n}\n",
+                              "tiles.etd"));
   Tiles t;
   for (int pass = 0; pass < passes; ++pass) {
-    job->seed = std::uint64_t(pass + 1);
-    job->render();
-    const Image image = job->film().develop();
+    test::render_again(render, std::uint64_t(pass + 1));
+    const Image image = render.film().develop();
     double sums[tiles] = {};
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) sums[y / tile * (width / tile) + x / tile] += image.at(x, y, 1) / (tile * tile);
@@ -69,8 +67,8 @@ Tiles render(const std::string& renderer, const std::string& objects) {
 
 // 5.5 standard errors of a difference, of about 30 degrees of freedom: 6e-6 for each tile, 6e-4 for all of them.
 void expect_same(const std::string& renderer, int samples, const std::string& objects, double notice = 0.02) {
-  const Tiles a = render("PathTracer { max_depth: 3, samples: 64 }", objects),
-              b = render(renderer + " { max_depth: 3, samples: " + std::to_string(samples) + " }", objects);
+  const Tiles a = measured("PathTracer { max_depth: 3, samples: 64 }", objects),
+              b = measured(renderer + " { max_depth: 3, samples: " + std::to_string(samples) + " }", objects);
   for (int k = 0; k < tiles; ++k) {
     const double error = std::sqrt(a.variance[k] + b.variance[k]);
     EXPECT_NEAR(b.mean[k], a.mean[k], 5.5 * error + 1e-4 * a.mean[k]) << renderer << ", tile " << k;

@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "etendue/camera.h"
-#include "etendue/render/job.h"
 #include "support/component_test_support.h"
 #include "support/geometry_support.h"
 #include "support/render_support.h"
@@ -314,8 +313,7 @@ TEST(Motion, ABlurredPictureIsTheMeanOfStillOnes) {
   const auto tiles = [](const std::string& text, int seed) {
     const Ref<Job> job = load_job_text(text, "test.etd");
     job->seed = decltype(job->seed)(seed);
-    job->render();
-    const Image image = job->picture();
+    const Image image = test::rendered(job)->picture();
     std::vector<double> sums(16);
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 16; ++x) sums[size_t(y / 4 * 4 + x / 4)] += image.at(x, y, 1) / 16;

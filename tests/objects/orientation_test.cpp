@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "etendue/film/image_tools.h"
-#include "etendue/render/job.h"
 #include "support/image_file.h"
 #include "support/render_support.h"
 
@@ -116,8 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Points, UvOf, testing::ValuesIn(uv_cases));
 /// Where the brightest pixel is.
 Point2 brightest(const std::string& camera, const std::string& objects, int size = 9) {
   const Ref<Job> job = load_job_text(job_text("PathTracer { samples: 64, max_depth: 1 }", camera, size, objects), "view.etd");
-  job->render();
-  const Image image = job->film().develop();
+  const Image image = rendered(job)->film().develop();
   Point2 at{-1, -1};
   double most = 0;
   for (int y = 0; y < size; ++y)
@@ -204,8 +202,7 @@ TEST(Orientation, AProjectedImage) {
                  "Point { emission: ProjectorEmission { file: \"" +
                      file.path + "\", fov: 90 } }\n"),
         "projector.etd");
-    job->render();
-    const Image image = job->film().develop();
+    const Image image = rendered(job)->film().develop();
     Point2 at{-1, -1};
     double most = 0;
     for (int j = 0; j < 2; ++j)

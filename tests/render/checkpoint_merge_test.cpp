@@ -15,28 +15,20 @@ TEST_F(CheckpointTest, parts_merge_in_any_order_to_what_one_process_makes) {
   const int samples = 5 * step + 77;
   const std::string text =
       ball_text("PathTracer { max_depth: 3 }", "width: 2, layers: [\"variance\", \"samples\", \"object\", \"albedo\"]");
-  const Ref<Job> straight = job_of(text, samples);
-  straight->render();
+  const auto straight = rendered(job_of(text, samples), two_threads);
   const std::string a = part(job_of(text, samples), "a", IndexRange{0, 2}),
                     b = part(job_of(text, samples), "b", IndexRange{2, 3}),
                     c = part(job_of(text, samples), "c", IndexRange{3, 6});
   const Checkpoint merged = merge_checkpoints({a, b, c});
   EXPECT_EQ(merged.done, (std::vector<IndexRange>{{0, std::uint32_t(samples)}}));
   EXPECT_EQ(merged.samples_wanted, std::uint32_t(samples));
-  const Ref<Job> job = job_with_picture(merged);
-  EXPECT_EQ(job->film().samples(), straight->film().samples());
-  const Image picture = job->picture(), expected = straight->picture();
-  EXPECT_TRUE(film(*job) == film(*straight));
-  EXPECT_EQ(picture.values, expected.values);
-  for (const char* key : {"samples", "seed", "renderer", "version"})
-    EXPECT_EQ(picture.metadata.at(key), expected.metadata.at(key));
+  expect_same(merged, *straight);
   for (const auto& order : {std::vector{c, b, a}, {b, a, c}, {c, a, b}})
     EXPECT_TRUE(merge_checkpoints(order).state.image == merged.state.image);
   // Merging merged ones, and going on from there with what is missing.
   write_checkpoint(merge_checkpoints({c, a}), folder / "ac");
   EXPECT_EQ(read_checkpoint(folder / "ac").done, (std::vector<IndexRange>{{0, 2 * step}, {3 * step, std::uint32_t(samples)}}));
-  const Ref<Job> filled = job_of(text, samples);
-  EXPECT_EQ(filled->resume(folder / "ac"), Ended::samples);
+  const auto filled = continued(job_of(text, samples), folder / "ac");
   EXPECT_EQ(filled->film().samples(), straight->film().samples());
   EXPECT_TRUE(film(*filled) == film(*straight));
 }
@@ -70,7 +62,7 @@ TEST_F(CheckpointTest, what_does_not_belong_together_is_not_merged) {
 
 TEST_F(CheckpointTest, another_render_is_not_continued) {
   part(ball(2 * step), "state", IndexRange{0, 1});
-  const auto reason = [&](const Ref<Job>& job) { return complaint([&] { job->resume(folder / "state"); }); };
+  const auto reason = [&](const Ref<Job>& job) { return complaint([&] { continued(job, folder / "state"); }); };
   const auto from = [&](const std::string& text) { return reason(job_of(text, 2 * step)); };
   EXPECT_EQ(reason(ball(2 * step)), "");
   const std::string depth = from(ball_text("PathTracer { max_depth: 4 }"));
@@ -90,19 +82,21 @@ TEST_F(CheckpointTest, another_render_is_not_continued) {
                                              "tone_map: SchlickToneMap {}\n outputs: [ NpyOutput {} ]\n time_limit: 1000")),
             "");
   // A refusal changes nothing.
-  const Ref<Job> job = ball(2 * step);
-  job->render();
-  const auto before = film(*job);
-  job->seed = 3;
-  EXPECT_NE(reason(job), "");
-  EXPECT_TRUE(film(*job) == before);
+  const Ref<Job> reseeded = ball(2 * step);
+  reseeded->seed = 3;
+  const auto render = rendered(reseeded, two_threads);
+  const auto before = film(*render);
+  const auto done = render->samples_done();
+  EXPECT_NE(complaint([&] { render->load(folder / "state"); }), "");
+  EXPECT_TRUE(film(*render) == before);
+  EXPECT_EQ(render->samples_done(), done);
 
   Checkpoint c = read_checkpoint(folder / "state");
   const auto changed = [&](auto&& change) {
     Checkpoint other = c;
     change(other);
     write_checkpoint(other, folder / "changed");
-    return complaint([&] { ball(2 * step)->resume(folder / "changed"); });
+    return complaint([&] { continued(ball(2 * step), folder / "changed"); });
   };
   EXPECT_EQ(changed([](Checkpoint&) {}), "");
   EXPECT_TRUE(has(changed([](Checkpoint& o) { o.version = "0.0.1"; }), "it is of version 0.0.1, this program is "));
@@ -132,7 +126,7 @@ TEST_F(CheckpointTest, files_count_by_their_contents) {
   EXPECT_EQ(c.identity.files[0].name, "a.ply");
   EXPECT_EQ(c.identity.files[0].size, std::filesystem::file_size(ply));
   EXPECT_EQ(c.identity.files[1].name, "grey.csv");
-  const auto reason = [&](const std::string& path) { return complaint([&] { load(path)->resume(folder / "state"); }); };
+  const auto reason = [&](const std::string& path) { return complaint([&] { continued(load(path), folder / "state"); }); };
   EXPECT_EQ(reason(file), "");
 
   // The same files elsewhere, and newer, are the same.
@@ -167,7 +161,7 @@ TEST_F(CheckpointTest, images_in_tiles_count_by_their_contents) {
     return job;
   };
   part(load(), "state", IndexRange{0, 1});
-  const auto reason = [&] { return complaint([&] { load()->resume(folder / "state"); }); };
+  const auto reason = [&] { return complaint([&] { continued(load(), folder / "state"); }); };
   EXPECT_EQ(reason(), "");
   image("wood.1012.pgm", "201\n");
   EXPECT_TRUE(has(reason(), "the contents of 'wood.1012.pgm' differ between the checkpoint and this job")) << reason();
@@ -207,7 +201,7 @@ TEST_F(CheckpointTest, damage_is_found_wherever_it_is) {
   EXPECT_TRUE(has(read(""), "it is no checkpoint"));
   EXPECT_TRUE(has(complaint([&] { read_checkpoint(folder / "absent"); }), "there is no such file"));
   EXPECT_TRUE(has(complaint([&] { read_checkpoint(folder.path()); }), "it is a folder"));
-  EXPECT_TRUE(has(complaint([&] { ball(step)->resume(folder / "absent"); }), "absent"));
+  EXPECT_TRUE(has(complaint([&] { continued(ball(step), folder / "absent"); }), "absent"));
 }
 
 }  // namespace

@@ -44,28 +44,25 @@ TEST_F(CheckpointTest, a_render_that_was_stopped_and_continued_has_the_same_bits
                                      "width: 2, layers: [\"albedo\", \"normal\", \"depth\", \"object\", \"variance\", "
                                      "\"samples\"], path_lengths: 3");
   const int samples = 3 * step + 100;
-  const Ref<Job> straight = job_of(text, samples);
-  EXPECT_EQ(straight->render(), Ended::samples);
+  const auto straight = rendered(job_of(text, samples), two_threads);
 
-  const Ref<Job> first = job_of(text, samples);
-  first->checkpoint_file = folder / "state";
-  first->progress_interval = 0;
-  first->on_progress = [&](const Progress&) { first->finish(); };
-  EXPECT_EQ(first->render(), Ended::interrupted);
-  EXPECT_EQ(first->samples_done(), (std::vector<IndexRange>{{0, step}}));
-  EXPECT_NE(film(*first), film(*straight));
+  Render first(job_of(text, samples), {.threads = 2,
+                                       .on_progress = [&](const Progress&) { first.stop(); },
+                                       .progress_interval = 0,
+                                       .checkpoint_file = folder / "state"});
+  EXPECT_EQ(first.run(), Ended::interrupted);
+  EXPECT_EQ(first.samples_done(), (std::vector<IndexRange>{{0, step}}));
+  EXPECT_NE(film(first), film(*straight));
 
-  const Ref<Job> second = job_of(text, samples);
-  second->threads = 1;
-  second->checkpoint_file = folder / "state";
   std::vector<double> fractions;
   Progress last;
-  second->progress_interval = 0;
-  second->on_progress = [&](const Progress& p) {
+  const auto note = [&](const Progress& p) {
     fractions.push_back(p.fraction);
     last = p;
   };
-  EXPECT_EQ(second->resume(folder / "state"), Ended::samples);
+  const auto second =
+      continued(job_of(text, samples), folder / "state",
+                {.threads = 1, .on_progress = note, .progress_interval = 0, .checkpoint_file = folder / "state"});
   EXPECT_TRUE(film(*second) == film(*straight));
   EXPECT_EQ(second->picture().metadata.at("samples"), std::to_string(samples));
   EXPECT_GE(fractions.front(), double(step) / samples);
@@ -73,16 +70,19 @@ TEST_F(CheckpointTest, a_render_that_was_stopped_and_continued_has_the_same_bits
   EXPECT_EQ(last.samples, std::uint32_t(samples));
   EXPECT_EQ(fractions.back(), 1);
 
-  // What is finished stays as it is, and the job can begin afresh.
-  EXPECT_EQ(second->resume(folder / "state"), Ended::samples);
+  // What is finished stays as it is, and the render can begin anew.
+  second->load(folder / "state");
+  EXPECT_EQ(second->run(), Ended::samples);
   EXPECT_TRUE(film(*second) == film(*straight));
-  second->seed = 5;
-  second->checkpoint_file.clear();
-  EXPECT_EQ(second->render(), Ended::samples);
+  test::render_again(*second, 5);
   EXPECT_FALSE(film(*second) == film(*straight));
-  second->seed = 0;
-  EXPECT_EQ(second->render(), Ended::samples);
+  test::render_again(*second, 0);
   EXPECT_TRUE(film(*second) == film(*straight));
+}
+
+/// What a render says of which the passes begin late.
+std::string late_complaint(const Ref<Job>& job, IndexRange passes) {
+  return complaint([&] { rendered(job, {.threads = 2, .steps = passes}); });
 }
 
 TEST_F(CheckpointTest, every_renderer_continues_to_the_same_bits_and_merges) {
@@ -90,23 +90,17 @@ TEST_F(CheckpointTest, every_renderer_continues_to_the_same_bits_and_merges) {
   for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Renderer"))) {
     SCOPED_TRACE(info->name);
     const auto fresh = [&] { return job_of(ball_text(info->name + " {}"), 2 * step); };
-    const Ref<Job> straight = fresh();
-    if (const std::string reason = complaint([&] { straight->render(); }); !reason.empty()) continue;  // not for this scene
+    std::unique_ptr<Render> straight;
+    if (!complaint([&] { straight = rendered(fresh(), two_threads); }).empty()) continue;  // not for this scene
     ++tried;
     part(fresh(), "a", IndexRange{0, 1});
-    const Ref<Job> resumed = fresh();
-    resumed->resume(folder / "a");
-    EXPECT_TRUE(film(*resumed) == film(*straight));
-    if (straight->renderer->steps_depend()) {
-      const Ref<Job> late = fresh();
-      late->passes = IndexRange{1, 2};
-      EXPECT_TRUE(has(complaint([&] { late->render(); }), "learns from one pass to the next"));
+    EXPECT_TRUE(film(*continued(fresh(), folder / "a")) == film(*straight));
+    if (straight->job().renderer->steps_depend()) {
+      EXPECT_TRUE(has(late_complaint(fresh(), {1, 2}), "learns from one pass to the next"));
       continue;
     }
     part(fresh(), "b", IndexRange{1, 2});
-    const Ref<Job> merged = job_with_picture(merge_checkpoints({folder / "b", folder / "a"}));
-    EXPECT_EQ(merged->film().samples(), straight->film().samples());
-    EXPECT_TRUE(film(*merged) == film(*straight));
+    expect_same(merge_checkpoints({folder / "b", folder / "a"}), *straight);
   }
   EXPECT_GE(tried, 1);
 }
@@ -150,22 +144,15 @@ class LearningRenderer final : public Renderer {
 TEST_F(CheckpointTest, what_a_renderer_learned_is_kept_and_not_torn_apart) {
   static const Register<LearningRenderer> registered;  // only once this test runs: others go through all renderers
   const auto fresh = [](int samples) { return job_of(ball_text("LearningRenderer {}"), samples); };
-  const Ref<Job> straight = fresh(3 * step);
-  straight->render();
+  const auto straight = rendered(fresh(3 * step), two_threads);
   part(fresh(3 * step), "a", IndexRange{0, 2});
-  const Ref<Job> resumed = fresh(3 * step);
-  resumed->resume(folder / "a");
-  EXPECT_TRUE(film(*resumed) == film(*straight));
+  EXPECT_TRUE(film(*continued(fresh(3 * step), folder / "a")) == film(*straight));
 
   // Also from before a short pass.
   part(fresh(step + 7), "short");
-  const Ref<Job> longer = fresh(3 * step);
-  longer->resume(folder / "short");
-  EXPECT_TRUE(film(*longer) == film(*straight));
+  EXPECT_TRUE(film(*continued(fresh(3 * step), folder / "short")) == film(*straight));
 
-  const Ref<Job> late = fresh(3 * step);
-  late->passes = IndexRange{2, 3};
-  EXPECT_TRUE(has(complaint([&] { late->render(); }), "learns from one pass to the next"));
+  EXPECT_TRUE(has(late_complaint(fresh(3 * step), {2, 3}), "learns from one pass to the next"));
   Checkpoint c = read_checkpoint(folder / "a");
   c.done = {{2 * step, 3 * step}};
   write_checkpoint(c, folder / "b");
@@ -174,18 +161,15 @@ TEST_F(CheckpointTest, what_a_renderer_learned_is_kept_and_not_torn_apart) {
 
 TEST_F(CheckpointTest, more_samples_continue_a_finished_render_to_the_same_bits) {
   const int few = step + 1000, many = 2 * step + 500;
-  const Ref<Job> straight = ball(many);
-  straight->render();
+  const auto straight = rendered(ball(many), two_threads);
   part(ball(few), "state");
   EXPECT_TRUE(read_checkpoint(folder / "state").before_short_pass.has_value());
 
-  const Ref<Job> again = ball(few);  // finished already: nothing is rendered, and what came before the short pass stays
-  again->checkpoint_file = folder / "copy";
-  EXPECT_EQ(again->resume(folder / "state"), Ended::samples);
+  // Finished already: nothing is rendered, and what came before the short pass stays.
+  continued(ball(few), folder / "state", {.threads = 2, .checkpoint_file = folder / "copy"});
   EXPECT_TRUE(read_checkpoint(folder / "copy").before_short_pass.has_value());
 
-  const Ref<Job> longer = ball(many);
-  EXPECT_EQ(longer->resume(folder / "copy"), Ended::samples);
+  const auto longer = continued(ball(many), folder / "copy");
   EXPECT_EQ(longer->samples_done(), (std::vector<IndexRange>{{0, std::uint32_t(many)}}));
   EXPECT_TRUE(film(*longer) == film(*straight));
 
@@ -193,12 +177,11 @@ TEST_F(CheckpointTest, more_samples_continue_a_finished_render_to_the_same_bits)
   Checkpoint c = read_checkpoint(folder / "state");
   c.before_short_pass.reset();
   write_checkpoint(c, folder / "without");
-  const Ref<Job> completed = ball(many);
-  EXPECT_EQ(completed->resume(folder / "without"), Ended::samples);
+  const auto completed = continued(ball(many), folder / "without");
   EXPECT_EQ(completed->film().samples(), straight->film().samples());
   EXPECT_LE(relative_difference(completed->picture(), straight->picture()), 1e-12);
 
-  EXPECT_TRUE(has(complaint([&] { ball(step)->resume(folder / "state"); }), "it holds samples 0 to 17383"));
+  EXPECT_TRUE(has(complaint([&] { continued(ball(step), folder / "state"); }), "it holds samples 0 to 17383"));
 }
 
 TEST_F(CheckpointTest, seconds_add_up_and_limits_mean_the_whole) {
@@ -207,31 +190,31 @@ TEST_F(CheckpointTest, seconds_add_up_and_limits_mean_the_whole) {
   EXPECT_GT(c.seconds, 0);
   c.seconds = 1000;
   write_checkpoint(c, folder / "state");
-  const Ref<Job> job = ball(3 * step);
+  const auto ended_within = [&](double time_limit, double error_limit) {
+    const Ref<Job> job = ball(3 * step);
+    job->time_limit = time_limit;
+    job->error_limit = error_limit;
+    Render render(job, two_threads);
+    render.load(folder / "state");
+    const Ended ended = render.run();
+    EXPECT_EQ(count(render.samples_done()), std::uint32_t(step));
+    return ended;
+  };
+  EXPECT_EQ(ended_within(999, 0), Ended::time);
+  EXPECT_EQ(ended_within(0, 1e3), Ended::error);
   Progress last;
-  job->on_progress = [&](const Progress& p) { last = p; };
-  job->time_limit = 999;
-  EXPECT_EQ(job->resume(folder / "state"), Ended::time);
-  EXPECT_EQ(count(job->samples_done()), std::uint32_t(step));
-  job->time_limit = 0;
-  job->error_limit = 1e3;
-  EXPECT_EQ(job->resume(folder / "state"), Ended::error);
-  EXPECT_EQ(count(job->samples_done()), std::uint32_t(step));
-  job->error_limit = 0;
-  job->checkpoint_file = folder / "state";
-  EXPECT_EQ(job->resume(folder / "state"), Ended::samples);
+  continued(ball(3 * step), folder / "state",
+            {.threads = 2, .on_progress = [&](const Progress& p) { last = p; }, .checkpoint_file = folder / "state"});
   EXPECT_GT(last.seconds, 1000);
   EXPECT_LT(last.samples_per_second, 3 * step * 2 / 1000.0);
   EXPECT_GT(read_checkpoint(folder / "state").seconds, 1000);
 }
 
 TEST_F(CheckpointTest, a_checkpoint_that_cannot_be_written_does_not_end_a_render) {
-  const Ref<Job> job = ball(2 * step);
-  job->checkpoint_file = folder / "no/such/folder";
-  job->checkpoint_interval = 0;
-  EXPECT_EQ(job->render(), Ended::samples);
-  EXPECT_EQ(count(job->samples_done()), 2u * step);
-  EXPECT_TRUE(has(job->checkpoint_failure(), "no/such")) << job->checkpoint_failure();
+  const auto render =
+      rendered(ball(2 * step), {.threads = 2, .checkpoint_file = folder / "no/such/folder", .checkpoint_interval = 0});
+  EXPECT_EQ(count(render->samples_done()), 2u * step);
+  EXPECT_TRUE(has(render->checkpoint_failure(), "no/such")) << render->checkpoint_failure();
 }
 
 TEST_F(CheckpointTest, leftovers_of_killed_processes_are_removed) {

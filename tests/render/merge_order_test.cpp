@@ -28,9 +28,7 @@ class MergeOrderTest : public CheckpointTest {
   void expect_same_in_any_order(const std::string& renderer, const std::string& crop, const std::vector<IndexRange>& passes,
                                 int samples) {
     SCOPED_TRACE(renderer + crop);
-    const Ref<Job> straight = ball_job(renderer, crop, samples);
-    ASSERT_EQ(straight->render(), Ended::samples);
-    const Image picture = straight->picture();
+    const auto straight = rendered(ball_job(renderer, crop, samples), two_threads);
     std::vector<std::string> files;
     for (const IndexRange& range : passes)
       files.push_back(part(ball_job(renderer, crop, samples), "part" + std::to_string(range.begin), range));
@@ -38,16 +36,14 @@ class MergeOrderTest : public CheckpointTest {
     for (int order = 0; order < 3; ++order) {
       std::ranges::shuffle(files, random);
       // merge_checkpoints sorts what it is given, so films are added by hand as well.
-      Film film(*straight->image);
-      for (const std::string& file : files) film.add_state(read_checkpoint(file).state.image);
-      EXPECT_TRUE(film.save_state() == straight->film().save_state());
-      EXPECT_TRUE(same_picture(film.develop(), straight->film().develop()));
+      Film sum(*straight->job().image);
+      for (const std::string& file : files) sum.add_state(read_checkpoint(file).state.image);
+      EXPECT_TRUE(sum.save_state() == film(*straight));
+      EXPECT_TRUE(same_picture(sum.develop(), straight->film().develop()));
       write_checkpoint(merge_checkpoints({files[0], files[1]}), folder / "two");
       std::vector<std::string> rest(files.begin() + 2, files.end());
       rest.push_back(folder / "two");
-      const Checkpoint merged = merge_checkpoints(rest);
-      EXPECT_TRUE(merged.state.image == straight->film().save_state());
-      EXPECT_TRUE(same_picture(job_with_picture(merged)->picture(), picture));
+      expect_same(merge_checkpoints(rest), *straight);
     }
   }
 

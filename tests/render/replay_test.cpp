@@ -13,9 +13,9 @@ namespace etendue::replay_test {
 namespace {
 
 TEST(Replay, json_tells_where_all_light_of_a_pixel_comes_from) {
-  const Ref<Job> job = prepared(glass_text(64));
-  const PixelReplay replay = replay_pixel(*job, px, py, 64);
-  const auto json = nlohmann::json::parse(replay_json(*job, replay, "test.etd", "etendue render test.etd"));
+  const Render render(loaded(glass_text(64)));
+  const PixelReplay replay = replay_pixel(render, px, py, 64);
+  const auto json = nlohmann::json::parse(replay_json(render.job(), replay, "test.etd", "etendue render test.etd"));
   EXPECT_EQ(json["file"], "test.etd");
   EXPECT_EQ(json["renderer"], "PathTracer");
   EXPECT_EQ(json["seed"], 0);
@@ -69,23 +69,21 @@ TEST(Replay, json_tells_where_all_light_of_a_pixel_comes_from) {
 }
 
 TEST(Replay, a_pixel_is_what_the_picture_has_there) {
-  const Ref<Job> job = prepared(glass_text(48));
-  const PixelReplay replay = replay_pixel(*job, px, py, 1);
+  Render render(loaded(glass_text(48)));
+  const PixelReplay replay = replay_pixel(render, px, py, 1);
   ASSERT_TRUE(replay.luminance);
-  job->render();
-  const double in_picture = job->picture().at(px, py, 1);
+  render.run();
+  const double in_picture = render.picture().at(px, py, 1);
   EXPECT_GT(in_picture, 0);
   EXPECT_NEAR(*replay.luminance, in_picture, 1e-9 * in_picture);
 }
 
 TEST(Replay, the_brightest_are_the_same_however_many_are_asked_for_and_on_any_number_of_threads) {
-  const Ref<Job> job = prepared(glass_text(3000));  // several parts
-  job->threads = 1;
-  const PixelReplay many = replay_pixel(*job, px, py, 3000);
+  const Ref<Job> job = loaded(glass_text(3000));  // several parts
+  const PixelReplay many = replay_pixel(Render(job, {.threads = 1}), px, py, 3000);
   ASSERT_EQ(many.paths.size(), 3000u);
   for (const int threads : {1, 2, 5}) {
-    job->threads = threads;
-    const PixelReplay few = replay_pixel(*job, px, py, 4);
+    const PixelReplay few = replay_pixel(Render(job, {.threads = threads}), px, py, 4);
     EXPECT_EQ(*few.luminance, *many.luminance);
     ASSERT_EQ(few.paths.size(), 4u);
     double shares = 0;
@@ -101,25 +99,25 @@ TEST(Replay, the_brightest_are_the_same_however_many_are_asked_for_and_on_any_nu
 }
 
 TEST(Replay, one_sample_is_told_alone) {
-  const Ref<Job> job = prepared(glass_text(16));
-  const PixelReplay all = replay_pixel(*job, px, py, 16);
-  const PixelReplay one = replay_sample(*job, px, py, all.paths[0].sample);
+  const Render render(loaded(glass_text(16)));
+  const PixelReplay all = replay_pixel(render, px, py, 16);
+  const PixelReplay one = replay_sample(render, px, py, all.paths[0].sample);
   ASSERT_EQ(one.paths.size(), 1u);
   EXPECT_EQ(one.paths[0].luminance, all.paths[0].luminance);
   EXPECT_EQ(one.paths[0].record.contributions.size(), all.paths[0].record.contributions.size());
   EXPECT_FALSE(one.paths[0].share);
-  const auto json = nlohmann::json::parse(replay_json(*job, one, "a.etd", "etendue render a.etd"));
+  const auto json = nlohmann::json::parse(replay_json(render.job(), one, "a.etd", "etendue render a.etd"));
   EXPECT_TRUE(json["luminance"].is_null());
   EXPECT_TRUE(json["paths"][0]["share"].is_null());
   EXPECT_FALSE(has(replay_text(one, "c"), "is not in it"));
-  EXPECT_TRUE(has(replay_text(replay_sample(*job, px, py, 16), "c"), "samples 0 to 15; this one is not in it"));
-  EXPECT_THROW(replay_sample(*job, 16, 0, 0), Error);
-  EXPECT_THROW(replay_pixel(*job, 0, -1, 1), Error);
+  EXPECT_TRUE(has(replay_text(replay_sample(render, px, py, 16), "c"), "samples 0 to 15; this one is not in it"));
+  EXPECT_THROW(replay_sample(render, 16, 0, 0), Error);
+  EXPECT_THROW(replay_pixel(render, 0, -1, 1), Error);
 }
 
 TEST(Replay, a_black_pixel_has_no_shares) {
-  const Ref<Job> job = prepared(test::job_text("PathTracer { samples: 4 }", camera, 16, floor_disc));
-  const PixelReplay replay = replay_pixel(*job, px, py, 5);
+  const Render render(loaded(test::job_text("PathTracer { samples: 4 }", camera, 16, floor_disc)));
+  const PixelReplay replay = replay_pixel(render, px, py, 5);
   EXPECT_EQ(*replay.luminance, 0);
   ASSERT_EQ(replay.paths.size(), 4u);
   for (size_t i = 0; i < 4; ++i) {
@@ -131,11 +129,8 @@ TEST(Replay, a_black_pixel_has_no_shares) {
 // ---- splats and bad samples ---------------------------------------------------------------------------------------------
 
 TEST(Replay, splats_and_bad_samples_are_told) {
-  const Ref<Job> job = prepared(glass_text(64));
-  const Ref<Renderer> path_tracer = job->renderer;
-  job->renderer = Ref<Renderer>(new Sprinkler);
-  job->renderer->samples = 64;
-  const PixelReplay replay = replay_pixel(*job, px, py, 64);
+  const Render render(sprinkled(glass_text(64), 64));
+  const PixelReplay replay = replay_pixel(render, px, py, 64);
   double before = std::numeric_limits<double>::infinity(), shares = 0;
   int bad = 0;
   for (const ReplayedPath& path : replay.paths) {
@@ -155,8 +150,7 @@ TEST(Replay, splats_and_bad_samples_are_told) {
   EXPECT_TRUE(has(text, "falls at (2.500000, 3.250000)")) << text.substr(0, 2000);
   EXPECT_TRUE(has(text, "it counts as black"));
 
-  job->renderer = path_tracer;  // one that has a name
-  const auto json = nlohmann::json::parse(replay_json(*job, replay, "a.etd", "etendue render a.etd"));
+  const auto json = nlohmann::json::parse(replay_json(render.job(), replay, "a.etd", "etendue render a.etd"));
   const auto& path = json["paths"][0];
   EXPECT_EQ(path["contributions"][0]["film"], nlohmann::json({2.5, 3.25}));
   EXPECT_TRUE(path["contributions"][0]["splat"].get<bool>());

@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "etendue/language/language.h"
-#include "etendue/render/job.h"
 #include "geometry/rendering_space.h"
 #include "support/geometry_support.h"
+#include "support/render_support.h"
 
 namespace etendue {
 namespace {
@@ -37,11 +37,7 @@ std::string job_at(const Where& w, const std::string& renderer, const std::strin
       renderer, w.at(0.31, -1.2, 0.23), w.at(0, 0.7, -0.11), size, size, structure, objects);
 }
 
-Image render(const std::string& text) {
-  const Ref<Job> job = load_job_text(text, "far_away.etd");
-  job->render();
-  return job->picture();
-}
+Image render(const std::string& text) { return test::rendered(load_job_text(text, "far_away.etd"))->picture(); }
 
 double brightest(const Image& image) {
   double most = 0;
@@ -250,10 +246,10 @@ TEST(FarAway, MapsSeeTheWorldsCoordinates) {
 
 TEST(FarAway, ReplayTellsTheWorldsCoordinates) {
   const Where w = away(1e7);
-  const Ref<Job> job =
-      load_job_text(job_at(w, "PathTracer { samples: 1 }", "BvhScene", rooms(w).front().second), "far_away.etd");
+  const Render render(
+      load_job_text(job_at(w, "PathTracer { samples: 1 }", "BvhScene", rooms(w).front().second), "far_away.etd"));
   PathRecord record;
-  job->replay(8, 8, 0, record);
+  render.replay(8, 8, 0, record);
   ASSERT_GT(record.vertices.size(), 1u);
   for (const PathRecord::Vertex& v : record.vertices) {
     EXPECT_LT(std::abs(v.position.x - w.x), 2.001) << v.kind;
@@ -325,13 +321,11 @@ TEST(FarAway, JobsShareObjects) {
   const std::string renderer = "PathTracer { samples: 16, max_depth: 4 }";
   const Ref<Job> first = load_job_text(job_at(a, renderer, "BvhScene", furnished(a)), "far_away.etd");
   const Ref<Job> second = load_job_text(job_at(b, renderer, "BvhScene", furnished(b)), "far_away.etd");
-  first->render();
-  const Image before = first->picture();
+  const Image before = test::rendered(first)->picture();
   second->scene->objects = first->scene->objects;
-  second->render();
+  test::rendered(second);
   prepare_tree(*first);
-  first->render();
-  EXPECT_EQ(difference(first->picture(), before), 0);
+  EXPECT_EQ(difference(test::rendered(first)->picture(), before), 0);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "etendue/render/job.h"
 #include "support/render_support.h"
 
 namespace etendue::test {
@@ -45,11 +44,11 @@ class Refraction : public testing::TestWithParam<Walk> {
                          : std::string("OrthographicCamera { from: [9, 9, 9], to: [10, 10, 10], width: 1 }"),
         2, objects + "Sphere { radius: 50 }\n" + (walk.from_camera ? "" : lamp), "EmbreeScene");
     if (!wavelengths.empty()) text.insert(text.find("renderer:"), "wavelengths: " + wavelengths + "\n ");
-    const Ref<Job> job = load_job_text(text, "bent.etd");
+    const Render render(load_job_text(text, "bent.etd"));
     std::vector<Vector3> found;
     for (int n = 0; n < samples; ++n) {
       PathRecord record;
-      job->replay(n % 2, n / 2 % 2, std::uint32_t(n / 4), record);
+      render.replay(n % 2, n / 2 % 2, std::uint32_t(n / 4), record);
       const auto& path = walk.from_camera ? record.vertices : record.light_vertices;
       if (path.size() < turns.size() + 2) continue;
       std::string met;

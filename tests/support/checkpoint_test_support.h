@@ -11,6 +11,8 @@
 
 namespace etendue::checkpoint_test {
 
+using test::rendered;
+
 // A pass of a picture of so few pixels is 16384 samples of each.
 inline constexpr int step = 16384;
 
@@ -26,13 +28,33 @@ inline std::string ball_text(const std::string& renderer = "PathTracer { max_dep
 inline Ref<Job> job_of(const std::string& text, int samples) {
   const Ref<Job> job = load_job_text(text, "test.etd");
   job->renderer->samples = samples;
-  job->threads = 2;
   return job;
 }
 inline Ref<Job> ball(int samples) { return job_of(ball_text(), samples); }
 
+/// More than one, on any machine.
+inline const RenderSettings two_threads{.threads = 2};
+
+/// A render of a job that goes on from a checkpoint, with all its samples.
+inline std::unique_ptr<Render> continued(const Ref<Job>& job, const std::string& file,
+                                         const RenderSettings& settings = two_threads) {
+  auto render = std::make_unique<Render>(job, settings);
+  render->load(file);
+  EXPECT_EQ(render->run(), Ended::samples);
+  return render;
+}
+
 /// All that was collected, bit by bit.
-inline std::vector<std::byte> film(const Job& job) { return job.film().save_state(); }
+inline std::vector<std::byte> film(const Render& render) { return render.film().save_state(); }
+
+/// Expects of a checkpoint, and of the picture that is kept in it, what a render has.
+inline void expect_same(const Checkpoint& c, const Render& render) {
+  EXPECT_TRUE(c.state.image == film(render));
+  const Image kept = picture_of(c).picture, picture = render.picture();
+  EXPECT_EQ(kept.channels, picture.channels);
+  EXPECT_TRUE(kept.values == picture.values);
+  for (const char* key : {"samples", "seed", "renderer", "version"}) EXPECT_EQ(kept.metadata.at(key), picture.metadata.at(key));
+}
 
 /// The largest difference of two pictures in any channel, relative to that channel's largest value.
 inline double relative_difference(const Image& a, const Image& b) {
@@ -71,11 +93,9 @@ class CheckpointTest : public RunsProgram {
  protected:
   /// Renders passes of a job into a file.
   std::string part(const Ref<Job>& job, const std::string& name, std::optional<IndexRange> passes = {}) {
-    job->checkpoint_file = folder / name;
-    job->passes = passes;
-    EXPECT_EQ(job->render(), Ended::samples);
-    EXPECT_EQ(job->checkpoint_failure(), "");
-    return job->checkpoint_file;
+    std::string file = folder / name;
+    EXPECT_EQ(rendered(job, {.threads = 2, .steps = passes, .checkpoint_file = file})->checkpoint_failure(), "");
+    return file;
   }
 };
 

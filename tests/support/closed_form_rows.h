@@ -16,7 +16,6 @@
 
 #include <numeric>
 
-#include "etendue/render/job.h"
 #include "render_support.h"
 
 namespace etendue::closed_form {
@@ -54,21 +53,20 @@ inline void PrintTo(const Case& c, std::ostream* out) { *out << c.way.renderer <
 /// Mean Y of the picture over renders with different seeds, and its standard error.
 inline void expect_row(const Case& c) {
   constexpr int renders = 32;
-  const Ref<Job> job = load_job_text(job_text(fmt::format("{} {{ samples: {}{}{} }}", c.way.renderer, c.way.samples,
-                                                          c.way.members.empty() ? "" : ", ", c.way.members),
-                                              c.row.camera, c.row.size, c.row.objects, "EmbreeScene"),
-                                     "row.etd");
+  Render render(load_job_text(job_text(fmt::format("{} {{ samples: {}{}{} }}", c.way.renderer, c.way.samples,
+                                                   c.way.members.empty() ? "" : ", ", c.way.members),
+                                       c.row.camera, c.row.size, c.row.objects, "EmbreeScene"),
+                              "row.etd"));
   std::vector<double> means;
   std::uint64_t bad = 0;
   for (int i = 0; i < renders; ++i) {
-    job->seed = std::uint64_t(i + 1);
-    job->render();
-    const Image image = job->film().develop();
+    test::render_again(render, std::uint64_t(i + 1));
+    const Image image = render.film().develop();
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) sum += image.at(x, y, 1);
     means.push_back(sum / (double(image.width) * image.height));
-    bad += job->film().bad_samples();
+    bad += render.film().bad_samples();
   }
   const double mean = std::accumulate(means.begin(), means.end(), 0.0) / renders;
   double squares = 0;

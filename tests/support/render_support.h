@@ -1,12 +1,28 @@
 #pragma once
-// Renders a description given as text and says what came out.
+// Renders descriptions, and says what came out.
 
+#include <gtest/gtest.h>
+
+#include <memory>
 #include <string>
 
 #include "etendue/language/language.h"
-#include "etendue/render/job.h"
+#include "etendue/render/render.h"
 
 namespace etendue::test {
+
+/// A render of a job, with all its samples.
+inline std::unique_ptr<Render> rendered(const Ref<Job>& job, RenderSettings settings = {}) {
+  auto render = std::make_unique<Render>(job, std::move(settings));
+  EXPECT_EQ(render->run(), Ended::samples);
+  return render;
+}
+
+/// Renders anew, with other random numbers.
+inline void render_again(Render& render, std::uint64_t seed) {
+  render.restart(seed);
+  EXPECT_EQ(render.run(), Ended::samples);
+}
 
 struct Measured {
   Xyz mean;          ///< over all pixels
@@ -16,8 +32,8 @@ struct Measured {
 
 inline Measured measure(const Ref<Job>& job) {
   job->image->layers = {"variance"};
-  job->render();
-  const Image image = job->picture();
+  const std::unique_ptr<Render> render = rendered(job);
+  const Image image = render->picture();
   const size_t variance =
       size_t(std::find(image.channels.begin(), image.channels.end(), "variance.Y") - image.channels.begin());
   Measured m;
@@ -30,7 +46,7 @@ inline Measured measure(const Ref<Job>& job) {
     }
   m.mean = (1 / pixels) * m.mean;
   m.error = std::sqrt(sum) / pixels;
-  m.bad = job->film().bad_samples();
+  m.bad = render->film().bad_samples();
   return m;
 }
 

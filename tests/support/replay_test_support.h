@@ -3,8 +3,6 @@
 
 #include <regex>
 
-#include "etendue/language/language.h"
-#include "etendue/render/job.h"
 #include "render_support.h"
 
 namespace etendue::replay_test {
@@ -22,8 +20,9 @@ inline std::string objects(const std::vector<std::string>& parts) {
   return text;
 }
 
+inline Ref<Job> loaded(const std::string& text) { return load_job_text(text, "test.etd"); }
 inline Ref<Job> prepared(const std::string& text) {
-  Ref<Job> job = load_job_text(text, "test.etd");
+  Ref<Job> job = loaded(text);
   prepare_tree(*job);
   return job;
 }
@@ -51,6 +50,7 @@ inline std::string point_scene(const std::string& renderer, const std::vector<st
 /// numbers, some negative in part.
 class Sprinkler final : public Renderer {
  public:
+  static void describe(Description<Sprinkler>& d) { d.summary("For tests: splats much light, some of it bad."); }
   Spectrum radiance(const RenderContext&, const Ray&, SampleContext& sample) const override {
     const float u = sample.numbers.next();
     Spectrum own(0.001f * u);
@@ -67,6 +67,22 @@ class Sprinkler final : public Renderer {
     return own;
   }
 };
+
+/// A scene's light, sprinkled. Its renderer has a name, but is none that can be made: other tests go through all of those.
+inline Ref<Job> sprinkled(const std::string& text, int samples) {
+  static RegistrationNode node{typeid(Sprinkler), typeid(Renderer),
+                               [](ClassInfo& info) {
+                                 Description<Sprinkler> d(info);
+                                 Sprinkler::describe(d);
+                                 d.finish();
+                               },
+                               nullptr, nullptr};
+  [[maybe_unused]] static const bool known = (enlist(node), true);
+  Ref<Job> job = loaded(text);
+  job->renderer = Ref<Renderer>(new Sprinkler);
+  job->renderer->samples = samples;
+  return job;
+}
 
 struct Listed {
   int x = 0, y = 0;

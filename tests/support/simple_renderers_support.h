@@ -6,7 +6,6 @@
 
 #include "component_test_support.h"
 #include "etendue/describe/color.h"
-#include "etendue/render/job.h"
 #include "render_support.h"
 
 namespace etendue::test {
@@ -21,10 +20,7 @@ inline void expect_value(const Measured& m, double expected, double tolerance = 
 /// A job that is ready to compute single samples.
 class Ready {
  public:
-  explicit Ready(const std::string& text) : job_(load_job_text(text, "test.etd")) {
-    prepare_tree(*job_);
-    process_ = job_->start_at(0);
-  }
+  explicit Ready(const std::string& text) : render_(load_job_text(text, "test.etd")), process_(render_.start_at(0)) {}
   CameraSample sample(int x, int y, std::uint32_t n, std::span<Spectrum> lengths = {}) {
     PathRequest request;
     request.observe.lengths = lengths;
@@ -38,11 +34,11 @@ class Ready {
     return {float(m[0] * c.x + m[1] * c.y + m[2] * c.z), float(m[3] * c.x + m[4] * c.y + m[5] * c.z),
             float(m[6] * c.x + m[7] * c.y + m[8] * c.z)};
   }
-  const Job& job() const { return *job_; }
+  const Job& job() const { return render_.job(); }
 
  private:
-  Ref<Job> job_;
-  std::unique_ptr<RenderProcess> process_;
+  const Render render_;
+  const std::unique_ptr<RenderProcess> process_;
   Arena arena_;
 };
 
@@ -97,14 +93,14 @@ inline const std::string slab = R"(
 inline double agreement(const std::string& a, const std::string& b, const std::string& camera, int size,
                         const std::string& objects) {
   double statistic = 0;
-  const auto render = [&](const std::string& renderer) {
+  const auto picture = [&](const std::string& renderer) {
     const Ref<Job> job = load_job_text(job_text(renderer, camera, size, objects), "test.etd");
     job->image->layers = {"variance"};
-    job->render();
-    EXPECT_EQ(job->film().bad_samples(), 0u);
-    return job->picture();
+    const std::unique_ptr<Render> render = rendered(job);
+    EXPECT_EQ(render->film().bad_samples(), 0u);
+    return render->picture();
   };
-  const Image first = render(a), second = render(b);
+  const Image first = picture(a), second = picture(b);
   const size_t variance =
       size_t(std::find(first.channels.begin(), first.channels.end(), "variance.Y") - first.channels.begin());
   double sum_a = 0, sum_b = 0, sum_variance = 0;

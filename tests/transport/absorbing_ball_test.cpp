@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 
 #include "etendue/describe/color.h"
-#include "etendue/render/job.h"
 #include "support/component_test_support.h"
 #include "support/render_support.h"
 
@@ -32,15 +31,15 @@ struct Mean {
 /// Mean Y over renders with different seeds, and its standard error.
 Mean rendered(const std::string& renderer, int samples, const std::string& camera, const std::string& objects, int size = 8) {
   const std::string head = renderer.substr(0, renderer.find('{')), members = renderer.substr(renderer.find('{') + 1);
-  const Ref<Job> job = load_job_text(
-      job_text(fmt::format("{} {{ samples: {}, {}", head, samples, members), camera, size, objects, "EmbreeScene"), "ball.etd");
+  Render render(load_job_text(
+      job_text(fmt::format("{} {{ samples: {}, {}", head, samples, members), camera, size, objects, "EmbreeScene"),
+      "ball.etd"));
   constexpr int renders = 16;
   double sum = 0, squares = 0;
   for (int i = 0; i < renders; ++i) {
-    job->seed = std::uint64_t(i + 1);
-    job->render();
-    const Image image = job->film().develop();
-    EXPECT_EQ(job->film().bad_samples(), 0u);
+    render_again(render, std::uint64_t(i + 1));
+    const Image image = render.film().develop();
+    EXPECT_EQ(render.film().bad_samples(), 0u);
     double mean = 0;
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) mean += image.at(x, y, 1) / (double(image.width) * image.height);

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <future>
 
-#include "etendue/render/job.h"
 #include "support/process.h"
 #include "support/render_support.h"
 
@@ -91,15 +90,14 @@ TEST(BoundedPaths, take_no_more_memory_and_end_when_aborted) {
   for (const Endless& e : endless()) {
     const Ref<Job> job = load_job_text(
         test::job_text(e.renderer, "PerspectiveCamera { from: [0, 0, 5] m, to: [0, 0, 0] m }", 8, e.objects), e.name);
-    job->threads = 2;
-    prepare_tree(*job);
-    std::future<Ended> ended = std::async(std::launch::async, [&] { return job->render(); });
+    Render render(job, {.threads = 2});
+    std::future<Ended> ended = std::async(std::launch::async, [&] { return render.run(); });
     ASSERT_EQ(ended.wait_for(std::chrono::milliseconds(400)), std::future_status::timeout) << e.name << " ended by itself";
     const double before = resident();
     ASSERT_EQ(ended.wait_for(std::chrono::milliseconds(600)), std::future_status::timeout) << e.name << " ended by itself";
     const double grown = resident() - before;
     const double asked = now();
-    job->abort();
+    render.abort();
     // On a machine with other work to do the threads may have to wait for their turn; a path of its own takes hours.
     ASSERT_EQ(ended.wait_for(std::chrono::seconds(30)), std::future_status::ready) << e.name;
     EXPECT_LT(now() - asked, 2) << e.name;
@@ -129,12 +127,12 @@ TEST(BoundedPaths, a_second_interruption_ends_the_program) {
 }
 
 TEST(BoundedPaths, what_is_asked_before_a_render_begins_is_not_lost_and_not_kept) {
-  const Ref<Job> job = load_job_text(
+  Render render(load_job_text(
       test::job_text("PathTracer { samples: 1 }", "PerspectiveCamera { from: [0, 0, 5] m, to: [0, 0, 0] m }", 8, white_box),
-      "box");
-  job->abort();
-  EXPECT_EQ(job->render(), Ended::aborted);
-  EXPECT_EQ(job->render(), Ended::samples);
+      "box"));
+  render.abort();
+  EXPECT_EQ(render.run(), Ended::aborted);
+  EXPECT_EQ(render.run(), Ended::samples);
 }
 
 TEST(BoundedPaths, depths_that_need_more_memory_are_refused_with_their_place) {
@@ -164,18 +162,16 @@ TEST(BoundedPaths, a_thousand_sheets_are_no_deep_recursion) {
         test::job_text(text, "PerspectiveCamera { from: [0, 0, 5] m, to: [0, 0, 0] m, fov: 5 deg }", 2, objects, "BvhScene"),
         "sheets");
     job->renderer->samples = 1;
-    job->threads = 1;
-    job->render();
-    EXPECT_NEAR(job->film().develop().at(1, 1, 1), 1, 0.05) << renderer;
+    EXPECT_NEAR(test::rendered(job, {.threads = 1})->film().develop().at(1, 1, 1), 1, 0.05) << renderer;
   }
 }
 
 TEST(BoundedPaths, records_of_endless_paths_keep_their_beginning) {
-  const Ref<Job> job = load_job_text(test::job_text("PathTracer { samples: 1, max_depth: 200000 }",
-                                                    "PerspectiveCamera { from: [0, 0, 5] m, to: [0, 0, 0] m }", 8, white_box),
-                                     "box");
+  const Render render(load_job_text(test::job_text("PathTracer { samples: 1, max_depth: 200000 }",
+                                                   "PerspectiveCamera { from: [0, 0, 5] m, to: [0, 0, 0] m }", 8, white_box),
+                                    "box"));
   PathRecord record;
-  job->replay(3, 3, 0, record);
+  render.replay(3, 3, 0, record);
   EXPECT_EQ(record.vertices.size(), PathRecord::most);
   EXPECT_EQ(record.vertices.front().kind, "camera");
   EXPECT_LE(record.contributions.size(), PathRecord::most);

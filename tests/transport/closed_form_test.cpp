@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "etendue/render/job.h"
 #include "support/render_support.h"
 
 namespace etendue::test {
@@ -187,11 +186,11 @@ TEST(ClosedForm, PrismDeviation) {
         triangles: [[0,2,1],[3,4,5],[0,1,4],[0,4,3],[1,2,5],[1,5,4],[2,0,3],[2,3,5]], shader: Dielectric { ior: glass("N-BK7") } }
       Sphere { radius: 50 })");
     text.insert(text.find("renderer:"), "wavelengths: " + w + "\n ");
-    const Ref<Job> job = load_job_text(text, "prism.etd");
+    const Render render(load_job_text(text, "prism.etd"));
     bool found = false;
     for (std::uint32_t n = 0; n < 100 && !found; ++n) {
       PathRecord record;
-      job->replay(0, 0, n, record);
+      render.replay(0, 0, n, record);
       if (record.vertices.size() < 4) continue;
       if (record.vertices[1].lobe != "specular transmission" || record.vertices[2].lobe != "specular transmission") continue;
       const Vector3 begin = Vector3(record.vertices[0].normal),

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "etendue/render/job.h"
 #include "support/cornell_reference.h"
 #include "support/render_support.h"
 
@@ -12,9 +11,9 @@ namespace {
 TEST(CornellBox, AgreesWithMitsuba) {
   const Ref<Job> job = load_job(ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd");
   job->renderer->samples = 128;
-  job->render();
-  EXPECT_EQ(job->film().bad_samples(), 0u);
-  const Image image = job->picture();
+  const auto render = rendered(job);
+  EXPECT_EQ(render->film().bad_samples(), 0u);
+  const Image image = render->picture();
   ASSERT_EQ(image.width, 256);
   ASSERT_EQ(image.height, 256);
   double whole[3] = {}, reference[3] = {};

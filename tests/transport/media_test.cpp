@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "etendue/render/job.h"
 #include "support/render_support.h"
 
 namespace etendue::test {
@@ -16,9 +15,8 @@ struct Estimate {
 
 /// Mean Y of a picture and the standard error of the mean, from the differences of its pixels.
 Estimate estimate(const std::string& text) {
-  const Ref<Job> job = load_job_text(text, "test.etd");
-  job->render();
-  const Image image = job->film().develop();
+  const auto render = rendered(load_job_text(text, "test.etd"));
+  const Image image = render->film().develop();
   double sum = 0, squares = 0;
   const double n = double(image.width) * image.height;
   for (int y = 0; y < image.height; ++y)
@@ -26,7 +24,7 @@ Estimate estimate(const std::string& text) {
       sum += image.at(x, y, 1);
       squares += image.at(x, y, 1) * image.at(x, y, 1);
     }
-  EXPECT_EQ(job->film().bad_samples(), 0u);
+  EXPECT_EQ(render->film().bad_samples(), 0u);
   return {sum / n, std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1))};
 }
 

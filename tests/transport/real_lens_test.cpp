@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "etendue/render/job.h"
 #include "support/render_support.h"
 
 namespace etendue {
@@ -83,8 +82,7 @@ TEST(RealLens, WeakensTheSameForAllAlgorithms) {
             renderer, camera, radiance),
         "lens.etd");
     job->renderer->samples = samples;
-    job->render();
-    return job->picture();
+    return test::rendered(job)->picture();
   };
   const std::string lens = "RealLensCamera {}";
   const std::string whole = "OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 2 }";

@@ -93,8 +93,7 @@ TEST(SimpleRenderers, NoteFeaturesLikeThePathTracer) {
   const auto features = [](const char* renderer) {
     const Ref<Job> job = load_job_text(job_text(renderer, room_camera, 8, room()), "test.etd");
     job->image->layers = {"albedo", "normal", "depth", "object"};
-    job->render();
-    return job->picture();
+    return rendered(job)->picture();
   };
   const Image expected = features("PathTracer { samples: 2 }");
   for (const char* renderer :

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "etendue/render/job.h"
 #include "support/render_support.h"
 
 namespace etendue::test {
@@ -16,16 +15,15 @@ struct Estimate {
 Estimate estimate(const std::string& renderer, int samples, const std::string& camera, const std::string& objects) {
   constexpr int runs = 12;
   double sum = 0, squares = 0;
-  const Ref<Job> job = load_job_text(
-      job_text(renderer + ", samples: " + std::to_string(samples) + " }", camera, 12, objects, "EmbreeScene"), "test.etd");
+  Render render(load_job_text(
+      job_text(renderer + ", samples: " + std::to_string(samples) + " }", camera, 12, objects, "EmbreeScene"), "test.etd"));
   for (int i = 0; i < runs; ++i) {
-    job->seed = std::uint64_t(i + 1);
-    job->render();
-    const Image image = job->film().develop();
+    render_again(render, std::uint64_t(i + 1));
+    const Image image = render.film().develop();
     double mean = 0;
     for (int y = 0; y < 12; ++y)
       for (int x = 0; x < 12; ++x) mean += image.at(x, y, 1) / 144;
-    EXPECT_EQ(job->film().bad_samples(), 0u);
+    EXPECT_EQ(render.film().bad_samples(), 0u);
     sum += mean / runs;
     squares += mean * mean / runs;
   }
@@ -104,8 +102,7 @@ TEST(Transport, DepthIsMeasuredFromTheCameraThroughBoundaries) {
                                "Sphere { radius: 1, shader: Lambertian {}, emission: DiffuseEmission {} }"),
                       "test.etd");
     job->image->layers = {"depth"};
-    job->render();
-    EXPECT_NEAR(job->film().develop().at(1, 1, 3), 4, 1e-3) << renderer;
+    EXPECT_NEAR(rendered(job)->film().develop().at(1, 1, 3), 4, 1e-3) << renderer;
   }
 }
 
@@ -135,8 +132,7 @@ TEST(Transport, HairFromBothEnds) {
 TEST(Transport, WhatCannotBeFoundIsRefused) {
   const auto refused = [](const std::string& objects) {
     try {
-      const Ref<Job> job = load_job_text(job_text("PathTracer { samples: 1 }", camera, 2, objects), "test.etd");
-      job->render();
+      rendered(load_job_text(job_text("PathTracer { samples: 1 }", camera, 2, objects), "test.etd"));
       return std::string();
     } catch (const Error& e) {
       return std::string(e.what());

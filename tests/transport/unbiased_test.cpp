@@ -13,7 +13,6 @@
 #include <numbers>
 
 #include "etendue/object_map.h"
-#include "etendue/render/job.h"
 #include "support/component_test_support.h"
 #include "support/filter_support.h"
 #include "support/image_file.h"
@@ -38,10 +37,9 @@ Image render(const std::string& renderer, const std::string& members, int sample
     {}
   ] }} }})",
       seed, renderer, samples, members, side, side, filter, shader, more);
-  const Ref<Job> job = load_job_text(text, "unbiased.etd");
-  job->render();
-  EXPECT_EQ(job->film().bad_samples(), 0u);
-  return job->picture();
+  const auto done = rendered(load_job_text(text, "unbiased.etd"));
+  EXPECT_EQ(done->film().bad_samples(), 0u);
+  return done->picture();
 }
 
 struct Mean {
@@ -283,12 +281,11 @@ TEST(Unbiased, FilteringIsNamedAsABias) {
                          "bias.etd");
   };
   const Ref<Job> sound = job(""), filtered = job(", map_filter: 2");
-  for (const Ref<Job>& j : {sound, filtered}) j->render();
   EXPECT_EQ(sound->renderer->bias(), "");
-  EXPECT_FALSE(sound->picture().metadata.contains("bias"));
+  EXPECT_FALSE(rendered(sound)->picture().metadata.contains("bias"));
   const std::string bias = filtered->renderer->bias();
   EXPECT_NE(bias.find("maps are averaged over 2 pixels"), std::string::npos) << bias;
-  EXPECT_EQ(filtered->picture().metadata.at("bias"), bias);
+  EXPECT_EQ(rendered(filtered)->picture().metadata.at("bias"), bias);
   const Member* member = filtered->renderer->class_info().find("map_filter");
   ASSERT_TRUE(member);
   EXPECT_NE(member->text.find("bias"), std::string::npos);
@@ -325,23 +322,19 @@ TEST(Unbiased, EveryMapAtAnyNumberOfSamples) {
   constexpr int size = 20, fine = 32;
   // Squared, the mean of the map would not do; it is the part of light that a surface does not let through.
   const auto job_with = [&](const std::string& opacity, int samples, int seed) {
-    const Ref<Job> job = load_job_text(fmt::format(R"(Job {{ seed: {}, renderer: PathTracer {{ samples: {} }}
+    return load_job_text(fmt::format(R"(Job {{ seed: {}, renderer: PathTracer {{ samples: {} }}
           camera: OrthographicCamera {{ from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 1 }}
           image: ImageBuffer {{ width: {}, height: {}, filter: BoxFilter {{}} }}
           scene: BruteForceScene {{ objects: [
             Rectangle {{ corner: [-1, -1, 0], edge_u: [2, 0, 0], edge_v: [0, 2, 0]
               shader: MaskShader {{ shader: Lambertian {{ color: 1 }}, opacity: {} }} }}
             Distant {{ direction: [0, 0, -1], emission: DiffuseEmission {{ radiance: 3, sides: both }} }} ] }} }})",
-                                                   seed, samples, size, size, opacity),
-                                       "maps.etd");
-    prepare_tree(*job);
-    return job;
+                                     seed, samples, size, size, opacity),
+                         "maps.etd");
   };
   Mean white;
   for (int seed = 0; seed < 20; ++seed) {
-    const Ref<Job> job = job_with("1", 1, seed);
-    job->render();
-    const Image picture = job->picture();
+    const Image picture = rendered(job_with("1", 1, seed))->picture();
     for (size_t i = 1; i < picture.values.size(); i += 3) white.add(picture.values[i]);
   }
   size_t varying = 0;
@@ -349,7 +342,8 @@ TEST(Unbiased, EveryMapAtAnyNumberOfSamples) {
     if (!info->provider.empty() || info->name == "FootprintProbe") continue;
     const std::string opacity =
         "FormulaMap { formula: \"clamp(m * m, 0, 1)\", names: [\"m\"], maps: [" + map_text(*info, image.path) + "] }";
-    Ref<Job> job = job_with(opacity, 1, 1);
+    const Ref<Job> job = job_with(opacity, 1, 1);
+    prepare_tree(*job);
     const Ref<ObjectMap> map = ref_cast<ObjectMap>(parse_component(opacity, "map"));
     prepare_tree(*map);
     // The truth, by stratified points of every pixel, seen without a footprint.
@@ -378,9 +372,7 @@ TEST(Unbiased, EveryMapAtAnyNumberOfSamples) {
     for (const auto& [samples, trials] : {std::pair(1, 60), {16, 8}}) {
       std::vector<Mean> means(size * size);
       for (int seed = 0; seed < trials; ++seed) {
-        job = job_with(opacity, samples, 100 * samples + seed);
-        job->render();
-        const Image picture = job->picture();
+        const Image picture = rendered(job_with(opacity, samples, 100 * samples + seed))->picture();
         for (size_t i = 0; i < means.size(); ++i) means[i].add(picture.values[3 * i + 1]);
       }
       double statistic = 0;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "etendue/render/job.h"
 #include "etendue/volume_shader.h"
 #include "support/render_support.h"
 
@@ -60,8 +59,7 @@ Outcome picture_mean(const std::string& renderer, int samples, const std::string
           renderer, from, to, objects),
       "ramp.etd");
   job->renderer->samples = samples;
-  job->render();
-  const Image picture = job->picture();
+  const Image picture = test::rendered(job)->picture();
   double sum = 0, squares = 0;
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x) {

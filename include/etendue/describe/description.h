@@ -274,6 +274,11 @@ struct Referee<Color> {};
 template <class C>
 struct Referee<std::vector<C>> : Referee<C> {};
 
+template <class T>
+constexpr bool in_double = std::is_same_v<T, double> || std::is_same_v<T, DoublePoint3>;
+template <class T>
+constexpr bool in_double<std::vector<T>> = in_double<T>;
+
 template <auto P>
 struct PointerTo;
 template <class C, class T, T C::* P>
@@ -326,7 +331,7 @@ class Description {
     m.text = std::move(text);
     m.kind = detail::Convert<Type>::kind;
     m.list = detail::IsVector<Type>::value;
-    m.in_double = std::is_same_v<Type, DoublePoint3> || std::is_same_v<Type, std::vector<DoublePoint3>>;
+    m.in_double = detail::in_double<Type>;
     m.component_class = detail::referred_class<detail::Referee<Type>>();
     m.owner = &info_;
     if (opened_) m.group = opened_->name;

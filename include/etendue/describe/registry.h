@@ -89,7 +89,7 @@ struct Member {
   Kind kind = Kind::number;
   bool list = false;
   bool required = false;   ///< must be written: it has no useful default
-  bool in_double = false;  ///< its numbers are places in double; else they are floats
+  bool in_double = false;  ///< its numbers are doubles; else they are floats
   Effect effect = Effect::rerender;
   std::optional<Range> range;
   std::optional<SoftRange> soft;

@@ -22,10 +22,13 @@ class PerObject {
   ~PerObject() { clear(); }
 
   /// Forgets all. Not while rendering.
-  void reset() {
+  void forget() {
+    if (!used_.exchange(false)) return;
     clear();
     table(0);
   }
+  /// Takes memory now for what will surely be asked for.
+  void expect() { table(0); }
 
   /// The number of an object; find() computes it, and gives a number that is not negative.
   template <class F>
@@ -44,6 +47,7 @@ class PerObject {
         const double found = find();
         if (slot.object.compare_exchange_strong(owner, &object) || owner == &object) {
           slot.number.store(found, std::memory_order_release);
+          used_.store(true, std::memory_order_relaxed);
           return found;
         }
       }
@@ -70,6 +74,7 @@ class PerObject {
     for (std::atomic<Slot*>& table : tables_) delete[] table.exchange(nullptr);
   }
 
+  mutable std::atomic<bool> used_{false};
   mutable std::atomic<Slot*> tables_[tables] = {};
 };
 

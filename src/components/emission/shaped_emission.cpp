@@ -54,7 +54,8 @@ void ShapedEmission::prepare_amounts(std::string_view name) {
       fail(name, "is black" + std::string(quantity_ == Quantity::power ? "" : " to the eye") +
                      ", so it cannot have the shape of the spectrum of a " + std::string(amount_name()));
   }
-  if (!(constant_ && same_on_surfaces() && !along_axis(quantity_))) measured_.reset();
+  measured_.forget();
+  if (!(constant_ && same_on_surfaces() && !along_axis(quantity_))) measured_.expect();
 }
 
 std::string_view ShapedEmission::amount_name() const {

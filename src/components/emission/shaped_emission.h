@@ -93,6 +93,7 @@ class ShapedEmission : public EmissionShader {
       return normalize(t.at(p.time)(v));
     return t.still().identity() ? v : normalize(t.still()(v));
   }
+  void objects_changed() override { measured_.forget(); }
   bool amount_asked() const { return amount_ > 0; }
   /// The member that gives the amount.
   std::string_view amount_name() const;

@@ -244,6 +244,7 @@ std::vector<const SceneObject*> Scene::survey() {
       luminaires_.push_back(luminaire.get());
     }
   }
+  for (const SceneObject* luminaire : luminaires_) luminaire->emission->objects_changed();
   return finite;
 }
 
