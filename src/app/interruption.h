@@ -5,8 +5,8 @@
 
 namespace etendue {
 
-/// While it lives, the first SIGINT, SIGTERM or SIGHUP lets the render finish its pass and a second SIGINT aborts it, within the
-/// paths it is at; a third ends the program. Under nohup SIGHUP stays ignored. One at a time.
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP lets the render finish its pass and a second SIGINT aborts it, within
+/// the paths it is at; a third ends the program. Under nohup SIGHUP stays ignored. One at a time.
 class Interruption {
  public:
   explicit Interruption(Render&);

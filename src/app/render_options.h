@@ -56,8 +56,8 @@ struct RenderOptions : SceneOptions {
 /// Outputs to files whose endings choose the format, with the settings of a described output of the same class if there is one.
 /// Without files the described ones; if there are none, a PNG.
 std::vector<Ref<Output>> chosen_outputs(const std::vector<Ref<Output>>& described, const std::vector<std::string>& files);
-/// Writes a picture to each output by itself, with file names from `stem` for those without: when one fails, the others are still
-/// written. Returns what was written.
+/// Writes a picture to each output by itself, with file names from `stem` for those without: when one fails, the others are
+/// still written. Returns what was written.
 std::vector<std::string> write_each(const std::vector<Ref<Output>>& outputs, const Job&, const Image& picture,
                                     const std::string& stem, std::vector<Error>& errors);
 /// Adds the files of outputs, with file names from `stem` for those without.

@@ -16,7 +16,7 @@ namespace {
 using language::Diagnostics;
 
 /// One name of a path with the places in lists behind it: objects[2].
-struct Step {
+struct PathStep {
   std::string name;
   std::vector<size_t> places;
   Location at;
@@ -28,7 +28,7 @@ class Path {
   Path(const std::string& text, const char* source) : source_(source) {
     size_t i = 0;
     for (;;) {
-      Step step{{}, {}, at(i)};
+      PathStep step{{}, {}, at(i)};
       while (i < text.size() && text[i] != '.' && text[i] != '[') step.name += text[i++];
       if (!language::is_name(step.name)) fail(fmt::format("expected the name of a member, not '{}'", step.name), step.at);
       while (i < text.size() && text[i] == '[') {
@@ -50,13 +50,13 @@ class Path {
   [[noreturn]] static void fail(const std::string& message, Location place) { throw Error(message, place); }
   Location at(size_t offset) const { return {source_, 1, int(offset) + 1}; }
 
-  std::vector<Step> steps;
+  std::vector<PathStep> steps;
 
  private:
   const char* source_;
 };
 
-const Member& find_member(const Component& component, const Step& step) {
+const Member& find_member(const Component& component, const PathStep& step) {
   const ClassInfo& info = component.class_info();
   if (const Member* member = info.find(step.name)) return *member;
   Path::fail(no_member(info, step.name), step.at);
@@ -68,7 +68,7 @@ void check_place(const std::string& name, size_t count, size_t place, Location a
 }
 
 /// The component that a step leads to.
-Ref<Component> follow(const Component& component, const Step& step) {
+Ref<Component> follow(const Component& component, const PathStep& step) {
   const Member& member = find_member(component, step);
   Value value = member.get(component, member);
   std::string name = step.name;
@@ -88,7 +88,7 @@ Ref<Component> follow(const Component& component, const Step& step) {
 }
 
 /// The member's value with one entry of it replaced.
-Value replaced(Value whole, const Value& entry, size_t place, const Step& step, const Member& member) {
+Value replaced(Value whole, const Value& entry, size_t place, const PathStep& step, const Member& member) {
   if (auto* list = std::get_if<Value::List>(&whole.data)) {
     check_place(step.name, list->size(), place, step.at);
     (*list)[place] = entry;
@@ -164,7 +164,7 @@ void set_path(Component& root, const std::string& path, const std::string& expre
     held = follow(*component, parsed.steps[i]);
     component = held.get();
   }
-  const Step& last = parsed.steps.back();
+  const PathStep& last = parsed.steps.back();
   const Member& member = find_member(*component, last);
   if (last.places.size() > 1) Path::fail(fmt::format("{} is a list of one level", last.name), last.at);
   Value value;

@@ -274,8 +274,7 @@ void write_checkpoint(const Checkpoint& c, const std::string& path) { write_whol
 
 void write_checkpoint(const Checkpoint& c, std::ostream& to) {
   const Pieces pieces(c);
-  for (const auto& piece : pieces.all())
-    to.write(reinterpret_cast<const char*>(piece.data()), std::streamsize(piece.size()));
+  for (const auto& piece : pieces.all()) to.write(reinterpret_cast<const char*>(piece.data()), std::streamsize(piece.size()));
   if (!to.flush()) throw Error("the state could not be written: the stream does not take it");
 }
 

@@ -51,8 +51,8 @@ Holders::Holders(const Job& job) {
   }
 }
 
-// A member that holds a part says what becomes of an edit of it. One that is shown only is no more than shown. One that is built
-// from is built anew, unless it is an object whose own shape stays: what holds objects is built from their shapes.
+// A member that holds a part says what becomes of an edit of it. One that is shown only is no more than shown. One that is
+// built from is built anew, unless it is an object whose own shape stays: what holds objects is built from their shapes.
 void Consequences::spread(const Holders& holders, const Component& part, Effect effect) {
   const auto [at, fresh] = parts_.try_emplace(&part, effect);
   if (!fresh && at->second >= effect) return;

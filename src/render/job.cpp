@@ -48,8 +48,9 @@ void Job::count_from(const DoublePoint3& centre) {
   etendue::count_from(*scene, centre, camera->shutter_open);
 }
 
-/// The camera's place, rounded to 16 times the distance of what it looks at, up to a power of two: as floats are 2^-24 apart, this
-/// is fine enough for what is seen (decision 020), and a camera that is moved a little leaves the scene as it was prepared.
+/// The camera's place, rounded to 16 times the distance of what it looks at, up to a power of two: as floats are 2^-24 apart,
+/// this is fine enough for what is seen (decision 020), and a camera that is moved a little leaves the scene as it was
+/// prepared.
 DoublePoint3 Job::viewpoint() const {
   const std::optional<Camera::Place> place = camera->place();
   if (!place || !is_finite(place->position)) return {};

@@ -112,7 +112,9 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   CameraRay from;
   PathRecord* const record = request.observe.record;
   if (!camera.sample_ray(s.film, lens, time, s.wavelengths, from)) {
-    // Held back. What the algorithm brings elsewhere by paths from luminaires does not go this way, and comes all the same.
+    // Held back. What the algorithm brings elsewhere by paths from luminaires does not go this way, and comes all the same, as
+    // features do.
+    if (!renderer.splats() && !request.observe.features && !record) return s;
     from.ray = camera.ray(s.film, lens, time);
     from.weight = {};
   }
@@ -134,8 +136,8 @@ CameraSample RenderProcess::sample(int x, int y, std::uint32_t number, Arena& ar
   return path({x, y, x + 1, y + 1}, *renderer.sampler, SampleKey(context.seed, x, y, number), arena, request);
 }
 
-void RenderProcess::step(Schedule& schedule, IndexRange samples) {
-  const Division division(context.image, samples);
+void RenderProcess::step(Schedule& schedule, const Step& step) {
+  const Division division(context.image, step.samples);
   const bool wants_features = context.image.wants_features();
   const size_t path_lengths = size_t(context.image.path_lengths);
   schedule.film(division.count(), [&](std::uint64_t item, ImageTile& tile, Arena& arena) {

@@ -163,8 +163,9 @@ std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
     } guard{*this};
     const WithinStep no_edits(*this);
     rendering(*job, [&] {
-      process->prepare_step(schedule, samples);
-      process->step(schedule, samples);
+      const Step at{samples.begin / size, samples};
+      process->prepare_step(schedule, at);
+      process->step(schedule, at);
     });
     if (give_up.load()) {
       if (abort.load()) return Ended::aborted;
@@ -331,7 +332,8 @@ std::vector<std::string> Render::write_outputs(const std::string& default_stem) 
   return written;
 }
 
-// ---- single samples -----------------------------------------------------------------------------------------------------------
+// ---- single samples
+// -----------------------------------------------------------------------------------------------------------
 
 std::unique_ptr<RenderProcess> Render::start_at(std::uint32_t sample) const {
   const std::shared_lock sharing = share(*m);
@@ -343,9 +345,10 @@ std::unique_ptr<RenderProcess> Render::start_at(std::uint32_t sample) const {
   return rendering(job, [&] {
     std::unique_ptr<RenderProcess> process = job.renderer->start(m->context());
     for (std::uint32_t first = job.renderer->steps_depend() ? 0 : begin;; first += step) {
-      process->prepare_step(schedule, {first, first + step});
+      const Step at{first / step, {first, first + step}};
+      process->prepare_step(schedule, at);
       if (first == begin) return process;
-      process->step(schedule, {first, first + step});
+      process->step(schedule, at);
     }
   });
 }

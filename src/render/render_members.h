@@ -1,9 +1,9 @@
 #pragma once
 // What a Render holds, and who may touch it when.
 //
-// A step and a replay share the description, which an edit, a load or an addition has alone (`description`). What shows pictures
-// (tone map, outputs) is apart from it (`look`), so that showing waits for no step. What is counted (`done`, `seconds`, …) changes
-// under `counts`, together with the film's ends of steps. Locks are taken in this order: editing,
+// A step and a replay share the description, which an edit, a load or an addition has alone (`description`). What shows
+// pictures (tone map, outputs) is apart from it (`look`), so that showing waits for no step. What is counted (`done`,
+// `seconds`, …) changes under `counts`, together with the film's ends of steps. Locks are taken in this order: editing,
 // description, look, counts, the film's.
 
 #include <atomic>

@@ -8,17 +8,10 @@ namespace {
 
 using Growing = Walk<false>;
 
-/// Adds the vertex a walk has come to. `density`: of its direction, as kept walks count it [1/sr].
-KeptVertex& keep(const Growing& walk, float density, const LightFront& front, std::vector<KeptVertex>& kept) {
+/// Adds the vertex a walk has come to.
+KeptVertex& add(const Growing& walk, float density, const LightFront& front, std::vector<KeptVertex>& kept) {
   KeptVertex& v = kept.emplace_back();
-  static_cast<Vertex&>(v) = walk.vertex;
-  v.infinite = v.kind == Vertex::Kind::escape;
-  v.single = walk.sample.wavelengths.single();
-  v.throughput = walk.throughput;
-  v.chance = walk.edge.average();
-  if (v.in_medium())
-    v.extinction = v.medium.coefficients(v.point.position, v.point.time, walk.sample.wavelengths).extinction().average();
-  v.forward = vertex_density(density, kept[kept.size() - 2], v, walk.ray.direction, v.chance, front);
+  keep(walk, kept[kept.size() - 2], density, front, v);
   return v;
 }
 
@@ -34,7 +27,7 @@ struct KeptListener {
   }
   void crossed_luminaire() const {
     if (!listener) return;
-    keep(walk, density, front, kept);
+    add(walk, density, front, kept);
     listener->crossed_luminaire();
     kept.pop_back();
   }
@@ -49,7 +42,7 @@ void grow(Growing& walk, float density, int roulette_depth, std::vector<KeptVert
   while (walk.length < walk.longest && walk.next_vertex(at)) {
     if (kept.size() % 64 == 0 && walk.sample.aborted()) return;
     if (walk.vertex.kind == Vertex::Kind::escape && walk.transport == Transport::importance) return;
-    KeptVertex& v = keep(walk, density, front, kept);
+    KeptVertex& v = add(walk, density, front, kept);
     if (v.kind == Vertex::Kind::escape) return;
     const float choice = v.scatter && v.scatter->has_choice() ? walk.numbers.next() : (walk.numbers.skip(), 0.0f);
     const auto next = walk.sample_direction(choice, walk.numbers.next_pair());
@@ -66,6 +59,17 @@ void grow(Growing& walk, float density, int roulette_depth, std::vector<KeptVert
 }
 
 }  // namespace
+
+void keep(const Walk<false>& walk, const KeptVertex& before, float density, const LightFront& front, KeptVertex& v) {
+  static_cast<Vertex&>(v) = walk.vertex;
+  v.infinite = v.kind == Vertex::Kind::escape;
+  v.single = walk.sample.wavelengths.single();
+  v.throughput = walk.throughput;
+  v.chance = walk.edge.average();
+  if (v.in_medium())
+    v.extinction = v.medium.coefficients(v.point.position, v.point.time, walk.sample.wavelengths).extinction().average();
+  v.forward = vertex_density(density, before, v, walk.ray.direction, v.chance, front);
+}
 
 float vertex_density(float density, const KeptVertex& a, const KeptVertex& b, const Vector3& direction, float chance,
                      const LightFront& front) {

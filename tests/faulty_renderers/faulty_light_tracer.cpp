@@ -19,6 +19,7 @@ class FaultyLightTracer final : public Renderer {
     describe_max_depth<&FaultyLightTracer::max_depth>(d);
     describe_roulette_depth<&FaultyLightTracer::roulette_depth>(d);
   }
+  bool splats() const override { return true; }
   PathClasses finds() const override {
     return all_paths & ~(specular_views | seen_environments | delta_caustics_in_mirrors | emitting_media | subsurface_light);
   }

@@ -49,7 +49,7 @@ class FaultyPathTracer final : public Renderer {
       const NumberStream::Bounce u = walk.numbers.next_bounce();
       DirectLight direct;
       if (v.scatters_smoothly() && propose_direct_light(*light_sampler, v, ray.time, sample.wavelengths, u.light_choice,
-                                                        u.light_point, Heuristic::power, direct))
+                                                        u.light_point, Heuristic::power, direct, ScatteringOf{v}))
         add(walk.length + 1, walk.throughput * arriving(walk, direct));
       const auto next = walk.sample_direction(u.lobe_choice, u.direction);
       if (!next) break;

@@ -115,15 +115,20 @@ class MetropolisProcess final : public RenderProcess {
       r.fail({}, "needs wavelengths that follow from a number, such as HeroWavelengths");
   }
 
-  void prepare_step(Schedule& schedule, IndexRange samples) override { inner_->prepare_step(schedule, samples); }
+  void prepare_step(Schedule& schedule, const Step& step) override { inner_->prepare_step(schedule, step); }
 
-  void step(Schedule& schedule, IndexRange samples) override {
+  CameraSample sample(int, int, std::uint32_t, Arena&, const PathRequest&) const override {
+    renderer.fail({}, "its samples are mutations of one another: none belongs to a pixel, and none can be replayed by itself");
+  }
+
+  void step(Schedule& schedule, const Step& step) override {
     const ImageBuffer& image = context.image;
     const auto chains = std::uint64_t(settings_.chains);
-    const std::uint64_t all = std::uint64_t(image.width) * std::uint64_t(image.height) * (samples.end - samples.begin);
+    const std::uint64_t all =
+        std::uint64_t(image.width) * std::uint64_t(image.height) * (step.samples.end - step.samples.begin);
     schedule.film(chains, [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
       tile.begin(image, {});  // splats alone
-      run(samples.begin * chains + item, all / chains + (item < all % chains), tile, arena, schedule.abort);
+      run(step.samples.begin * chains + item, all / chains + (item < all % chains), tile, arena, schedule.abort);
     });
   }
 };

@@ -61,12 +61,12 @@ class PhotonProcess final : public RenderProcess {
  public:
   PhotonProcess(const SmallPhotonMapper& r, const RenderContext& c) : RenderProcess(r, c), settings_(r) {}
 
-  void prepare_step(Schedule& schedule, IndexRange samples) override {
+  void prepare_step(Schedule& schedule, const Step& step) override {
     double shrunk = 1;
-    for (std::uint32_t i = 1; i <= samples.begin; ++i) shrunk *= (i - 1 + double(settings_.alpha)) / i;
+    for (std::uint32_t i = 1; i <= step.number; ++i) shrunk *= (i - 1 + double(settings_.alpha)) / i;
     radius_ = settings_.radius * context.scene.radius() * float(std::sqrt(shrunk));
-    const SampleKey step(context.seed, -1, -1, samples.begin);
-    wavelengths_ = context.wavelengths.sample(step, NumberStream(*settings_.sampler, step).next());
+    const SampleKey key(context.seed, -1, -1, step.number);
+    wavelengths_ = context.wavelengths.sample(key, NumberStream(*settings_.sampler, key).next());
 
     const auto item_size = 1000u, items = (unsigned(settings_.photons) + item_size - 1) / item_size;
     photons_ = schedule.collect<Photon>(items, [&](std::uint64_t item, std::vector<Photon>& out, Arena& arena) {
@@ -75,7 +75,7 @@ class PhotonProcess final : public RenderProcess {
       for (unsigned n = first; n < last; ++n) {
         const ArenaScope memory(arena);
         Wavelengths w = wavelengths_;
-        SampleContext sample{w, {*settings_.sampler, SampleKey(context.seed, -2, int(samples.begin), n)}, arena};
+        SampleContext sample{w, {*settings_.sampler, SampleKey(context.seed, -2, int(step.number), n)}, arena};
         EmittedLight light;
         walk_from_luminaire(context.scene, *settings_.light_sampler, context.camera.shutter_open, {settings_.max_depth - 1, 5},
                             sample, walk, light);

@@ -109,8 +109,8 @@ TEST_F(CheckpointTest, every_renderer_continues_to_the_same_bits_and_merges) {
 class LearningProcess final : public RenderProcess {
  public:
   using RenderProcess::RenderProcess;
-  void step(Schedule& schedule, IndexRange samples) override {
-    RenderProcess::step(schedule, samples);
+  void step(Schedule& schedule, const Step& step) override {
+    RenderProcess::step(schedule, step);
     ++learned_;
   }
   Spectrum radiance(const Ray&, SampleContext&) const override { return Spectrum(float(1 + learned_)); }

@@ -43,15 +43,17 @@ TEST(Fireflies, those_listed_are_the_brightest_and_replay_to_the_same) {
 }
 
 TEST(Fireflies, places_in_a_crop_and_of_splats) {
-  const Ref<Job> whole = loaded(glass_text(8)), splats = sprinkled(glass_text(8), 4);
-  for (const Ref<Job>& job : {whole, splats}) job->image->crop = {2, 3, 12, 13};
-  const auto plain = rendered_keeping(3, whole);
-  const Image picture = plain->picture();
-  const std::vector<Listed> list = listed_in(fireflies_text(*plain, "c"));
+  const auto rendered_crop = [](const Ref<Job>& job) {
+    job->image->crop = {2, 3, 12, 13};
+    return rendered_keeping(3, job);
+  };
+  const auto traced = rendered_crop(loaded(glass_text(8)));
+  const Image picture = traced->picture();
+  const std::vector<Listed> list = listed_in(fireflies_text(*traced, "c"));
   ASSERT_EQ(list.size(), 3u);
   for (const Listed& l : list) EXPECT_NEAR(l.ratio, l.luminance / picture.at(l.x - 2, l.y - 3, 1), 1e-3 * l.ratio);
 
-  const auto render = rendered_keeping(3, splats);
+  const auto render = rendered_crop(sprinkled(glass_text(8), 4));
   const std::string text = fireflies_text(*render, "c");
   EXPECT_TRUE(has(text, "splatted at (2.50, 3.25), ")) << text;
   const double value = render->film().develop().at(0, 0, 1);

@@ -95,7 +95,7 @@ TEST(RenderEdit, each_kind_of_member_leads_to_the_picture_of_a_new_render) {
     return finished(render) != before;
   };
   const auto numbers = [](std::vector<double> v) { return Value(Numbers{std::move(v), 1, Dimension::none}); };
-  EXPECT_TRUE(edit(*objects(3).shader, "color", part("CheckerMap {}")));                     // a map for a colour
+  EXPECT_TRUE(edit(*objects(3).shader, "color", part("CheckerMap {}")));                      // a map for a colour
   EXPECT_TRUE(edit(objects(1), "shader", part("Lambertian { color: rgb(0.1, 0.9, 0.2) }")));  // a shader
   EXPECT_TRUE(edit(objects(1), "radius", Value(Number{0.9, Dimension::length})));             // a shape
   EXPECT_TRUE(edit(objects(1), "transform", Value(AnimatedTransform(Transform::translate({0.2f, 0, 0})))));
@@ -103,8 +103,8 @@ TEST(RenderEdit, each_kind_of_member_leads_to_the_picture_of_a_new_render) {
   EXPECT_TRUE(edit(*objects(4).emission, "radiance", Value(Number{9})));
   EXPECT_TRUE(edit(objects(2), "interior", part("HomogeneousVolume { absorption: 2 }")));
   EXPECT_TRUE(edit(objects(5), "displacement", part("ConstantMap { value: 0.5 }")));
-  EXPECT_TRUE(edit(*job->camera, "from", numbers({0.5, 1, 4})));           // nearby: the scene stays as it is
-  EXPECT_TRUE(edit(*job->camera, "from", numbers({500, 1, 4})));           // far: it counts from elsewhere
+  EXPECT_TRUE(edit(*job->camera, "from", numbers({0.5, 1, 4})));  // nearby: the scene stays as it is
+  EXPECT_TRUE(edit(*job->camera, "from", numbers({500, 1, 4})));  // far: it counts from elsewhere
   EXPECT_TRUE(edit(*job->camera, "from", numbers({0, 0.5, 5})));
   EXPECT_TRUE(edit(*job, "renderer", part("DirectRenderer { samples: 3 }")));
   EXPECT_TRUE(edit(*job->renderer, "samples", Value(Number{5})));
@@ -117,14 +117,16 @@ TEST(RenderEdit, each_kind_of_member_leads_to_the_picture_of_a_new_render) {
 TEST(RenderEdit, a_mesh_file_that_changed_is_read_again) {
   const language_test::Folder folder;
   const auto ply = [&](const std::string& name, const char* corner) {
-    return folder.write(name, std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
-                                          "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n") +
-                                  corner + "\n0 1 0\n3 0 1 2\n");
+    return folder.write(name,
+                        std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+                                    "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n") +
+                            corner + "\n0 1 0\n3 0 1 2\n");
   };
   const Ref<Job> job = load_job_text(
-      "Job { renderer: PathTracer { samples: 4 }, image: ImageBuffer { width: 8, height: 8 }, camera: PerspectiveCamera { from: [0, 0, 4], "
-      "to: [0, 0, 0] }, scene: EmbreeScene { objects: [ TriangleMesh { file: \"" + ply("a.ply", "1 0 0") +
-          "\", emission: DiffuseEmission { sides: both } } ] } }",
+      "Job { renderer: PathTracer { samples: 4 }, image: ImageBuffer { width: 8, height: 8 }, camera: PerspectiveCamera { "
+      "from: [0, 0, 4], "
+      "to: [0, 0, 0] }, scene: EmbreeScene { objects: [ TriangleMesh { file: \"" +
+          ply("a.ply", "1 0 0") + "\", emission: DiffuseEmission { sides: both } } ] } }",
       "mesh.etd");
   Render render(job);
   render.run();
@@ -136,7 +138,8 @@ TEST(RenderEdit, a_mesh_file_that_changed_is_read_again) {
   render.edit(*job->scene->objects[0], "file", Value(FilePath{folder.path() + "/a.ply", ""}));
   render.run();
   EXPECT_EQ(finished(render), before);
-  const std::string reason = complaint([&] { render.edit(*job->scene->objects[0], "file", Value(FilePath{folder.path() + "/c.ply", ""})); });
+  const std::string reason =
+      complaint([&] { render.edit(*job->scene->objects[0], "file", Value(FilePath{folder.path() + "/c.ply", ""})); });
   EXPECT_TRUE(has(reason, "c.ply")) << reason;
   render.restart();
   render.run();
@@ -239,7 +242,8 @@ TEST(RenderEdit, random_edits_of_every_part_while_it_renders) {
       if (members.empty()) continue;
       const Member& member = members[random() % members.size()];
       // Limits of time are no function of the description; large pictures take long.
-      static const std::set<std::string> left_out{"time_limit", "error_limit", "samples", "width", "height", "levels", "outputs"};
+      static const std::set<std::string> left_out{"time_limit", "error_limit", "samples", "width",
+                                                  "height",     "levels",      "outputs"};
       if (left_out.contains(member.name)) continue;
       const Value value = conform::draw_value(part.class_info(), member, fixtures, random);
       if (value.none()) continue;
@@ -252,8 +256,10 @@ TEST(RenderEdit, random_edits_of_every_part_while_it_renders) {
       fails = false;
       while (!fails && render.progress().samples < std::uint32_t(job->renderer->samples)) std::this_thread::yield();
       // Some things are found out only when they are rendered; a new render says the same.
-      if (fails) EXPECT_NE(complaint([&] { of_a_new_render(*job); }), "") << description;
-      else EXPECT_EQ(finished(render), of_a_new_render(*job)) << reason << "\n" << description;
+      if (fails)
+        EXPECT_NE(complaint([&] { of_a_new_render(*job); }), "") << description;
+      else
+        EXPECT_EQ(finished(render), of_a_new_render(*job)) << reason << "\n" << description;
       if (HasFailure()) break;
     }
     over = true;

@@ -1,7 +1,7 @@
 #pragma once
-// RenderProcess: a renderer at work. It goes in steps, each a range of samples of every pixel; what it holds may change between
-// them (photons, chains, a guide), and it has no bookkeeping: counting, showing, saving, stopping and replaying is not its
-// business.
+// RenderProcess: a renderer at work. It goes in steps, each a range of samples of every pixel (a pass over the picture); what
+// it holds may change between them (photons, chains, a guide), and it has no bookkeeping: counting, showing, saving, stopping
+// and replaying is not its business.
 
 #include <cstddef>
 #include <span>
@@ -18,6 +18,12 @@ class Renderer;
 struct IndexRange {
   std::uint32_t begin = 0, end = 0;
   bool operator==(const IndexRange&) const = default;
+};
+
+/// A part of a render that is done as a whole: a pass over the picture.
+struct Step {
+  std::uint32_t number = 0;  ///< from 0, by its samples: the same however a render is divided among machines
+  IndexRange samples;        ///< of every pixel
 };
 
 /// What a path from the camera brings to its own place on the film.
@@ -47,9 +53,9 @@ class RenderProcess {
 
   /// Makes what the samples of a step need: called before the step, and before a sample of it is replayed. It must depend on
   /// the description, the seed, the step, and where Renderer::steps_depend says so on the steps before it, alone.
-  virtual void prepare_step(Schedule&, IndexRange /*samples*/) {}
+  virtual void prepare_step(Schedule&, const Step&) {}
   /// Renders so many samples of every pixel. By default camera paths: for each pixel and sample a `path`, one contribution.
-  virtual void step(Schedule&, IndexRange samples);
+  virtual void step(Schedule&, const Step&);
   /// Radiance [W m^-2 sr^-1 nm^-1] that arrives along a camera ray, one sample of it; by default Renderer::radiance.
   virtual Spectrum radiance(const Ray&, SampleContext&) const;
 
@@ -61,8 +67,9 @@ class RenderProcess {
   /// which wavelengths, and then all that `radiance` draws. Whoever gives other numbers gets another path of this algorithm: a
   /// Metropolis sampler may hold any of them.
   CameraSample path(const PixelArea& area, const NumberSource&, SampleKey, Arena&, const PathRequest& = {}) const;
-  /// The path of one sample of a pixel, as it is in the picture.
-  CameraSample sample(int x, int y, std::uint32_t number, Arena&, const PathRequest& = {}) const;
+  /// The path of one sample of a pixel, as it is in the picture: what a replay shows. An algorithm whose samples are no such
+  /// paths (chains, for one) shows what it can of them, or throws Error with the reason.
+  virtual CameraSample sample(int x, int y, std::uint32_t number, Arena&, const PathRequest& = {}) const;
 };
 
 }  // namespace etendue

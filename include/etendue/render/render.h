@@ -36,7 +36,7 @@ struct RenderSettings {
   std::optional<IndexRange> steps = {};
   /// Called while it renders, from whatever thread is at work, one at a time. It may look, stop and abort, but not edit.
   std::function<void(const Progress&)> on_progress = {};
-  double progress_interval = 0.25;  ///< [s]
+  double progress_interval = 0.25;   ///< [s]
   std::string checkpoint_file = {};  ///< where `run` keeps the state while it renders; empty: nowhere
   double checkpoint_interval = 60;   ///< [s] at least from one writing to the next; 0: after every step
 };
@@ -76,8 +76,8 @@ class Render {
   Ended run();
   /// Renders the next step. Says why, if it did not: all samples are there, or it was aborted.
   std::optional<Ended> step();
-  /// Asks what runs, or else runs next, to stop: after the step (`stop`), or now, within whatever paths it is at, and without the
-  /// step (`abort`). Safe in signal handlers.
+  /// Asks what runs, or else runs next, to stop: after the step (`stop`), or now, within whatever paths it is at, and without
+  /// the step (`abort`). Safe in signal handlers.
   void stop();
   void abort();
   /// Begins anew, with other random numbers if a seed is given.
@@ -109,7 +109,8 @@ class Render {
   void edit(std::span<const Edit>);
   void edit(const Component&, const std::string& member, const Value&);
 
-  // ---- its state --------------------------------------------------------------------------------------------------------------
+  // ---- its state
+  // --------------------------------------------------------------------------------------------------------------
 
   /// The state at the end of the last step, to go on from in another process: the same samples give the same bytes.
   void save(std::ostream&) const;
@@ -124,12 +125,13 @@ class Render {
   /// Why the state could not be written to the settings' file the last time; empty: it could. A render goes on without.
   std::string checkpoint_failure() const;
 
-  // ---- single samples ---------------------------------------------------------------------------------------------------------
+  // ---- single samples
+  // ---------------------------------------------------------------------------------------------------------
 
   /// A process of the renderer at the step a sample is in, ready to be asked for it; to be used before the next edit.
   std::unique_ptr<RenderProcess> start_at(std::uint32_t sample) const;
-  /// Renders one sample alone; returns its film point. Throws Error when there is no such pixel, or when the algorithm's samples
-  /// are not those of pixels.
+  /// Renders one sample alone; returns its film point. Throws Error when there is no such pixel, or when the algorithm's
+  /// samples are not those of pixels.
   Point2 replay(int x, int y, std::uint32_t sample, PathRecord&) const;
 
   struct Members;  ///< Render's own

@@ -51,6 +51,8 @@ class Renderer : public Component {
   /// Whether a step needs those before it: then no part of a render can be made by itself.
   virtual bool steps_depend() const { return false; }
   virtual Expectation expectation() const { return Expectation::unbiased; }
+  /// Whether its samples bring light to other places of the film than their own (SampleContext::splat).
+  virtual bool splats() const { return false; }
   /// How its samples depend on one another, which says what the film may tell of their error.
   virtual Estimator estimator() const { return Estimator::independent; }
   /// What makes expectations differ from the truth, in words for the user: what `expectation` says, and `map_filter`. Empty:

@@ -49,6 +49,18 @@ class Schedule {
     return std::move(collection.all);
   }
 
+  /// Both at once: `work(item, tile, results, arena)` fills a tile and appends to its results, for algorithms that learn from
+  /// the paths they show.
+  template <class T, class Work>
+  std::vector<T> film_and_collect(std::uint64_t count, Work&& work) {
+    std::vector<std::vector<T>> some(count);
+    film(count, [&](std::uint64_t item, ImageTile& tile, Arena& arena) { work(item, tile, some[size_t(item)], arena); });
+    std::vector<T> all;
+    for (std::vector<T>& one : some)
+      all.insert(all.end(), std::make_move_iterator(one.begin()), std::make_move_iterator(one.end()));
+    return all;
+  }
+
   /// Whether what is being done will be thrown away. Items that have not begun are then left out; long ones look at it, too.
   bool aborted() const { return abort && abort->load(std::memory_order_relaxed); }
   const std::atomic<bool>* abort = nullptr;  ///< null: never

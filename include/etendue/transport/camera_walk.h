@@ -73,10 +73,13 @@ class CameraWalk : public Walk<clear> {
     return numbers.next_bounce(!one_luminaire_, !vertex.scatter || vertex.scatter->has_choice());
   }
 
-  /// Samples light that comes straight from luminaires and adds it, unless something turns out to lie between.
-  [[gnu::always_inline]] void add_direct(const LightSampler& lights, const NumberStream::Bounce& u, Heuristic heuristic) {
-    if (!vertex.scatters_smoothly() ||
-        !propose_direct_light(lights, vertex, ray.time, sample.wavelengths, u.light_choice, u.light_point, heuristic, direct_))
+  /// Samples light that comes straight from luminaires and adds it, unless something turns out to lie between. `scattering(in)`
+  /// gives f |cos| and the density [1/sr] with which the walk will go on there: a guide's, where one chooses directions.
+  template <class Scattering>
+  [[gnu::always_inline]] void add_direct(const LightSampler& lights, const NumberStream::Bounce& u, Heuristic heuristic,
+                                         const Scattering& scattering) {
+    if (!vertex.scatters_smoothly() || !propose_direct_light(lights, vertex, ray.time, sample.wavelengths, u.light_choice,
+                                                             u.light_point, heuristic, direct_, scattering))
       return;
     direct_.light *= throughput;
     if constexpr (!clear) {
@@ -90,18 +93,26 @@ class CameraWalk : public Walk<clear> {
     direct_length_ = length + 1;
   }
 
+  /// The same where the surface itself, or the medium, chooses the direction.
+  [[gnu::always_inline]] void add_direct(const LightSampler& lights, const NumberStream::Bounce& u, Heuristic heuristic) {
+    add_direct(lights, u, heuristic, ScatteringOf{vertex});
+  }
+
   /// Goes on from the last vertex; false: it is absorbed there.
   [[gnu::always_inline]] bool scatter(const NumberStream::Bounce& u) {
     const std::optional<ScatterSample> next = this->sample_direction(u.lobe_choice, u.direction);
-    if (!next) return false;
-    sample.observe.scattered(*next);
-    if (!clear && next->lobe == pass_through) {
-      this->pass_on(*next);
+    return next && go_on(*next);
+  }
+  /// The same in a direction that was chosen already: by `sample_direction`, or by somebody else (scattered_towards).
+  [[gnu::always_inline]] bool go_on(const ScatterSample& next) {
+    sample.observe.scattered(next);
+    if (!clear && next.lobe == pass_through) {
+      this->pass_on(next);
       return goes_on_ = true;
     }
-    if (vertex.on_surface() && !vertex.moved && enters_body(vertex.point, *next))
-      return moved_ = goes_on_ = this->leave_body(*next);
-    this->leave(*next);
+    if (vertex.on_surface() && !vertex.moved && enters_body(vertex.point, next))
+      return moved_ = goes_on_ = this->leave_body(next);
+    this->leave(next);
     return goes_on_ = true;
   }
 

@@ -44,27 +44,35 @@ template <class Scattering, class Leave>
   return true;
 }
 
-/// From a path's vertex: `out` is where the path came from. Light of a luminaire that scattering can meet as well is weighted
-/// against that.
+/// What a vertex of a camera path scatters from a direction, and the density with which it sends the path there itself.
+struct ScatteringOf {
+  const Vertex& vertex;
+  [[gnu::always_inline]] ScatterValue operator()(const Vector3& in) const {
+    return scattering(vertex, vertex.out, in, Transport::radiance);
+  }
+};
+
+/// From a path's vertex. Light of a luminaire that scattering can meet as well is weighted against that: see
+/// CameraWalk::add_direct.
+template <class Scattering>
 [[gnu::always_inline]] inline bool propose_direct_light(const LightSampler& lights, const Vertex& vertex, float time,
                                                         const Wavelengths& wavelengths, float choice, Point2 u,
-                                                        Heuristic heuristic, DirectLight& direct) {
-  return propose_light(
-      lights, vertex.point.position, vertex.normal(), time, wavelengths, choice, u, heuristic, direct,
-      [&](const Vector3& in) __attribute__((always_inline)) { return scattering(vertex, vertex.out, in, Transport::radiance); },
-      [&](const SurfaceSample& s, Ray& ray) __attribute__((always_inline)) {
-        ray.time = time;
-        if (vertex.in_medium()) {
-          ray.origin = vertex.point.position;
-          ray.direction = s.direction;
-          ray.maximum = infinity;
-          if (!s.infinite) SurfacePoint::end_at(s.point, ray);
-        } else if (s.infinite) {
-          vertex.point.leave(s.direction, ray);
-        } else {
-          vertex.point.towards(s.point, ray);
-        }
-      });
+                                                        Heuristic heuristic, DirectLight& direct,
+                                                        const Scattering& scattering) {
+  return propose_light(lights, vertex.point.position, vertex.normal(), time, wavelengths, choice, u, heuristic, direct,
+                       scattering, [&](const SurfaceSample& s, Ray& ray) __attribute__((always_inline)) {
+                         ray.time = time;
+                         if (vertex.in_medium()) {
+                           ray.origin = vertex.point.position;
+                           ray.direction = s.direction;
+                           ray.maximum = infinity;
+                           if (!s.infinite) SurfacePoint::end_at(s.point, ray);
+                         } else if (s.infinite) {
+                           vertex.point.leave(s.direction, ray);
+                         } else {
+                           vertex.point.towards(s.point, ray);
+                         }
+                       });
 }
 
 /// The solid-angle density [1/sr] with which the above would have given a point of a luminaire, seen from `from`.

@@ -53,6 +53,13 @@ struct WalkListener {
   ~WalkListener() = default;
 };
 
+template <bool clear>
+class Walk;
+
+/// Fills a kept vertex with what a walk has come to, for algorithms that let walks grow by themselves; set `keeps` of the walk.
+/// `before` is the vertex before, and `density` that of the direction it was left in [1/sr], 1 after a specular lobe.
+void keep(const Walk<false>&, const KeptVertex& before, float density, const LightFront&, KeptVertex&);
+
 /// The walk that begins with a camera ray, which is the sample's. An escaped one ends with a vertex of kind `escape`.
 void walk_from_camera(const RenderContext&, const Ray&, const WalkLimits&, SampleContext&, std::vector<KeptVertex>& walk,
                       WalkListener&);

@@ -47,6 +47,20 @@ inline float scattering_density(const Vertex& v, const Vector3& out, const Vecto
   return v.scatter ? v.scatter->density(out, in, transport, v.lobes) : 0;
 }
 
+/// A direction that somebody else chose, with this density [1/sr], as a walk goes on in it (Walk::leave): a guide's, a map's.
+/// Smooth lobes alone scatter there, so a guide must leave some chance to `sample_direction`, which knows of the others. Empty:
+/// nothing is scattered that way.
+inline std::optional<ScatterSample> scattered_towards(const Vertex& v, const Vector3& in, float density, Transport transport) {
+  const ScatterValue f = scattering(v, v.out, in, transport);
+  if (!(density > 0) || f.value.black()) return {};
+  ScatterSample s;
+  s.direction = in;
+  s.weight = f.value / density;
+  s.density = density;
+  if (v.on_surface() && (dot(v.point.normal, in) > 0) != (dot(v.point.normal, v.out) > 0)) s.lobe = diffuse_transmission;
+  return s;
+}
+
 /// A ray from one vertex to another that ends just before it.
 Ray connecting_ray(const Vertex& from, const Vertex& to);
 /// A ray from a vertex to a point of the lens.

@@ -124,7 +124,8 @@ int render(const RenderOptions& options) {
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
 
-  // The job keeps the outputs of the file, as a checkpoint does, whatever -o says; a part of the passes is not what they are for.
+  // The job keeps the outputs of the file, as a checkpoint does, whatever -o says; a part of the passes is not what they are
+  // for.
   RenderSettings settings = options.settings();
   std::vector<Ref<Output>> outputs;
   if (!settings.steps || !options.outputs.empty()) outputs = chosen_outputs(job->outputs, options.outputs);

@@ -136,8 +136,8 @@ verify::Collected collect(Render& render, const verify::Choice& choice, const Ve
     }
     return !interruption.asked();
   };
-  verify::Collected collected =
-      verify::collect(render, choice.candidates, options.tile > 0 ? options.tile : verify::default_tile(*render.job().image), collecting);
+  verify::Collected collected = verify::collect(
+      render, choice.candidates, options.tile > 0 ? options.tile : verify::default_tile(*render.job().image), collecting);
   if (show) fmt::print(stderr, "\r\x1b[K");
   return collected;
 }

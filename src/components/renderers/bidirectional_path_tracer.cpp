@@ -12,8 +12,8 @@
 
 #include "etendue/render/renderer.h"
 #include "etendue/transport/bidirectional_weight.h"
+#include "etendue/transport/connection.h"
 #include "etendue/transport/renderer_members.h"
-#include "etendue/transport/visibility.h"
 
 namespace etendue {
 
@@ -39,6 +39,7 @@ class BidirectionalPathTracer final : public Renderer {
                                                     "whether strategies are weighted; without, each shows all light it finds");
   }
 
+  bool splats() const override { return true; }
   PathClasses finds() const override {
     const bool all = light_vertices < 0 && camera_vertices < 0 && weighted;
     return all ? all_paths & ~(delta_caustics_in_mirrors | subsurface_light) : no_paths;
@@ -146,78 +147,40 @@ class BidirectionalPathTracer final : public Renderer {
     if (!shows(1, t)) return;
     const KeptVertex& z = s.camera[size_t(t - 1)];
     NumberStream numbers = s.at.numbers.fork("luminaire", std::uint32_t(t));
-    const float which = numbers.next();
-    const Point2 u = numbers.next_pair();
-    const LightChoice choice = light_sampler->choose(z.point.position, z.normal(), which);
-    if (!choice.luminaire) return;
-    const SurfaceSample l = choice.luminaire->sample_visible(z.point.position, u, z.point.time);
-    if (!(l.density > 0)) return;
-    const ScatterValue f = scattering(z, z.out, l.direction, Transport::radiance);
-    if (f.value.black()) return;
-    const Spectrum emitted = choice.luminaire->emission->radiance(l.point, -l.direction, s.at.wavelengths);
-    Spectrum light = z.throughput * f.value * emitted / (choice.probability * l.density);
-    if (light.black()) return;
-
-    KeptVertex x0;
-    x0.kind = Vertex::Kind::luminaire;
-    x0.infinite = l.infinite;
-    x0.point = l.point;
-    MediumStack scratch;
-    Spectrum likely;
-    const Spectrum visible = visible_fraction(s.scene(), l.infinite ? leaving_ray(z, l.direction) : connecting_ray(z, x0),
-                                              media_towards(z, l.direction, scratch), s.at.wavelengths, numbers, s.at.arena,
-                                              Transport::radiance, &likely);
-    if (visible.black()) return;
-    light *= visible;
+    const auto c = etendue::connect_to_luminaire(s.scene(), *light_sampler, z, s.at.wavelengths, numbers, s.at.arena);
+    if (!c) return;
     float weight = 1;
     if (weighted) {
-      const float chance = likely.average();
-      ConnectedPath path{&x0, 1, s.camera.data(), t, 0, 0, 0, 0, 0, 0, !l.delta};
-      path.begun = begun_density(*light_sampler, z, x0, l.direction);
-      path.direct = sampled_density(*light_sampler, z, x0, l.direction);
-      path.light_last_from_camera = vertex_density(f.density, z, x0, l.direction, chance, s.front);
-      path.camera_last_from_light = vertex_density(l.infinite ? 1 : choice.luminaire->emission->density(l.point, -l.direction),
-                                                   x0, z, -l.direction, chance, s.front);
-      path.camera_before_from_light = before_from(s.camera, t, l.direction, Transport::importance, s.front);
+      const KeptVertex& x0 = c->luminaire;
+      ConnectedPath path{&x0, 1, s.camera.data(), t, 0, 0, 0, 0, 0, 0, !c->delta};
+      path.begun = begun_density(*light_sampler, z, x0, c->direction);
+      path.direct = sampled_density(*light_sampler, z, x0, c->direction);
+      path.light_last_from_camera = vertex_density(c->density_at_z, z, x0, c->direction, c->chance, s.front);
+      path.camera_last_from_light = vertex_density(c->density_at_luminaire, x0, z, -c->direction, c->chance, s.front);
+      path.camera_before_from_light = before_from(s.camera, t, c->direction, Transport::importance, s.front);
       if (path.begun > 0 && path.direct > 0) weight = bidirectional_weight(path, heuristic);
     }
-    add(s, t, 1, t, weight, light);
+    add(s, t, 1, t, weight, c->light);
   }
 
   /// s > 1, t > 1.
   void connect(Sample& s, int n, int t) const {
     if (!shows(n, t)) return;
     const KeptVertex &y = s.light[size_t(n - 1)], &z = s.camera[size_t(t - 1)];
-    const Vector3 d = y.point.position - z.point.position;
-    const float squared = length_squared(d);
-    if (!(squared > 0)) return;
-    const Vector3 direction = d / std::sqrt(squared);
-    const ScatterValue at_camera = scattering(z, z.out, direction, Transport::radiance);
-    if (at_camera.value.black()) return;
-    const ScatterValue at_light = scattering(y, y.out, -direction, Transport::importance);
-    Spectrum light = y.throughput * at_light.value * at_camera.value * z.throughput / squared;
-    // Both walks have made up for the wavelengths they dropped: once is enough.
-    if (y.single && z.single) light /= float(spectrum_size);
-    if (light.black()) return;
-    MediumStack scratch;
-    Spectrum likely;
     NumberStream numbers = s.at.numbers.fork("connection", std::uint32_t(n * 0x10000 + t));
-    const Spectrum visible = visible_fraction(s.scene(), connecting_ray(z, y), media_towards(z, direction, scratch),
-                                              s.at.wavelengths, numbers, s.at.arena, Transport::radiance, &likely);
-    if (visible.black()) return;
-    light *= visible;
+    const auto c = etendue::connect(s.scene(), y, z, s.at.wavelengths, numbers, s.at.arena);
+    if (!c) return;
     float weight = 1;
     if (weighted) {
-      const float chance = likely.average();
       ConnectedPath path{s.light.data(),        n, s.camera.data(), t, 0, 0, 0, 0, s.direct, s.light[0].forward,
                          can_be_met(s.light[0])};
-      path.light_last_from_camera = vertex_density(at_camera.density, z, y, direction, chance, s.front);
-      path.light_before_from_camera = before_from(s.light, n, -direction, Transport::radiance, s.front);
-      path.camera_last_from_light = vertex_density(at_light.density, y, z, -direction, chance, s.front);
-      path.camera_before_from_light = before_from(s.camera, t, direction, Transport::importance, s.front);
+      path.light_last_from_camera = vertex_density(c->density_at_z, z, y, c->direction, c->chance, s.front);
+      path.light_before_from_camera = before_from(s.light, n, -c->direction, Transport::radiance, s.front);
+      path.camera_last_from_light = vertex_density(c->density_at_y, y, z, -c->direction, c->chance, s.front);
+      path.camera_before_from_light = before_from(s.camera, t, c->direction, Transport::importance, s.front);
       weight = bidirectional_weight(path, heuristic);
     }
-    add(s, n + t - 1, n, t, weight, light);
+    add(s, n + t - 1, n, t, weight, c->light);
   }
 
   /// t = 1.
@@ -225,35 +188,19 @@ class BidirectionalPathTracer final : public Renderer {
     if (!shows(n, 1)) return;
     const KeptVertex& y = s.light[size_t(n - 1)];
     NumberStream numbers = s.at.numbers.fork("lens", std::uint32_t(n));
-    const auto lens = s.context.camera.sample_lens(y.point.position, y.point.time, numbers.next_pair());
-    if (!lens || !(lens->density > 0)) return;
-    const ScatterValue f = scattering(y, y.out, lens->direction, Transport::importance);
-    Spectrum light =
-        y.throughput * f.value * (lens->importance / lens->density) * s.context.camera.lens_weight(*lens, s.light_wavelengths);
-    if (light.black()) return;
-    MediumStack scratch;
-    Spectrum likely;
-    const Spectrum visible = visible_fraction(s.scene(), lens_ray(y, *lens), media_towards(y, lens->direction, scratch),
-                                              s.light_wavelengths, numbers, s.at.arena, Transport::importance, &likely);
-    if (visible.black()) return;
-    light *= visible;
+    const auto c = etendue::connect_to_lens(s.context, y, s.light_wavelengths, numbers, s.at.arena);
+    if (!c) return;
     float weight = 1;
     if (weighted) {
-      KeptVertex z = s.camera[0];
-      z.point.position = lens->lens;
-      Ray ray;
-      ray.origin = lens->lens;
-      ray.direction = -lens->direction;
-      ray.time = y.point.time;
-      ConnectedPath path{s.light.data(), n, &z, 1, 0, 0, 0, 0, s.direct, s.light[0].forward, can_be_met(s.light[0])};
-      path.light_last_from_camera =
-          vertex_density(camera_direction_density(s.context.camera, ray), z, y, ray.direction, likely.average(), s.front);
-      path.light_before_from_camera = before_from(s.light, n, lens->direction, Transport::radiance, s.front);
+      const Vector3& direction = c->lens.direction;
+      ConnectedPath path{s.light.data(), n, &c->camera, 1, 0, 0, 0, 0, s.direct, s.light[0].forward, can_be_met(s.light[0])};
+      path.light_last_from_camera = vertex_density(c->density_at_lens, c->camera, y, -direction, c->chance, s.front);
+      path.light_before_from_camera = before_from(s.light, n, direction, Transport::radiance, s.front);
       weight = bidirectional_weight(path, heuristic);
     }
-    light *= weight;
-    s.at.splat(lens->film, light, s.light_wavelengths, n);
-    note(s, n, n, 1, weight, light, lens->film, true);
+    const Spectrum light = c->light * weight;
+    s.at.splat(c->lens.film, light, s.light_wavelengths, n);
+    note(s, n, n, 1, weight, light, c->lens.film, true);
   }
 
   bool shows(int s, int t) const {

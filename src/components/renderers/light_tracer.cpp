@@ -24,6 +24,7 @@ class LightTracer final : public Renderer {
     describe_roulette_depth<&LightTracer::roulette_depth>(d);
   }
 
+  bool splats() const override { return true; }
   PathClasses finds() const override {
     return all_paths & ~(specular_views | seen_environments | delta_caustics_in_mirrors | emitting_media | subsurface_light);
   }

@@ -1,0 +1,94 @@
+#include "etendue/transport/connection.h"
+
+#include "etendue/transport/visibility.h"
+
+namespace etendue {
+
+std::optional<Connection> connect(const Scene& scene, const KeptVertex& y, const KeptVertex& z, const Wavelengths& wavelengths,
+                                  NumberStream& numbers, Arena& arena) {
+  const Vector3 d = y.point.position - z.point.position;
+  const float squared = length_squared(d);
+  if (!(squared > 0)) return {};
+  Connection c;
+  c.direction = d / std::sqrt(squared);
+  const ScatterValue at_z = scattering(z, z.out, c.direction, Transport::radiance);
+  if (at_z.value.black()) return {};
+  const ScatterValue at_y = scattering(y, y.out, -c.direction, Transport::importance);
+  c.light = y.throughput * at_y.value * at_z.value * z.throughput / squared;
+  // Both walks have made up for the wavelengths they dropped: once is enough.
+  if (y.single && z.single) c.light /= float(spectrum_size);
+  if (c.light.black()) return {};
+  MediumStack scratch;
+  Spectrum likely;
+  const Spectrum visible = visible_fraction(scene, connecting_ray(z, y), media_towards(z, c.direction, scratch), wavelengths,
+                                            numbers, arena, Transport::radiance, &likely);
+  if (visible.black()) return {};
+  c.light *= visible;
+  c.density_at_z = at_z.density;
+  c.density_at_y = at_y.density;
+  c.chance = likely.average();
+  return c;
+}
+
+std::optional<LuminaireConnection> connect_to_luminaire(const Scene& scene, const LightSampler& lights, const KeptVertex& z,
+                                                        const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena) {
+  const float which = numbers.next();
+  const Point2 u = numbers.next_pair();
+  const LightChoice choice = lights.choose(z.point.position, z.normal(), which);
+  if (!choice.luminaire) return {};
+  const SurfaceSample l = choice.luminaire->sample_visible(z.point.position, u, z.point.time);
+  if (!(l.density > 0)) return {};
+  const ScatterValue f = scattering(z, z.out, l.direction, Transport::radiance);
+  if (f.value.black()) return {};
+  const EmissionShader& emission = *choice.luminaire->emission;
+  LuminaireConnection c;
+  c.light = z.throughput * f.value * emission.radiance(l.point, -l.direction, wavelengths) / (choice.probability * l.density);
+  if (c.light.black()) return {};
+  c.luminaire.kind = Vertex::Kind::luminaire;
+  c.luminaire.infinite = l.infinite;
+  c.luminaire.point = l.point;
+  c.direction = l.direction;
+  c.delta = l.delta;
+  MediumStack scratch;
+  Spectrum likely;
+  const Spectrum visible =
+      visible_fraction(scene, l.infinite ? leaving_ray(z, l.direction) : connecting_ray(z, c.luminaire),
+                       media_towards(z, l.direction, scratch), wavelengths, numbers, arena, Transport::radiance, &likely);
+  if (visible.black()) return {};
+  c.light *= visible;
+  c.density_at_z = f.density;
+  c.density_at_luminaire = l.infinite ? 1 : emission.density(l.point, -l.direction);
+  c.chance = likely.average();
+  return c;
+}
+
+std::optional<LensConnection> connect_to_lens(const RenderContext& context, const KeptVertex& y, const Wavelengths& wavelengths,
+                                              NumberStream& numbers, Arena& arena) {
+  const Camera& camera = context.camera;
+  const std::optional<LensSample> lens = camera.sample_lens(y.point.position, y.point.time, numbers.next_pair());
+  if (!lens || !(lens->density > 0)) return {};
+  const ScatterValue f = scattering(y, y.out, lens->direction, Transport::importance);
+  LensConnection c;
+  c.lens = *lens;
+  c.light = y.throughput * f.value * (lens->importance / lens->density) * camera.lens_weight(*lens, wavelengths);
+  if (c.light.black()) return {};
+  MediumStack scratch;
+  Spectrum likely;
+  const Spectrum visible = visible_fraction(context.scene, lens_ray(y, *lens), media_towards(y, lens->direction, scratch),
+                                            wavelengths, numbers, arena, Transport::importance, &likely);
+  if (visible.black()) return {};
+  c.light *= visible;
+  c.camera.kind = Vertex::Kind::camera;
+  c.camera.parallel = camera.parallel();
+  c.camera.point.position = lens->lens;
+  c.camera.point.time = y.point.time;
+  Ray ray;
+  ray.origin = lens->lens;
+  ray.direction = -lens->direction;
+  ray.time = y.point.time;
+  c.density_at_lens = camera_direction_density(camera, ray);
+  c.chance = likely.average();
+  return c;
+}
+
+}  // namespace etendue
