@@ -235,7 +235,7 @@ void Film::Members::add_step() {
   for (size_t p = 0; p < planes.size(); ++p)
     if (!step.lists[planes[p].list].empty() && totals.sums[p].empty() && kept(planes[p], estimator))
       totals.sums[p] = ExactSums(format->pixels() * groups_per_pixel(planes[p], *format), planes[p].group);
-  over_pixels(format->pixels(), [&](size_t begin, size_t end) {
+  over_range(format->pixels(), [&](size_t begin, size_t end) {
     for (size_t p = 0; p < planes.size(); ++p) {
       const auto& [list, offset, group] = planes[p];
       if (step.lists[list].empty() || !kept(planes[p], estimator)) continue;

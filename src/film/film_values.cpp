@@ -47,7 +47,7 @@ FilmSnapshot::Values Film::values() const {
   for (size_t p = 0; p < planes.size(); ++p) summed[planes[p].list] |= !m.totals.sums[p].empty();
   for (size_t l = 0; l < list_count; ++l)
     if (summed[l] || !m.step.lists[l].empty()) values.lists[l].resize(format.pixels() * list_stride(List(l), format));
-  over_pixels(format.pixels(), [&](size_t begin, size_t end) {
+  over_range(format.pixels(), [&](size_t begin, size_t end) {
     for (size_t l = 0; l < list_count; ++l)
       if (const size_t stride = list_stride(List(l), format); !m.step.lists[l].empty() && m.step.begun && l != batch_list)
         std::copy(m.step.lists[l].begin() + std::ptrdiff_t(begin * stride),

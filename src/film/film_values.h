@@ -1,12 +1,9 @@
 #pragma once
 // What a film keeps for each pixel: as plain numbers (of the step at hand, and to develop), and as exact sums.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <array>
 
+#include "core/over_range.h"
 #include "etendue/film/film.h"
 #include "exact_sums.h"
 #include "picture_format.h"
@@ -111,16 +108,5 @@ struct Film::Totals {
   void add(const Totals&);
   void require_room_for(const Totals&) const;
 };
-
-/// Does f(begin, end) for ranges of pixels, on several threads where there are many. Nothing else is begun meanwhile: who calls
-/// holds a lock.
-template <class F>
-void over_pixels(size_t pixels, F f) {
-  constexpr size_t grain = 1 << 14;
-  if (pixels <= 2 * grain) return f(size_t(0), pixels);
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, pixels, grain), [&](const auto& range) { f(range.begin(), range.end()); });
-  });
-}
 
 }  // namespace etendue

@@ -1,6 +1,8 @@
 #include "color_matrix.h"
+#include "core/over_range.h"
 #include "etendue/describe/color.h"
 #include "etendue/exposed_tone_map.h"
+#include "tabulated.h"
 
 namespace etendue {
 namespace {
@@ -72,15 +74,19 @@ class AgXToneMap final : public ExposedToneMap {
     const RgbSpace wide = make_rgb_space("the wide one of AgX", primaries, space.white);
     const ColorMatrix outset = space.from_xyz * wide.to_xyz;
     const Sigmoid sigmoid{double(contrast)};
-    for (size_t i = 0; i + 2 < xyz.values.size(); i += 3) {
-      double* v = &xyz.values[i];
-      ColorTriple c = wide.from_xyz * ColorTriple{v[0], v[1], v[2]};
-      for (double& x : c) x = sigmoid(x);
-      c = outset * c;
-      for (double& x : c) x = std::pow(std::clamp(x, 0.0, 1.0), display_power);
-      c = space.to_xyz * c;
-      std::copy(c.begin(), c.end(), v);
-    }
+    const Tabulated code(int(lowest_stops), 7, [&](double x) { return sigmoid(x * middle_grey); });
+    const Tabulated light(-12, 0, [](double y) { return std::pow(y, display_power); });
+    over_range(xyz.values.size() / 3, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        double* v = &xyz.values[3 * i];
+        ColorTriple c = wide.from_xyz * ColorTriple{v[0], v[1], v[2]};
+        for (double& x : c) x = code(x / middle_grey);
+        c = outset * c;
+        for (double& x : c) x = light(std::min(x, 1.0));
+        c = space.to_xyz * c;
+        std::copy(c.begin(), c.end(), v);
+      }
+    });
   }
 };
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <bit>
+
 #include "luminance.h"
 
 namespace etendue {
@@ -33,6 +36,23 @@ struct Metered {
   double logarithm, share;
 };
 
+/// Sorts positive numbers, as far as a millionth part tells them apart: by 11 of their bits after 11, from the lowest of the
+/// first 32 on (positive doubles are in the order of their bits). A tenth of the time of std::sort for the pixels of a picture,
+/// which panels show while somebody turns a knob.
+void sort_nearly(std::vector<double>& numbers) {
+  constexpr int digit = 11, digits = 3;
+  constexpr std::uint64_t mask = (1 << digit) - 1;
+  std::vector<double> other(numbers.size());
+  for (int d = 0; d < digits; ++d) {
+    const auto place = [&](double x) { return (std::bit_cast<std::uint64_t>(x) >> (31 + d * digit)) & mask; };
+    std::array<size_t, mask + 2> begin{};
+    for (const double x : numbers) ++begin[place(x) + 1];
+    for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+    for (const double x : numbers) other[begin[place(x)]++] = x;
+    numbers.swap(other);
+  }
+}
+
 /// The mean over the ranks [from, to] of logarithms in increasing order, where shares sum to 1.
 double mean_between(const std::vector<Metered>& all, double from, double to) {
   double below = 0, sum = 0, share = 0;
@@ -50,8 +70,8 @@ double mean_between(const std::vector<Metered>& all, double from, double to) {
 double automatic_factor(const Image& xyz, double percentile) {
   std::vector<double> luminances = positive_luminances(xyz);
   if (luminances.empty()) return 1;
-  const double floor = floor_below * percentile_of(luminances, percentile);
-  std::sort(luminances.begin(), luminances.end());
+  sort_nearly(luminances);
+  const double floor = floor_below * luminances[rank_of(luminances.size(), percentile)];
   std::vector<Metered> all;
   all.reserve(luminances.size());
   double total = 0;

@@ -18,11 +18,15 @@ inline std::vector<double> positive_luminances(const Image& xyz) {
   return all;
 }
 
+/// The place, in increasing order, of the smallest of `count` values that at least this percentage of them do not exceed.
+inline size_t rank_of(size_t count, double percent) {
+  return size_t(std::clamp(std::ceil(percent / 100 * double(count)) - 1, 0.0, double(count - 1)));
+}
+
 /// The smallest of the values that at least this percentage of them do not exceed; 0 for no values. Reorders them.
 inline double percentile_of(std::vector<double>& values, double percent) {
   if (values.empty()) return 0;
-  const double rank = std::ceil(percent / 100 * double(values.size()));
-  const size_t i = size_t(std::clamp(rank - 1, 0.0, double(values.size() - 1)));
+  const size_t i = rank_of(values.size(), percent);
   std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(i), values.end());
   return values[i];
 }

@@ -1,6 +1,8 @@
 #include "etendue/tone_map.h"
 
+#include "core/over_range.h"
 #include "etendue/describe/color.h"
+#include "tabulated.h"
 
 namespace etendue {
 void ToneMap::describe(Description<ToneMap>& d) {
@@ -31,15 +33,20 @@ Image ToneMap::apply(const Image& xyz) const {
 
   const std::array<double, 9> m = rgb_space(color_space).from_xyz;
   const bool clip = clips(), encoded = transfer != "linear";
-  for (size_t i = 0; i < pixels; ++i) {
-    double* v = &image.values[3 * i];
-    const double x = v[0], y = v[1], z = v[2];
-    for (size_t c = 0; c < 3; ++c) {
-      double value = m[3 * c] * x + m[3 * c + 1] * y + m[3 * c + 2] * z;
-      if (clip) value = value > 0 ? std::min(value, 1.0) : 0;  // not a number: 0
-      v[c] = encoded ? encode_transfer(transfer, value) : value;
+  const auto encode = [&](double value) { return encode_transfer(transfer, value); };
+  // A code value of 2^-30 is none even in 16 bits.
+  const std::optional<Tabulated> table = clip && encoded ? std::optional<Tabulated>({-30, 0, encode}) : std::nullopt;
+  over_range(pixels, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      double* v = &image.values[3 * i];
+      const double x = v[0], y = v[1], z = v[2];
+      for (size_t c = 0; c < 3; ++c) {
+        double value = m[3 * c] * x + m[3 * c + 1] * y + m[3 * c + 2] * z;
+        if (clip) value = value > 0 ? std::min(value, 1.0) : 0;  // not a number: 0
+        v[c] = table ? (*table)(value) : encoded ? encode(value) : value;
+      }
     }
-  }
+  });
   image.channels = {"R", "G", "B"};
   image.metadata["color_space"] = color_space;
   image.metadata["transfer"] = transfer;
