@@ -7,13 +7,16 @@ namespace etendue {
 void Job::describe(Description<Job>& d) {
   d.summary("A whole render: what is seen, how it is computed, and where the picture goes.",
             "Demoreuille & Shaw 2002, section 3.2.2")
+      .group("Picture")
       .member<&Job::renderer>("renderer", "", "the algorithm")
       .member<&Job::camera>("camera", "", "where the picture is taken from", required)
       .member<&Job::scene>("scene", "", "what is in front of it", required, Effect::rebuild)
       .member<&Job::image>("image", "", "where samples are collected")
       .member<&Job::wavelengths>("wavelengths", "", "which wavelengths paths carry")
+      .group("Display")
       .member<&Job::tone_map>("tone_map", "", "from radiance to display values", Effect::retone)
       .member<&Job::outputs>("outputs", "", "files to write", Effect::retone)
+      .group("Sampling and limits")
       .member<&Job::seed>("seed", "1", "chooses the random numbers", at_least(0))
       .member<&Job::time_limit>("time_limit", "s", "stops after the pass in which this time is over; 0: no limit", at_least(0),
                                 Effect::none)

@@ -19,7 +19,9 @@ void Renderer::describe(Description<Renderer>& d) {
        "scattering in a medium count, and the way inside a body that scatters light beneath its surface counts as one segment; "
        "what goes straight on (through holes, thin panes, the bounds of media, bodies within others of higher priority) does "
        "not.")
-      .member<&Renderer::samples>("samples", "1", "samples per pixel", range(1, 1 << 30), Effect::none)
+      .group("Sampling")
+      .member<&Renderer::samples>("samples", "1", "samples per pixel", range(1, 1 << 30), Effect::none, soft(1, 4096),
+                                  logarithmic)
       .member<&Renderer::sampler>("sampler", "", "where random numbers come from")
       .member<&Renderer::light_sampler>("light_sampler", "", "how luminaires are chosen")
       .member<&Renderer::map_filter>(
@@ -27,7 +29,7 @@ void Renderer::describe(Description<Renderer>& d) {
           "width over which maps are averaged where paths from the camera meet them [pixels]; 0: maps as they are. Averages "
           "make less noise, and large images quicker, but they are a bias: what a surface does to light is not the mean of "
           "what its parts do, the pixel's own filter blurs once more, and paths from luminaires do not average",
-          range(0, 64));
+          range(0, 64), soft(0, 4));
 }
 static const Register<Renderer> registered;
 

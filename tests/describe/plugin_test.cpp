@@ -97,6 +97,16 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
   EXPECT_EQ(run(program + " image merge " + f + "/b " + f + "/a" + film("merged"), &output), 0) << output;
   EXPECT_EQ(run("cmp " + f + "/whole.npy " + f + "/merged.npy", &output), 0) << output;
   EXPECT_EQ(run(mapper + "6 --pixel 12,20 --sample 4", &output), 0) << output;
+  // Killed again and again, until it comes to its end.
+  int kills = 0;
+  for (const char* time : {"0.35", "0.45", "0.6", "0.8", "1.1", "1.5", "60"}) {
+    const int status =
+        run("timeout -s KILL " + std::string(time) + " " + mapper + "6 --every 0s --continue " + f + "/killed" + film("killed"),
+            &output);
+    kills += status != 0;
+  }
+  EXPECT_GE(kills, 1);
+  EXPECT_EQ(run("cmp " + f + "/whole.npy " + f + "/killed.npy", &output), 0) << output;
   // What holds a path tracer inside finds what that finds.
   EXPECT_EQ(
       run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
@@ -105,6 +115,28 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
           &output),
       0)
       << output;
+}
+
+TEST_F(Plugin, AProgramDrivesARender) {
+  const std::string f = folder.string(), source = ETENDUE_SOURCE_DIR "/tests/plugin";
+  ASSERT_EQ(run("cmake --install " ETENDUE_BINARY_DIR " --prefix " + f + "/installed"), 0);
+  ASSERT_EQ(run("cmake -G Ninja -S " + source + " -B " + f + "/build -DCMAKE_PREFIX_PATH=" + f +
+                "/installed && cmake --build " + f + "/build --target drive_a_render"),
+            0);
+  std::ofstream(f + "/small.etd") << R"(Job { renderer: PathTracer { samples: 64 }, image: ImageBuffer { width: 16, height: 12 }
+      camera: PerspectiveCamera { from: [0, 0, -4], to: [0, 0, 0] }, outputs: [ NpyOutput {} ]
+      scene: BruteForceScene { objects: [ Sphere { shader: Lambertian {} }, Environment { emission: DiffuseEmission { sides: both } } ] } })";
+  std::string output;
+  EXPECT_EQ(run(f + "/build/drive_a_render " + f + "/small.etd " + f, &output), 0) << output;
+  for (const char* said : {"16 x 12 pixels", "refused: ", "must be more than 0", "64 samples per pixel", "picture.npy"})
+    EXPECT_NE(output.find(said), std::string::npos) << output;
+  // As if it had been described that way at first.
+  EXPECT_EQ(
+      run(f + "/installed/bin/etendue render " + f + "/small.etd --set camera.fov='35 deg' --quiet -o " + f + "/straight.npy",
+          &output),
+      0)
+      << output;
+  EXPECT_EQ(read_image(f + "/picture.npy").values, read_image(f + "/straight.npy").values);
 }
 
 TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
@@ -122,6 +154,7 @@ TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
   check(ETENDUE_SOURCE_DIR "/tests/plugin/student_tracer.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 60);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/small_photon_mapper.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 190);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/primary_sample_metropolis.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 160);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/drive_a_render.cpp", ETENDUE_SOURCE_DIR "/docs/drive-a-render.md", 70);
 }
 
 TEST_F(Plugin, RefusesWhatIsNone) {

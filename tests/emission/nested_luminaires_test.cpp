@@ -285,13 +285,13 @@ TEST(NestedLuminaires, NumbersOfManyObjectsAreRemembered) {
   std::vector<Ref<SceneObject>> objects;
   for (int i = 0; i < 5000; ++i) objects.push_back(ref_cast<SceneObject>(Registry::instance().create("Sphere")));
   PerObject numbers;
-  numbers.reset();
+  numbers.expect();
   int found = 0;
   for (int round = 0; round < 3; ++round)
     for (size_t i = 0; i < objects.size(); ++i)
       EXPECT_EQ(numbers.get(*objects[i], [&] { return ++found, double(i); }), double(i));
   EXPECT_EQ(found, 5000);
-  numbers.reset();
+  numbers.forget();
   EXPECT_EQ(numbers.get(*objects[0], [] { return 7.0; }), 7);
 }
 

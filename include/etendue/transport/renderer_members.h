@@ -12,20 +12,22 @@ namespace etendue {
 template <auto member, class R>
 Description<R>& describe_max_depth(Description<R>& d, const std::string& more = "", Range allowed = at_least(1)) {
   return d.template member<member>("max_depth", "1",
-                                   "longest path, in segments: 1 shows luminaires only, 2 adds direct light" + more, allowed);
+                                   "longest path, in segments: 1 shows luminaires only, 2 adds direct light" + more, allowed,
+                                   soft(1, 64), logarithmic);
 }
 
 /// `int`: see Roulette::depth.
 template <auto member, class R>
 Description<R>& describe_roulette_depth(Description<R>& d) {
-  return d.template member<member>("roulette_depth", "1", "segments before Russian roulette may end a path", at_least(1));
+  return d.template member<member>("roulette_depth", "1", "segments before Russian roulette may end a path", at_least(1),
+                                   soft(1, 64), logarithmic);
 }
 
-/// `Heuristic`.
-template <auto member, class R>
-Description<R>& describe_heuristic(Description<R>& d) {
+/// `Heuristic`; `when` it matters.
+template <auto member, class R, class... Conditions>
+Description<R>& describe_heuristic(Description<R>& d, Conditions... when) {
   return d.template member<member>("heuristic", "", "how strategies that find the same light are weighted against each other",
-                                   choices("balance", "power"));
+                                   choices("balance", "power"), when...);
 }
 
 /// What max_depth says of renderers that keep a walk as a whole, and how long such walks may be [segments]. A vertex takes

@@ -25,9 +25,11 @@ class AmbientOcclusionRenderer final : public Renderer {
          "a grey from 0 (enclosed) to 1 (open). Where the camera sees nothing it is 1. Surfaces are seen from both sides.",
          "Zhukov, Iones & Kronin 1998, An ambient light illumination model; Landis 2002, Production-ready global "
          "illumination")
+        .group("Rays")
         .member<&AmbientOcclusionRenderer::distance>("distance", "m", "what is farther away blocks nothing; 0: all does",
-                                                     at_least(0))
-        .member<&AmbientOcclusionRenderer::rays>("rays", "1", "rays for each sample of a pixel", range(1, 65536));
+                                                     at_least(0), soft(0.01, 100), logarithmic)
+        .member<&AmbientOcclusionRenderer::rays>("rays", "1", "rays for each sample of a pixel", range(1, 65536), soft(1, 64),
+                                                 logarithmic);
   }
 
   PathClasses finds() const override { return no_paths; }  // it shows how open surfaces are

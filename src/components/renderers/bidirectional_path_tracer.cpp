@@ -28,11 +28,14 @@ class BidirectionalPathTracer final : public Renderer {
   static void describe(Description<BidirectionalPathTracer>& d) {
     d.summary("Paths from the luminaires and from the camera, connected in all ways and weighted by how well each does.",
               "Lafortune & Willems 1993; Veach & Guibas 1994; Veach 1997, chapter 10");
+    d.group("Paths");
     describe_max_depth<&BidirectionalPathTracer::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
     describe_roulette_depth<&BidirectionalPathTracer::roulette_depth>(d);
-    describe_heuristic<&BidirectionalPathTracer::heuristic>(d);
-    d.member<&BidirectionalPathTracer::light_vertices>(
-         "light_vertices", "1", "shows the strategies with this many vertices from the luminaire alone; -1: all", at_least(-1))
+    describe_heuristic<&BidirectionalPathTracer::heuristic>(d, when("weighted"));
+    d.group("Strategies")
+        .member<&BidirectionalPathTracer::light_vertices>(
+            "light_vertices", "1", "shows the strategies with this many vertices from the luminaire alone; -1: all",
+            at_least(-1))
         .member<&BidirectionalPathTracer::camera_vertices>(
             "camera_vertices", "1", "shows the strategies with this many vertices from the camera alone; -1: all", at_least(-1))
         .member<&BidirectionalPathTracer::weighted>("weighted", "",

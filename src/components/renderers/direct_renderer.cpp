@@ -29,15 +29,16 @@ class DirectRenderer final : public Renderer {
   static void describe(Description<DirectRenderer>& d) {
     d.summary("Emitted and direct light only: paths of one and two segments.",
               "Veach & Guibas 1995, Optimally combining sampling techniques for Monte Carlo rendering")
+        .group("Light")
         .member<&DirectRenderer::strategy>("strategy", "",
                                            "how light is found: by points on luminaires, by directions of the "
                                            "shader, or by both, combined",
                                            choices("light", "shader", "both"))
         .member<&DirectRenderer::light_samples>("light_samples", "1", "points on luminaires for each sample of a pixel",
-                                                range(1, 65536))
+                                                range(1, 65536), soft(1, 64), logarithmic, unless("strategy", "shader"))
         .member<&DirectRenderer::shader_samples>("shader_samples", "1", "directions of the shader for each sample of a pixel",
-                                                 range(1, 65536));
-    describe_heuristic<&DirectRenderer::heuristic>(d);
+                                                 range(1, 65536), soft(1, 64), logarithmic, unless("strategy", "light"));
+    describe_heuristic<&DirectRenderer::heuristic>(d, when("strategy", "both"));
   }
 
   PathClasses finds() const override {

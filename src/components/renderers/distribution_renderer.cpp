@@ -38,6 +38,7 @@ class DistributionRenderer final : public Renderer {
          "Distribution ray tracing: soft shadows, gloss, depth of field and motion by rays that split at the first surfaces. "
          "Diffuse, glossy and specular lobes get their own rays; nothing is counted twice.",
          "Cook, Porter & Carpenter 1984, Distributed ray tracing; weights: Veach 1997, section 9.2")
+        .group("Tree")
         .member<&DistributionRenderer::light_samples>("light_samples", "1", "rays to luminaires where the tree splits",
                                                       range(1, 65536))
         .member<&DistributionRenderer::diffuse_samples>(
@@ -51,6 +52,7 @@ class DistributionRenderer final : public Renderer {
             "rays along each perfect mirror and refraction where the tree splits; with 1 both are followed", range(1, 65536))
         .member<&DistributionRenderer::split_depth>(
             "split_depth", "1", "segments up to which the tree splits, at each surface; beyond, one ray goes on", range(0, 16));
+    d.group("Paths");
     describe_max_depth<&DistributionRenderer::max_depth>(d);
     describe_roulette_depth<&DistributionRenderer::roulette_depth>(d);
   }

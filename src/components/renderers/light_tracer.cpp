@@ -20,6 +20,7 @@ class LightTracer final : public Renderer {
   static void describe(Description<LightTracer>& d) {
     d.summary("Paths from the luminaires, connected to the lens at every vertex: best for caustics on what is seen directly.",
               "Arvo 1986, Backward ray tracing; Dutré, Lafortune & Willems 1993; Veach 1997, section 10.1");
+    d.group("Paths");
     describe_max_depth<&LightTracer::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
     describe_roulette_depth<&LightTracer::roulette_depth>(d);
   }

@@ -27,9 +27,10 @@ class PathTracer final : public Renderer {
   static void describe(Description<PathTracer>& d) {
     d.summary("Unidirectional path tracing with next event estimation, multiple importance sampling and Russian roulette.",
               "Kajiya 1986; Veach 1997, chapters 9 and 10");
+    d.group("Paths");
     describe_max_depth<&PathTracer::max_depth>(d);
     describe_roulette_depth<&PathTracer::roulette_depth>(d);
-    describe_heuristic<&PathTracer::heuristic>(d);
+    describe_heuristic<&PathTracer::heuristic>(d, when("next_event"));
     d.member<&PathTracer::next_event>("next_event", "",
                                       "whether luminaires are sampled; without, paths must meet them by chance");
   }

@@ -37,7 +37,7 @@ struct Metered {
 };
 
 /// Sorts positive numbers, as far as a millionth part tells them apart: by 11 of their bits after 11, from the lowest of the
-/// first 32 on (positive doubles are in the order of their bits). A tenth of the time of std::sort for the pixels of a picture,
+/// first 33 on (positive doubles are in the order of their bits). A tenth of the time of std::sort for the pixels of a picture,
 /// which panels show while somebody turns a knob.
 void sort_nearly(std::vector<double>& numbers) {
   constexpr int digit = 11, digits = 3;
