@@ -104,6 +104,7 @@ class Scene : public SceneObject {
   friend class Instance;
   void require_good_objects();
   std::vector<const SceneObject*> survey();
+  void note_interior(const SceneObject&);
   void choose_centre();
   void locate_nested(const Ray&, const Hit&, SurfacePoint&) const;
   Bounds3 placed_bounds(const AnimatedTransform& placed) const;

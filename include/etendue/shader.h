@@ -213,7 +213,8 @@ class Shader : public Component {
   using Parent = Component;
   static void describe(Description<Shader>&);
 
-  /// The scattering at a point, in the arena. Null: nothing is scattered, all is absorbed.
+  /// The scattering at a point, in the arena. Null: nothing is scattered, all is absorbed. It lives until the arena is taken
+  /// back: at the end of the sample, and on a CameraWalk when it goes to the next vertex.
   virtual const Scatter* bind(const SurfacePoint&, const Wavelengths&, Arena&) const = 0;
   /// All lobes `bind` may ever return: what renderers and advice plan by.
   virtual Lobes possible_lobes() const = 0;

@@ -92,6 +92,35 @@ Registry& Registry::instance() {
   return *registry;
 }
 
+namespace {
+
+/// Defaults come from a default-constructed object; such objects may hold others of the classes just added. Returns what is
+/// wrong with them.
+std::string note_defaults(const std::vector<ClassInfo*>& added) {
+  std::string faults;
+  for (ClassInfo* info : added) {
+    if (info->abstract()) continue;
+    try {
+      const Ref<Component> object = etendue::create(*info);
+      for (Member& m : info->members) {
+        m.default_value = m.get(*object, m);
+        if (m.required) continue;
+        try {
+          const Ref<Component> scratch = etendue::create(*info);
+          if (m.kind != Kind::component) m.store(*scratch, m, m.default_value);
+        } catch (const Error& e) {
+          faults += fmt::format("\n  {}.{}: its default is not allowed: {}", info->name, m.name, e.what());
+        }
+      }
+    } catch (...) {
+      faults += fmt::format("\n  {}", thrown_text());
+    }
+  }
+  return faults;
+}
+
+}  // namespace
+
 void Registry::adopt() {
   if (!pending) return;
   const std::lock_guard lock(s->mutex);
@@ -150,25 +179,7 @@ void Registry::adopt() {
   };
   for (const auto& [type, node] : waiting) take(node->type);
 
-  // Defaults come from a default-constructed object; such objects may hold others of the classes just added.
-  for (ClassInfo* info : added) {
-    if (info->abstract() || !faults.empty()) continue;
-    try {
-      const Ref<Component> object = etendue::create(*info);
-      for (Member& m : info->members) {
-        m.default_value = m.get(*object, m);
-        if (m.required) continue;
-        try {
-          const Ref<Component> scratch = etendue::create(*info);
-          if (m.kind != Kind::component) m.store(*scratch, m, m.default_value);
-        } catch (const Error& e) {
-          faults += fmt::format("\n  {}.{}: its default is not allowed: {}", info->name, m.name, e.what());
-        }
-      }
-    } catch (...) {
-      faults += fmt::format("\n  {}", thrown_text());
-    }
-  }
+  if (faults.empty()) faults = note_defaults(added);
   if (faults.empty()) return;
   for (const ClassInfo* info : added) {
     s->by_type.erase(info->type);

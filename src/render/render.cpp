@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "consequences.h"
 #include "describe/guard.h"
 #include "render_members.h"
 
@@ -12,20 +11,6 @@ namespace etendue {
 namespace {
 
 thread_local const Render::Members* within = nullptr;
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-/// Does something in which any part of the job may throw: those of plugins whatever they like.
-template <class Step>
-auto rendering(const Job& job, Step step) {
-  try {
-    return step();
-  } catch (...) {
-    blame(job, "rendering");
-  }
-}
 
 }  // namespace
 
@@ -46,6 +31,7 @@ BetweenSteps::BetweenSteps(const Render::Members& m, bool interrupt) {
 
 WithinStep::WithinStep(const Render::Members& m) : before_(std::exchange(within, &m)) {}
 WithinStep::~WithinStep() { within = before_; }
+bool WithinStep::of(const Render::Members& m) { return within == &m; }
 
 // ---- making one -------------------------------------------------------------------------------------------------------------
 
@@ -59,7 +45,8 @@ Render::~Render() = default;
 
 const Job& Render::job() const { return *m->job; }
 const RenderSettings& Render::settings() const { return m->settings; }
-Film& Render::film() const { return *m->film; }
+Film& Render::film() { return *m->film; }
+const Film& Render::film() const { return *m->film; }
 
 std::uint32_t Render::Members::samples_per_step() const {
   const std::uint32_t usual = etendue::samples_per_step(job->image->area());
@@ -101,6 +88,7 @@ void Render::Members::empty() {
   const std::lock_guard lock(counts);
   film->clear();
   done.clear();
+  loaded_from.clear();
   seconds = error = 0;
 }
 
@@ -174,6 +162,7 @@ std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
     const std::lock_guard lock(counts);
     film->end_step();
     insert(done, samples);
+    loaded_from.clear();
     seconds += seconds_since(step_began);
     before_short_step = std::move(before);
     guard.finished = true;
@@ -194,6 +183,7 @@ struct Forgotten {
 
 std::optional<Ended> Render::step() {
   const Forgotten forgotten{*m};
+  if (m->stop.load()) return Ended::interrupted;
   ParallelSchedule schedule(*m->film, m->settings.threads, m->give_up);
   return m->step(schedule);
 }
@@ -219,7 +209,8 @@ Ended Render::run() {
     const std::shared_lock sharing(m->description);
     m->wanted();
     if (keeps) {
-      m->identity_now();  // of the files as they are now
+      m->identity.reset();  // of the files as they are now
+      m->identity_now();
       remove_leftovers(m->settings.checkpoint_file);
     }
   }
@@ -267,102 +258,6 @@ void Render::stop() { m->stop.store(true); }
 void Render::abort() {
   m->abort.store(true);
   m->give_up.store(true);
-}
-
-// ---- looking ----------------------------------------------------------------------------------------------------------------
-
-Progress Render::Members::progress_now() const {
-  const bool stepping = at_hand.begin < at_hand.end;
-  const double pixels = double(job->image->area().width()) * job->image->area().height();
-  Progress p;
-  p.samples = count(done);
-  std::vector<IndexRange> all = done;
-  insert(all, settings.steps ? wanted() : IndexRange{0, std::uint32_t(job->renderer->samples)});
-  p.samples_wanted = count(all);
-  p.seconds = seconds + (stepping ? seconds_since(step_began) : 0);
-  p.error = error;
-  const double samples = p.samples + (stepping ? part_at_hand * (at_hand.end - at_hand.begin) : 0);
-  p.samples_per_second = samples * pixels / std::max(p.seconds, 1e-9);
-  p.fraction = samples / p.samples_wanted;
-  if (job->time_limit > 0) p.fraction = std::max(p.fraction, p.seconds / job->time_limit);
-  // The error falls with the root of the number of samples.
-  if (job->error_limit > 0 && error > 0 && std::isfinite(error))
-    p.fraction = std::max(p.fraction, (job->error_limit / error) * (job->error_limit / error));
-  p.fraction = std::min(p.fraction, 1.0);
-  p.seconds_left = p.fraction > 0 ? p.seconds * (1 - p.fraction) / p.fraction : -1;
-  return p;
-}
-
-namespace {
-
-/// Shares the description, unless this thread is in a step, which does.
-std::shared_lock<std::shared_mutex> share(const Render::Members& m) {
-  return within == &m ? std::shared_lock<std::shared_mutex>() : std::shared_lock(m.description);
-}
-
-}  // namespace
-
-Progress Render::progress() const {
-  const std::shared_lock sharing = share(*m);
-  const std::lock_guard lock(m->counts);
-  return m->progress_now();
-}
-
-RenderSnapshot Render::snapshot() const {
-  const std::shared_lock sharing = share(*m);
-  const std::lock_guard lock(m->counts);
-  return {m->film->snapshot(), m->progress_now(), picture_metadata(*m->job, count(m->done))};
-}
-
-std::vector<IndexRange> Render::samples_done() const {
-  const std::lock_guard lock(m->counts);
-  return m->done;
-}
-
-Image Render::display(const Image& picture) const {
-  const std::shared_lock sharing(m->look);
-  return m->job->tone_map ? m->job->tone_map->apply(picture) : picture;
-}
-
-std::vector<std::string> Render::write_outputs(const std::string& default_stem) const {
-  const Image picture = this->picture();
-  const std::shared_lock sharing(m->look);
-  std::vector<std::string> written;
-  for (const Ref<Output>& output : m->job->outputs) written.push_back(write_output(*m->job, *output, picture, default_stem));
-  return written;
-}
-
-// ---- single samples
-// -----------------------------------------------------------------------------------------------------------
-
-std::unique_ptr<RenderProcess> Render::start_at(std::uint32_t sample) const {
-  const std::shared_lock sharing = share(*m);
-  const Job& job = *m->job;
-  const std::uint32_t step = m->samples_per_step(), begin = sample / step * step;
-  Film film(*job.image);  // what steps before leave there is not looked at
-  const std::atomic<bool> never{false};
-  ParallelSchedule schedule(film, m->settings.threads, never);
-  return rendering(job, [&] {
-    std::unique_ptr<RenderProcess> process = job.renderer->start(m->context());
-    for (std::uint32_t first = job.renderer->steps_depend() ? 0 : begin;; first += step) {
-      const Step at{first / step, {first, first + step}};
-      process->prepare_step(schedule, at);
-      if (first == begin) return process;
-      process->step(schedule, at);
-    }
-  });
-}
-
-Point2 Render::replay(int x, int y, std::uint32_t sample, PathRecord& record) const {
-  if (!m->job->image->sampled_area().contains(x, y))
-    throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
-  const std::unique_ptr<RenderProcess> process = start_at(sample);
-  Arena arena;
-  PathRequest request;
-  request.observe.record = &record;
-  const Point2 film = rendering(*m->job, [&] { return process->sample(x, y, sample, arena, request); }).film;
-  record.count_from_world(m->job->world_centre());
-  return film;
 }
 
 }  // namespace etendue

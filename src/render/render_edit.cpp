@@ -1,6 +1,5 @@
 // Edits of a Render: made whole, or not at all.
 
-#include "consequences.h"
 #include "describe/guard.h"
 #include "render_members.h"
 

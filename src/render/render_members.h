@@ -13,13 +13,11 @@
 #include <shared_mutex>
 
 #include "checkpoint.h"
+#include "consequences.h"
 #include "etendue/render/render.h"
 #include "parallel_schedule.h"
 
 namespace etendue {
-
-class Consequences;
-class Holders;
 
 struct Render::Members {
   Members(Ref<Job> j, RenderSettings s) : job(std::move(j)), settings(std::move(s)) {}
@@ -80,6 +78,20 @@ struct Render::Members {
   void keep();
 };
 
+inline double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Does something in which any part of the job may throw: those of plugins whatever they like.
+template <class Work>
+auto rendering(const Job& job, Work work) {
+  try {
+    return work();
+  } catch (...) {
+    blame(job, "rendering");
+  }
+}
+
 /// Has the description alone while it lives: no step is at hand. With `interrupt`, one that is is given up.
 class BetweenSteps {
  public:
@@ -94,6 +106,10 @@ class WithinStep {
  public:
   explicit WithinStep(const Render::Members&);
   ~WithinStep();
+  WithinStep(const WithinStep&) = delete;
+  WithinStep& operator=(const WithinStep&) = delete;
+  /// Whether this thread is in one.
+  static bool of(const Render::Members&);
 
  private:
   const Render::Members* before_;

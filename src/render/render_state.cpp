@@ -5,7 +5,6 @@
 #include <istream>
 #include <ostream>
 
-#include "consequences.h"
 #include "render_members.h"
 
 namespace etendue {
@@ -80,6 +79,8 @@ void Render::Members::take_over(Checkpoint&& from) {
   const std::lock_guard lock(counts);
   done = std::move(from.done);
   seconds = from.seconds;
+  error = 0;
+  loaded_from.clear();
 }
 
 void Render::load(std::istream& stream) {
@@ -92,8 +93,10 @@ void Render::load(std::istream& stream) {
 void Render::load(const std::string& file) {
   Checkpoint from = read_checkpoint(file);
   const BetweenSteps alone(*m, true);
+  m->identity.reset();  // of the files as they are now
   m->require_continuable(from, "'" + file + "'");
   m->take_over(std::move(from));
+  m->loaded_from = file;
 }
 
 void Render::add(std::istream& stream) {
@@ -117,6 +120,7 @@ void Render::add(std::istream& stream) {
   m->film->add_state(from.state.image);
   m->done = std::move(all);
   m->seconds += from.seconds;
+  m->loaded_from.clear();
   m->before_short_step.reset();
 }
 

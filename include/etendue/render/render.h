@@ -34,7 +34,8 @@ struct RenderSettings {
   int threads = 0;  ///< 0: all cores
   /// Only these steps; how many there are follows from the picture's size and the samples.
   std::optional<IndexRange> steps = {};
-  /// Called while it renders, from whatever thread is at work, one at a time. It may look, stop and abort, but not edit.
+  /// Called while it renders, from whatever thread is at work, one at a time. It may look, stop and abort, but neither edit,
+  /// save nor load.
   std::function<void(const Progress&)> on_progress = {};
   double progress_interval = 0.25;   ///< [s]
   std::string checkpoint_file = {};  ///< where `run` keeps the state while it renders; empty: nowhere
@@ -60,7 +61,8 @@ struct Edit {
 /// One thread may step or run; all else may be asked at any time, from any thread.
 class Render {
  public:
-  /// Prepares the job, unless it is; throws Errors with places. From now on it is changed by `edit` alone.
+  /// Prepares the job; throws Errors with places. From now on the job is changed by `edit` alone, and no other Render is made
+  /// of it while this one is at work.
   explicit Render(Ref<Job>, RenderSettings = {});
   ~Render();
   Render(const Render&) = delete;
@@ -74,7 +76,7 @@ class Render {
   /// Goes on from where it is until a rule of the job says stop, or somebody does. The picture depends on the description and
   /// the seed alone. What a part throws comes out as an Error; the step at hand then leaves nothing.
   Ended run();
-  /// Renders the next step. Says why, if it did not: all samples are there, or it was aborted.
+  /// Renders the next step. Says why, if it did not: all samples are there, or somebody said stop or abort.
   std::optional<Ended> step();
   /// Asks what runs, or else runs next, to stop: after the step (`stop`), or now, within whatever paths it is at, and without
   /// the step (`abort`). Safe in signal handlers.
@@ -94,7 +96,8 @@ class Render {
   /// Writes all outputs of the job; the file name of one without a name comes from `default_stem`. Returns the paths written.
   std::vector<std::string> write_outputs(const std::string& default_stem) const;
   /// What collects the samples.
-  Film& film() const;
+  Film& film();
+  const Film& film() const;
   /// How many samples of each pixel a step takes, the last of a render perhaps fewer.
   std::uint32_t samples_per_step() const;
   /// The samples of each pixel that the picture holds, in order.

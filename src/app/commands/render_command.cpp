@@ -124,8 +124,7 @@ int render(const RenderOptions& options) {
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
 
-  // The job keeps the outputs of the file, as a checkpoint does, whatever -o says; a part of the passes is not what they are
-  // for.
+  // A part of the passes is not what the outputs of the file are for.
   RenderSettings settings = options.settings();
   std::vector<Ref<Output>> outputs;
   if (!settings.steps || !options.outputs.empty()) outputs = chosen_outputs(job->outputs, options.outputs);
@@ -133,8 +132,10 @@ int render(const RenderOptions& options) {
   const ProgressDisplay::Kind kind = ProgressDisplay::kind_for(options.progress, options.quiet);
   ProgressDisplay display(kind, options.open_ended());
   settings.on_progress = [&](const Progress& progress) { display.show(progress); };
+  // Those that will be written are prepared; a checkpoint remembers those of the file, whatever -o says.
+  std::vector<Ref<Output>> described = std::exchange(job->outputs, outputs);
   Render render(job, settings);
-  for (const Ref<Output>& output : outputs) prepare_tree(*output);
+  job->outputs = std::move(described);
   show_warnings(scene_warnings(*job));
   advise(*job);
   if (options.fireflies > 0) render.film().keep_largest(size_t(options.fireflies));

@@ -156,6 +156,21 @@ void Scene::require_good_objects() {
     fail("objects", "scenes nest more than " + std::to_string(Hit::deepest_nesting) + " deep");
 }
 
+/// Notes whether paths can enter an object, and whether light passes straight through its surface.
+void Scene::note_interior(const SceneObject& object) {
+  const bool null_surfaces = object.shader && object.shader->possible_lobes() & pass_through;
+  // A sheet may bound a medium (see enterable); an instance does not know whether what it gives a sheet's shader to has one.
+  const bool may_enter =
+      object.shader && (object.shader->transmits() || (is_sheet(*object.shader) && (object.interior || scene_within(object))));
+  const Scene* inner = scene_within(object);
+  // An instance's shader replaces all those inside.
+  const bool asks_inside = inner && (inner == &object || !object.shader);
+  has_null_surfaces_ |= asks_inside ? inner->has_null_surfaces_ : null_surfaces;
+  if (!(asks_inside ? inner->has_interiors_ : may_enter)) return;
+  has_interiors_ = true;
+  interiors_.push_back(object.bounds());
+}
+
 /// Finds out what is in the scene, and returns the objects that rays meet.
 std::vector<const SceneObject*> Scene::survey() {
   luminaires_.clear();
@@ -166,20 +181,6 @@ std::vector<const SceneObject*> Scene::survey() {
   static std::atomic<std::uint64_t> versions{0};
   version_ = ++versions;
   has_interiors_ = has_null_surfaces_ = unbounded_ = false;
-  const auto note_interior = [&](const SceneObject& object) {
-    const bool null_surfaces = object.shader && object.shader->possible_lobes() & pass_through;
-    // A sheet may bound a medium (see enterable); an instance does not know whether what it gives a sheet's shader to has one.
-    const bool may_enter = object.shader && (object.shader->transmits() ||
-                                             (is_sheet(*object.shader) && (object.interior || scene_within(object))));
-    const Scene* inner = scene_within(object);
-    // An instance's shader replaces all those inside.
-    const bool asks_inside = inner && (inner == &object || !object.shader);
-    has_null_surfaces_ |= asks_inside ? inner->has_null_surfaces_ : null_surfaces;
-    if (!(asks_inside ? inner->has_interiors_ : may_enter)) return;
-    has_interiors_ = true;
-    interiors_.push_back(object.bounds());
-  };
-
   // Others stand for luminaires of nested scenes; those scenes gave them places in their own lists before.
   std::unordered_set<const Scene*> visited;
   for_nested(*this, visited, [](Scene& inner) {

@@ -185,6 +185,52 @@ DoublePoint3 centre_of(std::string_view file) {
   return own_centre(ends);
 }
 
+/// One entry for each vertex. A corner without normal gets a zero one, without uv the origin.
+MeshData by_vertex(MeshData mesh, const Vertices& vertices) {
+  MeshData result;
+  result.centre = mesh.centre;
+  const auto& list = vertices.corners();
+  bool any_uv = false, any_normal = false;
+  for (const auto& c : list) {
+    any_uv = any_uv || c.uv != Vertices::none;
+    any_normal = any_normal || c.normal != Vertices::none;
+  }
+  result.positions.reserve(list.size() + 1);
+  for (const auto& c : list) result.positions.push_back(mesh.positions[c.position]);
+  mesh.positions = {};
+  if (any_uv) {
+    result.uvs.reserve(list.size());
+    for (const auto& c : list) result.uvs.push_back(c.uv == Vertices::none ? Point2{} : mesh.uvs[c.uv]);
+  }
+  mesh.uvs = {};
+  if (any_normal) {
+    result.normals.reserve(list.size());
+    for (const auto& c : list) result.normals.push_back(c.normal == Vertices::none ? Normal3{} : mesh.normals[c.normal]);
+  }
+  result.triangles = std::move(mesh.triangles);
+  result.materials = std::move(mesh.materials);
+  return result;
+}
+
+/// A corner of a face: "p", "p/t", "p//n" or "p/t/n".
+struct Corner {
+  std::uint32_t position = 0, uv = Vertices::none, normal = Vertices::none;
+};
+Corner read_corner(Lines& lines, const MeshData& so_far, const Counts& all) {
+  Corner c;
+  c.position = read_index(lines, so_far.positions.size(), all.positions, "vertex");
+  if (lines.take('/') && !lines.word_ends()) {
+    if (!lines.take('/')) {
+      c.uv = read_index(lines, so_far.uvs.size(), all.uvs, "texture coordinate");
+      if (lines.take('/') && !lines.word_ends()) c.normal = read_index(lines, so_far.normals.size(), all.normals, "normal");
+    } else if (!lines.word_ends()) {
+      c.normal = read_index(lines, so_far.normals.size(), all.normals, "normal");
+    }
+  }
+  if (!lines.word_ends()) lines.error("an index is expected");
+  return c;
+}
+
 MeshData parse(std::string_view file, PolygonMesh* polygons) {
   const Counts all = count(file);
   if (all.positions == 0) throw Error("it has no vertices");
@@ -239,20 +285,10 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
       positions.clear();
       bool known = true;
       while (!lines.at_end()) {
-        const std::uint32_t p = read_index(lines, mesh.positions.size(), all.positions, "vertex");
-        std::uint32_t uv = Vertices::none, n = Vertices::none;
-        if (lines.take('/') && !lines.word_ends()) {
-          if (!lines.take('/')) {
-            uv = read_index(lines, mesh.uvs.size(), all.uvs, "texture coordinate");
-            if (lines.take('/') && !lines.word_ends()) n = read_index(lines, mesh.normals.size(), all.normals, "normal");
-          } else if (!lines.word_ends()) {
-            n = read_index(lines, mesh.normals.size(), all.normals, "normal");
-          }
-        }
-        if (!lines.word_ends()) lines.error("an index is expected");
-        known = known && p < mesh.positions.size();
-        positions.push_back(p);
-        corners.push_back(plain ? p : vertices.find(p, uv, n));
+        const Corner c = read_corner(lines, mesh, all);
+        known = known && c.position < mesh.positions.size();
+        positions.push_back(c.position);
+        corners.push_back(plain ? c.position : vertices.find(c.position, c.uv, c.normal));
       }
       if (corners.size() < 3) lines.error("a face needs at least three vertices");
       if (polygons) {
@@ -278,30 +314,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   mesh.materials = materials;
   if (plain) return mesh;
 
-  // One entry for each vertex. A corner without normal gets a zero one, without uv the origin.
-  MeshData result;
-  result.centre = mesh.centre;
-  const auto& list = vertices.corners();
-  bool any_uv = false, any_normal = false;
-  for (const auto& c : list) {
-    any_uv = any_uv || c.uv != Vertices::none;
-    any_normal = any_normal || c.normal != Vertices::none;
-  }
-  result.positions.reserve(list.size() + 1);
-  for (const auto& c : list) result.positions.push_back(mesh.positions[c.position]);
-  mesh.positions = {};
-  if (any_uv) {
-    result.uvs.reserve(list.size());
-    for (const auto& c : list) result.uvs.push_back(c.uv == Vertices::none ? Point2{} : mesh.uvs[c.uv]);
-  }
-  mesh.uvs = {};
-  if (any_normal) {
-    result.normals.reserve(list.size());
-    for (const auto& c : list) result.normals.push_back(c.normal == Vertices::none ? Normal3{} : mesh.normals[c.normal]);
-  }
-  result.triangles = std::move(mesh.triangles);
-  result.materials = std::move(materials);
-  return result;
+  return by_vertex(std::move(mesh), vertices);
 }
 
 }  // namespace

@@ -1,0 +1,105 @@
+// What a Render shows of itself: how far it is, its picture, single samples.
+
+#include "etendue/render/render.h"
+
+#include "render_members.h"
+
+namespace etendue {
+
+// ---- looking ----------------------------------------------------------------------------------------------------------------
+
+Progress Render::Members::progress_now() const {
+  const bool stepping = at_hand.begin < at_hand.end;
+  const double pixels = double(job->image->area().width()) * job->image->area().height();
+  Progress p;
+  p.samples = count(done);
+  std::vector<IndexRange> all = done;
+  insert(all, settings.steps ? wanted() : IndexRange{0, std::uint32_t(job->renderer->samples)});
+  p.samples_wanted = count(all);
+  p.seconds = seconds + (stepping ? seconds_since(step_began) : 0);
+  p.error = error;
+  const double samples = p.samples + (stepping ? part_at_hand * (at_hand.end - at_hand.begin) : 0);
+  p.samples_per_second = samples * pixels / std::max(p.seconds, 1e-9);
+  p.fraction = samples / p.samples_wanted;
+  if (job->time_limit > 0) p.fraction = std::max(p.fraction, p.seconds / job->time_limit);
+  // The error falls with the root of the number of samples.
+  if (job->error_limit > 0 && error > 0 && std::isfinite(error))
+    p.fraction = std::max(p.fraction, (job->error_limit / error) * (job->error_limit / error));
+  p.fraction = std::min(p.fraction, 1.0);
+  p.seconds_left = p.fraction > 0 ? p.seconds * (1 - p.fraction) / p.fraction : -1;
+  return p;
+}
+
+namespace {
+
+/// Shares the description, unless this thread is in a step, which does.
+std::shared_lock<std::shared_mutex> share(const Render::Members& m) {
+  return WithinStep::of(m) ? std::shared_lock<std::shared_mutex>() : std::shared_lock(m.description);
+}
+
+}  // namespace
+
+Progress Render::progress() const {
+  const std::shared_lock sharing = share(*m);
+  const std::lock_guard lock(m->counts);
+  return m->progress_now();
+}
+
+RenderSnapshot Render::snapshot() const {
+  const std::shared_lock sharing = share(*m);
+  const std::lock_guard lock(m->counts);
+  return {m->film->snapshot(), m->progress_now(), picture_metadata(*m->job, count(m->done))};
+}
+
+std::vector<IndexRange> Render::samples_done() const {
+  const std::lock_guard lock(m->counts);
+  return m->done;
+}
+
+Image Render::display(const Image& picture) const {
+  const std::shared_lock sharing(m->look);
+  return m->job->tone_map ? m->job->tone_map->apply(picture) : picture;
+}
+
+std::vector<std::string> Render::write_outputs(const std::string& default_stem) const {
+  const Image picture = this->picture();
+  const std::shared_lock sharing(m->look);
+  std::vector<std::string> written;
+  for (const Ref<Output>& output : m->job->outputs) written.push_back(write_output(*m->job, *output, picture, default_stem));
+  return written;
+}
+
+// ---- single samples
+// -----------------------------------------------------------------------------------------------------------
+
+std::unique_ptr<RenderProcess> Render::start_at(std::uint32_t sample) const {
+  const std::shared_lock sharing = share(*m);
+  const Job& job = *m->job;
+  const std::uint32_t step = m->samples_per_step(), begin = sample / step * step;
+  Film film(*job.image);  // what steps before leave there is not looked at
+  const std::atomic<bool> never{false};
+  ParallelSchedule schedule(film, m->settings.threads, never);
+  return rendering(job, [&] {
+    std::unique_ptr<RenderProcess> process = job.renderer->start(m->context());
+    for (std::uint32_t first = job.renderer->steps_depend() ? 0 : begin;; first += step) {
+      const Step at{first / step, {first, first + step}};
+      process->prepare_step(schedule, at);
+      if (first == begin) return process;
+      process->step(schedule, at);
+    }
+  });
+}
+
+Point2 Render::replay(int x, int y, std::uint32_t sample, PathRecord& record) const {
+  if (!m->job->image->sampled_area().contains(x, y))
+    throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
+  const std::unique_ptr<RenderProcess> process = start_at(sample);
+  Arena arena;
+  PathRequest request;
+  request.observe.record = &record;
+  const Point2 film = rendering(*m->job, [&] { return process->sample(x, y, sample, arena, request); }).film;
+  record.count_from_world(m->job->world_centre());
+  return film;
+}
+
+}  // namespace etendue
