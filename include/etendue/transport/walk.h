@@ -62,7 +62,7 @@ class Walk {
   bool specular = true;         ///< whether a specular lobe chose it, or nobody: it is the first
   Point3 from;                  ///< the vertex before, for densities as seen from there
   Normal3 from_normal;
-  Spectrum edge;      ///< what media and surfaces on the last segment let through, likely: for densities
+  Spectrum edge;      ///< what surfaces on the last segment let through, and if it `keeps`, media, likely: for densities
   float crossed = 0;  ///< distance to the last boundary passed straight on [m], of the last segment
   Hit hit;            ///< of the last surface
 
@@ -93,7 +93,7 @@ class Walk {
           if (!flight.emitted.black()) listener.emitted(throughput * flight.emitted);
           throughput *= flight.weight;
           if (throughput.black()) return false;
-          edge *= likely_transmittance(medium, ray, flight.distance, sample.wavelengths);
+          if (keeps) edge *= likely_transmittance(medium, ray, flight.distance, sample.wavelengths);
           if (flight.scattered) return scattered_in(medium, ray(flight.distance));
         }
       vertex.out = -ray.direction;
@@ -195,7 +195,7 @@ class Walk {
     return true;
   }
 
-  /// Whether vertices are kept: what lies around them is then, too. Else it is that of the last alone.
+  /// Whether vertices are kept, with densities: what lies around them is then, too, and what media let through is asked for.
   bool keeps = false;
   /// Whether light is gathered at vertices.
   bool gathers = false;
