@@ -18,7 +18,7 @@ class LightSampler : public Component {
   using Parent = Component;
   static void describe(Description<LightSampler>&);
 
-  /// Looks at the scene's luminaires once before rendering.
+  /// Looks at the scene's luminaires before rendering: when a process is started, while no step is at hand.
   virtual void build(const Scene&) = 0;
   /// A luminaire for a point with a normal (zero: a point in a volume); probabilities sum to 1.
   virtual LightChoice choose(const Point3&, const Normal3&, float u) const = 0;

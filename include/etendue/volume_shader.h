@@ -21,8 +21,9 @@ class VolumeShader : public Component {
   using Parent = Component;
   static void describe(Description<VolumeShader>&);
 
-  // Points are in the own coordinates of the object whose inside the medium fills, as they are written (a medium that is the
-  // same everywhere may get others); directions are those of the scene.
+  // Points are in the own coordinates of the object whose inside the medium fills, as the user wrote them, from their true
+  // origin (a medium that is the same everywhere may get others); directions are those of the scene. Nothing here draws numbers
+  // or remembers: tracking asks for one place again and again, from many threads.
 
   virtual VolumeCoefficients coefficients(const Point3&, float time, const Wavelengths&) const = 0;
   /// Coefficients are the same everywhere: free paths then have a closed form.
@@ -34,7 +35,8 @@ class VolumeShader : public Component {
   virtual Spectrum majorant(const Wavelengths&) const = 0;
   /// Phase function [1/sr] for light that turns from travelling along -out to travelling along in; integrates to 1.
   virtual float phase(const Point3&, const Vector3& out, const Vector3& in) const = 0;
-  /// A direction and its density [1/sr].
+  /// A direction drawn exactly in proportion to `phase`, and its density [1/sr], which is therefore the same number: walks
+  /// count on phase / density = 1.
   virtual Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const = 0;
 };
 

@@ -101,14 +101,14 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
                                  const PathRequest& request) const {
   const Camera& camera = context.camera;
   CameraSample s;
-  SampleContext sample{s.wavelengths, {source, key}, arena, request.observe, request.splats, request.abort};
+  SampleContext sample{s.wavelengths, {source, key}, arena, request.observe, request.splats, request.abort, request.records};
   NumberStream& numbers = sample.numbers;
   const Point2 within = numbers.next_pair();
   s.film = {float(area.x0) + within.x * float(area.width()), float(area.y0) + within.y * float(area.height())};
   const Point2 lens = camera.has_lens() ? numbers.next_pair() : (numbers.skip(2), Point2{});
   const bool still = !(camera.shutter_close > camera.shutter_open);
   const float time = still ? (numbers.skip(), camera.shutter_open) : camera.shutter_time(numbers.next());
-  s.wavelengths = context.wavelengths.sample(key, numbers.next());
+  s.wavelengths = wavelengths(key, numbers.next());
   CameraRay from;
   PathRecord* const record = request.observe.record;
   if (!camera.sample_ray(s.film, lens, time, s.wavelengths, from)) {
@@ -136,7 +136,11 @@ CameraSample RenderProcess::sample(int x, int y, std::uint32_t number, Arena& ar
   return path({x, y, x + 1, y + 1}, *renderer.sampler, SampleKey(context.seed, x, y, number), arena, request);
 }
 
-void RenderProcess::step(Schedule& schedule, const Step& step) {
+void RenderProcess::step(Schedule& schedule, const Step& step) { film_paths(schedule, step, nullptr, nullptr); }
+
+size_t RenderProcess::path_items(const Step& step) const { return size_t(Division(context.image, step.samples).count()); }
+
+void RenderProcess::film_paths(Schedule& schedule, const Step& step, RecordsOf records_of, void* all) {
   const Division division(context.image, step.samples);
   const bool wants_features = context.image.wants_features();
   const size_t path_lengths = size_t(context.image.path_lengths);
@@ -146,7 +150,10 @@ void RenderProcess::step(Schedule& schedule, const Step& step) {
     std::vector<Splat> splats;
     std::vector<Spectrum> lengths(path_lengths);
     Features features;
-    const PathRequest request{{wants_features ? &features : nullptr, nullptr, lengths}, &splats, schedule.abort};
+    const PathRequest request{{wants_features ? &features : nullptr, nullptr, lengths},
+                              &splats,
+                              schedule.abort,
+                              records_of ? records_of(all, item) : nullptr};
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x)
         for (SampleKey key(context.seed, x, y, first); key.sample < last; ++key.sample) {

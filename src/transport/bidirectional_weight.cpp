@@ -2,11 +2,18 @@
 
 namespace etendue {
 
-float bidirectional_weight(const ConnectedPath& path, Heuristic heuristic) {
+namespace {
+
+/// The sum over all strategies of (p_j / p_s)^beta, with L_0 in p_1 for merging, and what merging at the connection has of it.
+struct Sum {
+  double all = 0, merged_here = 0;
+};
+/// `merges`: the strategy at hand merges at vertex s, so the light walk went on there, and not by a connection.
+Sum strategies(const ConnectedPath& path, Heuristic heuristic, bool merges) {
   const int s = path.s, t = path.t, last = s + t - 1;
   // Vertex i of the whole path, its densities, and whether it can stand at a connection: those at this one can.
   const auto vertex = [&](int i) -> const KeptVertex& { return i < s ? path.light[i] : path.camera[last - i]; };
-  const auto connectable = [&](int i) { return i == 0 || i == s - 1 || i == s || !vertex(i).specular; };
+  const auto connectable = [&](int i) { return i == 0 || (i == s - 1 && !merges) || i == s || !vertex(i).specular; };
   const auto from_light = [&](int i) -> double {
     if (i == 0) return path.begun;
     if (i < s) return path.light[i].forward;
@@ -28,19 +35,38 @@ float bidirectional_weight(const ConnectedPath& path, Heuristic heuristic) {
   };
   const auto raised = [&](double ratio) { return heuristic == Heuristic::balance ? ratio : ratio * ratio; };
 
-  double sum = 1, ratio = 1 / first(s);
+  const auto mergeable = [&](int i) {
+    return path.merging > 0 && i > 0 && i < last && vertex(i).on_surface() && connectable(i);
+  };
+  const auto merged = [&](double ratio, int i) { return mergeable(i) ? raised(ratio * path.merging * from_light(i)) : 0; };
+
+  double sum = possible(s) || !merges ? 1 : 0, ratio = 1 / first(s);
+  const double here = merged(ratio, s);
   for (int j = s; j < last; ++j) {
     ratio *= step(j);
     if (!(ratio > 0)) break;
     if (possible(j + 1)) sum += raised(ratio * first(j + 1));
+    sum += merged(ratio, j + 1);
   }
   ratio = 1 / first(s);
   for (int j = s - 1; j >= 0; --j) {
     ratio /= step(j);
     if (!(ratio > 0) || !std::isfinite(ratio)) break;
     if (possible(j)) sum += raised(ratio * first(j));
+    sum += merged(ratio, j);
   }
-  return float(1 / sum);
+  return {sum + here, here};
+}
+
+}  // namespace
+
+float bidirectional_weight(const ConnectedPath& path, Heuristic heuristic) {
+  return float(1 / strategies(path, heuristic, false).all);
+}
+
+float merging_weight(const ConnectedPath& path, Heuristic heuristic) {
+  const Sum sum = strategies(path, heuristic, true);
+  return float(sum.merged_here / sum.all);
 }
 
 }  // namespace etendue

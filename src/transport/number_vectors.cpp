@@ -1,6 +1,10 @@
 #include "etendue/transport/number_vectors.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "etendue/core/error.h"
 
 namespace etendue {
 
@@ -71,6 +75,65 @@ float MutatedNumbers::number(SampleKey key, std::uint32_t dimension) const {
   }
   c.changed = iteration_;
   return c.value;
+}
+
+namespace {
+
+template <class T>
+void append(std::vector<std::byte>& to, const T& value) {
+  const auto bytes = std::as_bytes(std::span(&value, 1));
+  to.insert(to.end(), bytes.begin(), bytes.end());
+}
+
+template <class T>
+void take(std::span<const std::byte>& from, T& value) {
+  if (from.size() < sizeof value) throw Error("the state of a chain ends too early");
+  std::memcpy(&value, from.data(), sizeof value);
+  from = from.subspan(sizeof value);
+}
+
+}  // namespace
+
+void MutatedNumbers::save(std::vector<std::byte>& to) const {
+  append(to, seed_);
+  append(to, iteration_);
+  append(to, last_large_);
+  append(to, drawn_);
+  std::vector<std::uint64_t> names;
+  for (const auto& [name, walk] : walks_) names.push_back(name);
+  std::ranges::sort(names);
+  append(to, std::uint64_t(names.size()));
+  for (const std::uint64_t name : names) {
+    const std::vector<Coordinate>& walk = walks_.at(name);
+    append(to, name);
+    append(to, std::uint64_t(walk.size()));
+    for (const Coordinate& c : walk) {
+      append(to, c.value);
+      append(to, c.changed);
+    }
+  }
+}
+
+void MutatedNumbers::load(std::span<const std::byte>& from) {
+  MutatedNumbers read(0, deviation_);
+  take(from, read.seed_);
+  take(from, read.iteration_);
+  take(from, read.last_large_);
+  take(from, read.drawn_);
+  std::uint64_t walks = 0, size = 0, name = 0;
+  take(from, walks);
+  for (; walks > 0; --walks) {
+    take(from, name);
+    take(from, size);
+    if (size > from.size()) throw Error("the state of a chain ends too early");
+    std::vector<Coordinate>& walk = read.walks_[name];
+    walk.resize(size_t(size));
+    for (Coordinate& c : walk) {
+      take(from, c.value);
+      take(from, c.changed);
+    }
+  }
+  *this = std::move(read);
 }
 
 Point2 MutatedNumbers::pair(SampleKey key, std::uint32_t dimension) const {

@@ -1,5 +1,5 @@
 #pragma once
-// Image: plain pixels with named channels. What is developed from an ImageBuffer, toned, written and compared.
+// Image: plain pixels with named channels. What is developed from a Film, toned, written and compared.
 
 #include <cstddef>
 #include <map>

@@ -14,6 +14,8 @@ namespace etendue {
 
 class ClassInfo;
 
+/// Parts are prepared by one thread, and then used by many at once: after `prepare`, const functions must not change anything
+/// that others see, and must give the same for the same arguments, or pictures would depend on threads.
 class Component {
  public:
   virtual ~Component();
@@ -35,8 +37,8 @@ class Component {
   /// edit. May throw an Error; `fail` throws one with the place where a member was written.
   virtual void prepare() {}
   /// Called instead of `prepare` after an edit that left alone all that members of Effect::rebuild say, here and in the parts
-  /// which such members hold: a colour, not a shape. By default `prepare`. What takes long and depends on those members only can
-  /// be kept.
+  /// which such members hold: a colour, not a shape. By default `prepare`. What takes long and depends on those members only
+  /// can be kept.
   virtual void prepare_again() { prepare(); }
 
   /// Where a component and its members were written, and the name it was given there. Absent for one made in code.

@@ -49,21 +49,22 @@ struct FeatureCount {
 /// Begun, filled and merged into a Film (film.h), again and again.
 class ImageTile {
  public:
-  /// Prepares for samples that fall into an area; keeps its memory. Tiles of one step and block are summed as they come; blocks
-  /// of a step are steps of their own for the sums, so that a crop, whose passes are many of those of the whole picture, has
-  /// the sums of the whole picture.
+  /// Prepares for samples that fall into an area (empty: for splats alone); keeps its memory. `block`: 0, but for the default
+  /// step of camera paths. (A step of a crop covers many steps of the whole picture; they are told apart as blocks and summed
+  /// one after the other, so that its pixels are those of the whole picture to the bit.)
   void begin(const ImageBuffer&, const PixelArea&, std::uint32_t block = 0);
   /// From now on keeps the n samples that brought most light.
   void keep_largest(size_t n) { largest_wanted_ = n; }
 
   /// Adds a sample at a film point (pixels; centres at half-integers), in the pixel (px, py) it belongs to. Bad values
   /// are noted and count as zero.
-  /// `weight` says for how many samples it counts, beside the filter.
+  /// `weight` says for how many samples it counts, beside the filter: a pixel is sum f weight value / sum f weight.
   /// `by_length`, when given, holds the parts of the value by path length, for `ImageBuffer::path_lengths`.
   void contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, float weight = 1,
                   std::span<const Spectrum> by_length = {});
-  /// Adds light that did not come through a pixel of its own (light tracing): what one path, of as many as there are
-  /// samples, brings to the mean radiance over the whole picture. May lie anywhere in the picture. (px, py) and sample say
+  /// Adds light that did not come through a pixel of its own (light tracing): what one path brings to the mean radiance over
+  /// the whole picture. To a pixel it brings f value W H / N, with f the filter there, W H the pixels of the whole picture, of
+  /// a crop too, and N all the paths that were counted (count_path). May lie anywhere in the picture. (px, py) and sample say
   /// which sample brought it (those of one sample come one after the other), length how many segments its path had.
   void splat(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, int length);
   /// The auxiliary values of a sample, when the picture wants any.

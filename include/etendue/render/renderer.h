@@ -46,9 +46,11 @@ class Renderer : public Component {
   /// follows each ray by itself.
   virtual Spectrum radiance(const RenderContext&, const Ray&, SampleContext&) const;
 
-  /// How many samples of each pixel a step takes; `usual` is what fits the picture's size. Must always be the same.
+  /// How many samples of each pixel a step takes; `usual` is what fits the picture's size. A function of that and the members
+  /// alone.
   virtual std::uint32_t samples_per_step(std::uint32_t usual) const { return usual; }
-  /// Whether a step needs those before it: then no part of a render can be made by itself.
+  /// Whether a step needs those before it: then no part of a render can be made by itself (RenderSettings::steps and
+  /// Render::add refuse it), and a replay renders all steps before.
   virtual bool steps_depend() const { return false; }
   virtual Expectation expectation() const { return Expectation::unbiased; }
   /// Whether its samples bring light to other places of the film than their own (SampleContext::splat).

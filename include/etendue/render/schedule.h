@@ -17,7 +17,8 @@ class Schedule {
 
   /// Runs `work(item, tile, arena)` for items 0 … count-1 on all threads and adds the tiles to the film, in the order of items.
   /// Work begins its tile (ImageTile::begin; an empty area for splats alone) and counts its paths. An item should take some
-  /// milliseconds. A step may do this several times. What work throws ends the step, which then leaves nothing.
+  /// milliseconds; its arena is one thread's, and a path empties it (RenderProcess::path). A step may do this several times.
+  /// What work throws ends the step, which then leaves nothing.
   template <class Work>
   void film(std::uint64_t count, Work&& work) {
     using W = std::remove_reference_t<Work>;
@@ -28,7 +29,8 @@ class Schedule {
   }
 
   /// Runs `work(item, results, arena)`, which appends to its own std::vector<T>, and returns all that came, in the order of
-  /// items: photons, training samples.
+  /// items: photons, training samples. After an abort items are missing: ask `aborted()` before counting on their number. The
+  /// arena is emptied after each item.
   template <class T, class Work>
   std::vector<T> collect(std::uint64_t count, Work&& work) {
     struct Collection final : Results {

@@ -9,6 +9,11 @@
 //     w_s = 1 / sum_j (p_j / p_s)^beta,   beta = 1 (balance) or 2 (power)            (Veach 1997, section 10.2).
 // Strategy 1 does not take x_0 from a walk but samples a luminaire as seen from x_1, with a density D_0 of its own: in p_1,
 // and there alone, D_0 stands for L_0.
+// Merging (photon mapping as a strategy of the same path: Georgiev et al. 2012, "Light transport simulation with vertex
+// connection and merging"; Hachisuka et al. 2012): both walks come to x_i, the one from the camera exactly, the other within a
+// radius r of it. Of n light walks the density is
+//     m_i = p_i n pi r^2 L_i,   1 <= i < k,
+// as strategy i with the photon's place on top, and L_0 even for i = 1: the photon's walk began there.
 // A strategy that would connect at a vertex whose scattering is specular, or meet a luminaire without extent, cannot
 // happen and is left out, as is meeting the lens.
 
@@ -31,8 +36,12 @@ struct ConnectedPath {
   float direct = 0;                    ///< D_0
   float begun = 0;                     ///< L_0
   bool luminaire_can_be_met = true;
+  double merging = 0;  ///< n pi r^2 [m^2]; 0: nothing is merged
 };
 
+/// Of the connection of light[s-1] and camera[t-1].
 float bidirectional_weight(const ConnectedPath&, Heuristic);
+/// Of merging a photon with camera[t-1], where light[0 … s-1] are the vertices the photon came by, without itself.
+float merging_weight(const ConnectedPath&, Heuristic);
 
 }  // namespace etendue

@@ -5,7 +5,18 @@
 //     L = sum_k T_k [ L_e(x_k) + direct(x_k) ],
 // L_e being what x_k sends to x_{k-1} by itself, and direct(x_k) what it scatters there of light that comes straight from
 // luminaires (Kajiya 1986). This class goes from vertex to vertex and adds what it is given; which part of the two to take, by
-// what weights, and when to stop is the algorithm's.
+// what weights, and when to stop is the algorithm's:
+//
+//     CameraWalk walk(scene, sample, ray, longest);
+//     while (walk.next_vertex(weight) && !walk.at_end()) {
+//       const NumberStream::Bounce u = walk.next_bounce();
+//       walk.add_direct(lights, u, heuristic);
+//       if (walk.scatter(u) && enough) walk.end();
+//     }
+//     return walk.radiance;
+//
+// Light of add_direct waits for its shadow ray, which is asked together with the next segment: next_vertex must be called once
+// more (after `end`, too) before `radiance` is whole.
 
 #include "etendue/transport/direct_light.h"
 #include "etendue/transport/visibility.h"

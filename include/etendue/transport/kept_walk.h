@@ -27,10 +27,10 @@ struct KeptVertex : Vertex {
   bool infinite = false;           ///< a luminaire at infinity, or an escaped ray
   bool single = false;             ///< the throughput holds the hero only
   bool parallel = false;           ///< of a camera whose rays are parallel: its directions are given by places, not angles
-  Spectrum throughput;             ///< light or importance that arrives, over the walk's density
+  Spectrum throughput;             ///< what arrives, over the walk's density: of light flux [W/nm], of the camera 1 at first
   float extinction = 0;            ///< mean over wavelengths [1/m], in a medium
   float chance = 1;                ///< of getting along the edge from the vertex before
-  float forward = 0, reverse = 0;  ///< densities from the walk's side and from the other
+  float forward = 0, reverse = 0;  ///< densities from the walk's side, and from the other: had a walk come here from the next
 
   /// Whether a path that ends here can be connected to another: by what is not specular, whatever the walk chose.
   bool connectable() const { return on_surface() ? scatters_smoothly() : kind != Kind::escape; }
@@ -57,7 +57,9 @@ template <bool clear>
 class Walk;
 
 /// Fills a kept vertex with what a walk has come to, for algorithms that let walks grow by themselves; set `keeps` of the walk.
-/// `before` is the vertex before, and `density` that of the direction it was left in [1/sr], 1 after a specular lobe.
+/// `before` is the vertex before, and `density` that of the direction it was left in [1/sr], 1 after a specular lobe (where
+/// Walk::direction_density is a probability). `specular` and `reverse` are known when the walk has gone on: see
+/// walk_from_camera.
 void keep(const Walk<false>&, const KeptVertex& before, float density, const LightFront&, KeptVertex&);
 
 /// The walk that begins with a camera ray, which is the sample's. An escaped one ends with a vertex of kind `escape`.

@@ -1,6 +1,8 @@
 #pragma once
 // Numbers that are remembered, and changed: for algorithms that walk through the space of paths.
 
+#include <cstddef>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -28,7 +30,8 @@ class RecordedNumbers final : public NumberSource {
 /// mutation strategy for the Metropolis light transport algorithm"). `large_step` and `small_step` propose another state, which
 /// the source then gives; `accept` keeps it, `reject` goes back. Both proposals are symmetric: a large step draws all numbers
 /// anew, a small one moves each by a normal deviate, on the circle of [0, 1). Numbers that a path did not ask for in some
-/// iterations are moved as often as they were left out, when they are asked for again.
+/// iterations are moved as often as they were left out, when they are asked for again. One for each chain, and one thread at a
+/// time: asking draws. SampleKey::sample does not count, so that one key serves the whole chain.
 class MutatedNumbers final : public NumberSource {
  public:
   /// `deviation`: of a small step.
@@ -41,6 +44,11 @@ class MutatedNumbers final : public NumberSource {
 
   float number(SampleKey, std::uint32_t dimension) const override;
   Point2 pair(SampleKey, std::uint32_t dimension) const override;
+
+  /// The state between two proposals, for RenderProcess::save_state: appends to `to`; the same states give the same bytes.
+  void save(std::vector<std::byte>& to) const;
+  /// Takes it over from the beginning of `from`, and takes that off. Throws Error when it is none.
+  void load(std::span<const std::byte>& from);
 
  private:
   struct Coordinate {

@@ -26,7 +26,8 @@ struct RenderContext {
 /// Light that a sample brings to another place of the film than its own: from a path that began at a luminaire.
 struct Splat {
   Point2 film;
-  Spectrum value;  ///< the estimate of radiance on the film, for one path over the whole film (importance integrates to 1)
+  Spectrum value;  ///< what one path brings to the mean radiance over the whole film, as importance integrates to 1:
+                   ///< ImageTile::splat
   Wavelengths wavelengths;
   int length = 0;  ///< segments of the path
 };
@@ -35,10 +36,18 @@ struct Splat {
 struct SampleContext {
   Wavelengths& wavelengths;  ///< may lose its secondary ones along the path
   NumberStream numbers;
-  Arena& arena;  ///< emptied after the sample
+  Arena& arena;  ///< emptied after the sample; a CameraWalk takes back at each vertex what was made since it began
   PathObserver observe = {};
   std::vector<Splat>* splats = nullptr;
   const std::atomic<bool>* abort = nullptr;  ///< whether nobody waits for the sample any more; null: somebody does
+  void* records = nullptr;                   ///< see record()
+
+  /// Notes something for the algorithm's own process, which called RenderProcess::film_paths<T>: a training sample, a
+  /// reservoir. Nothing happens when nobody collects: in a replay.
+  template <class T>
+  void record(T&& one) {
+    if (records) static_cast<std::vector<std::remove_cvref_t<T>>*>(records)->push_back(std::forward<T>(one));
+  }
 
   /// Whether the sample may be given up, with any result: it will not be looked at. A path or a tree of rays can take hours
   /// (between white walls, with a large `max_depth`), so whatever goes round in one asks now and then.

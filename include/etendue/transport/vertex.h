@@ -48,8 +48,9 @@ inline float scattering_density(const Vertex& v, const Vector3& out, const Vecto
 }
 
 /// A direction that somebody else chose, with this density [1/sr], as a walk goes on in it (Walk::leave): a guide's, a map's.
-/// Smooth lobes alone scatter there, so a guide must leave some chance to `sample_direction`, which knows of the others. Empty:
-/// nothing is scattered that way.
+/// Smooth lobes alone scatter there, so a guide must leave some chance to `sample_direction`, which knows of the others.
+/// `density` is that of the whole mixture; what `sample_direction` gives is to be weighted by (its density / the mixture's) if
+/// smooth, and over its share if specular. Empty: nothing is scattered that way.
 inline std::optional<ScatterSample> scattered_towards(const Vertex& v, const Vector3& in, float density, Transport transport) {
   const ScatterValue f = scattering(v, v.out, in, transport);
   if (!(density > 0) || f.value.black()) return {};

@@ -29,7 +29,8 @@ struct NoListener {
 
 // Its functions are inlined where they are called, once in each algorithm, so that its state stays in registers: measured, a
 // tenth of the time of simple scenes.
-/// `clear`: the scene has neither media nor boundaries that light passes through; what deals with them is left out.
+/// `clear`: the scene has neither media nor boundaries that light passes through (Scene::has_interiors, has_null_surfaces);
+/// what deals with them is left out. False is always right.
 template <bool clear>
 class Walk {
  public:
@@ -46,6 +47,8 @@ class Walk {
         begun(begun_),
         tracks_(!clear && scene_.has_interiors()),
         null_surfaces_(!clear && scene_.has_null_surfaces()) {}
+  Walk(const Walk&) = delete;  // its vertex points to its media
+  Walk& operator=(const Walk&) = delete;
 
   const Scene& scene;
   SampleContext& sample;
@@ -56,7 +59,7 @@ class Walk {
   const int longest;
   const Transport transport;
 
-  Vertex vertex;                ///< the last
+  Vertex vertex;                ///< the last. Its `media` are the walk's own, unless it `keeps`: theirs until `leave`
   int length = 0;               ///< segments so far
   float direction_density = 0;  ///< [1/sr] of the last segment's direction, as scattering chose it
   bool specular = true;         ///< whether a specular lobe chose it, or nobody: it is the first

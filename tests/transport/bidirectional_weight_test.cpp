@@ -1,0 +1,113 @@
+// Weights of the ways to make one path: whatever its densities are, they sum to 1, and stand in the proportions of the
+// densities.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "etendue/transport/bidirectional_weight.h"
+
+namespace etendue {
+namespace {
+
+/// A path x_0 (on a luminaire) … x_last (the lens) with made-up densities, as each strategy sees it.
+struct MadeUp {
+  int last;
+  std::vector<float> from_light, from_camera;
+  std::vector<bool> specular;  ///< scattering at x_i is
+  float direct;
+  double merging;
+
+  MadeUp(std::mt19937& random, int length, double merged, double mirrors) : last(length), merging(merged) {
+    std::uniform_real_distribution<float> u(0.1f, 3);
+    std::bernoulli_distribution mirror(mirrors);
+    for (int i = 0; i <= last; ++i) {
+      from_light.push_back(u(random));
+      from_camera.push_back(u(random));
+      specular.push_back(i > 0 && i < last && mirror(random));
+    }
+    direct = u(random);
+  }
+
+  /// Product of densities of strategy j; `of_walk`: x_0 as a walk begins, in strategy 1 as well.
+  double density(int j, bool of_walk = false) const {
+    double p = 1;
+    for (int i = 0; i <= last; ++i)
+      p *= double(i >= j ? from_camera[size_t(i)] : (i == 0 && j == 1 && !of_walk) ? direct : from_light[size_t(i)]);
+    return p;
+  }
+  double merged_density(int i) const { return density(i, true) * merging * double(from_light[size_t(i)]); }
+  bool connects(int j) const {
+    if (j == 0) return true;
+    return !specular[size_t(j - 1)] && !specular[size_t(j)] && last > 1;
+  }
+
+  float weight(int s, bool merge, Heuristic heuristic) const {
+    std::vector<KeptVertex> light, camera;
+    for (int i = 0; i < s; ++i) light.push_back(vertex(i, from_light[size_t(i)], from_camera[size_t(i)]));
+    for (int i = last; i >= s; --i) camera.push_back(vertex(i, from_camera[size_t(i)], from_light[size_t(i)]));
+    // What a connection changes stands wrong in the walks themselves: nobody may look at it there. Where walks end or connect
+    // they may have gone on by a mirror as well as not.
+    if (!merge && s > 0) light.back().specular = !light.back().specular;
+    camera.back().specular = !camera.back().specular;
+    for (std::vector<KeptVertex>* walk : {&light, &camera})
+      for (size_t k = 0; k < 2 && k < walk->size(); ++k) (*walk)[walk->size() - 1 - k].reverse = -1;
+    const auto at = [](const std::vector<float>& list, int i) {
+      return i >= 0 && size_t(i) < list.size() ? list[size_t(i)] : 0;
+    };
+    ConnectedPath path{light.data(),
+                       s,
+                       camera.data(),
+                       last + 1 - s,
+                       at(from_camera, s - 1),
+                       at(from_camera, s - 2),
+                       at(from_light, s),
+                       at(from_light, s + 1),
+                       direct,
+                       from_light[0],
+                       true,
+                       merging};
+    return merge ? merging_weight(path, heuristic) : bidirectional_weight(path, heuristic);
+  }
+  KeptVertex vertex(int i, float forward, float reverse) const {
+    KeptVertex v;
+    v.kind = i == 0 ? Vertex::Kind::luminaire : i == last ? Vertex::Kind::camera : Vertex::Kind::surface;
+    v.specular = specular[size_t(i)];
+    v.forward = forward;
+    v.reverse = reverse;
+    return v;
+  }
+};
+
+TEST(BidirectionalWeight, of_all_strategies_sum_to_one_in_proportion_to_their_densities) {
+  std::mt19937 random(3);
+  for (const Heuristic heuristic : {Heuristic::balance, Heuristic::power})
+    for (const double merging : {0.0, 0.7, 40.0})
+      for (int n = 0; n < 400; ++n) {
+        const MadeUp path(random, 2 + n % 6, merging, n % 3 == 0 ? 0.4 : 0);
+        const double power = heuristic == Heuristic::balance ? 1 : 2;
+        double sum = 0, all = 0;
+        std::vector<std::pair<double, double>> known;  // weight, density
+        // The last strategy, all from the luminaire, would have to meet the lens.
+        for (int s = 0; s <= path.last; ++s)
+          if (path.connects(s)) known.emplace_back(path.weight(s, false, heuristic), path.density(s));
+        for (int i = 1; merging > 0 && i < path.last; ++i)
+          if (!path.specular[size_t(i)]) known.emplace_back(path.weight(i, true, heuristic), path.merged_density(i));
+        for (const auto& [weight, density] : known) {
+          sum += weight;
+          all += std::pow(density, power);
+        }
+        EXPECT_NEAR(sum, 1, 1e-5);
+        for (const auto& [weight, density] : known) EXPECT_NEAR(weight, std::pow(density, power) / all, 1e-5);
+      }
+}
+
+TEST(BidirectionalWeight, without_merging_nothing_is_merged) {
+  std::mt19937 random(4);
+  const MadeUp path(random, 4, 0, 0);
+  EXPECT_EQ(path.weight(2, true, Heuristic::power), 0);
+}
+
+}  // namespace
+}  // namespace etendue
