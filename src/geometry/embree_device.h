@@ -60,7 +60,8 @@ inline void set_embree_ray(RTCRay& to, const Ray& ray, const EmbreeClock& clock 
   to.org_x = ray.origin.x;
   to.org_y = ray.origin.y;
   to.org_z = ray.origin.z;
-  to.tnear = 0;
+  // A ray that leaves a plane through the origin of coordinates begins exactly on it: at 0 Embree would find that again.
+  to.tnear = std::numeric_limits<float>::min();
   to.dir_x = ray.direction.x;
   to.dir_y = ray.direction.y;
   to.dir_z = ray.direction.z;
