@@ -8,6 +8,7 @@
 #include "etendue/core/error.h"
 #include "exr_header.h"
 #include "files/regular_file.h"
+#include "png_chunks.h"
 #include "refuse.h"
 
 namespace etendue {
@@ -95,6 +96,7 @@ std::unique_ptr<OIIO::ImageInput> open_checked(const std::string& path) {
   RegularFile file(path);
   const char* const reader = reader_for(file, path);
   check_exr_header(path);
+  check_png_chunks(path);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
   if (!input) refuse(OIIO::geterror());
   OIIO::ImageSpec ignored;

@@ -185,6 +185,42 @@ TEST_F(HostileFiles, little_images_that_claim_much_are_refused_for_what_they_cla
     }
 }
 
+// A PNG of 73 bytes whose text claims 2 GB, which were taken and filled before its end was noticed.
+TEST_F(HostileFiles, a_png_holds_what_its_pieces_claim) {
+  const std::string header("\0\0\0\rIHDR\0\0\0\x9\0\0\0\x7\x8\x6\0\0\0\xda\x9b\x67\x60", 25);
+  const std::string png = "\x89PNG\r\n\x1a\n" + header + "\x7f\xff\xff\xfe" + "tEXtComment" + std::string(20, '\0');
+  folder.write("text.png", png);
+  EXPECT_EQ(run({"image", "info", "text.png"}, "2000000"), 2) << err;
+  EXPECT_TRUE(said("text.png") && said("claims 2147483646 bytes")) << err;
+}
+
+// A TIFF so near the end of whole numbers that its place and its width add up to none.
+TEST_F(HostileFiles, windows_of_pictures_lie_where_they_can_be_counted) {
+  std::string tiff("II*\0\x8\0\0\0", 8);
+  const auto add = [&](std::uint32_t number, int bytes) {
+    for (int i = 0; i < bytes; ++i) tiff += char(number >> 8 * i);
+  };
+  const std::uint32_t entries[][3] = {{256, 4, 200}, {257, 4, 1}, {258, 3, 8},   {259, 3, 1},   {262, 3, 1},  {273, 4, 166},
+                                      {277, 3, 1},   {278, 4, 1}, {279, 4, 200}, {286, 5, 150}, {287, 5, 158}};
+  add(std::size(entries), 2);
+  for (const auto& [tag, type, value] : entries) {  // tag, kind of number, how many, the number or where it is
+    add(tag, 2);
+    add(type, 2);
+    add(1, 4);
+    add(value, 4);
+  }
+  add(0, 4);
+  tiff.resize(150);
+  for (const std::uint32_t number : {2147483520u, 1u, 0u, 1u}) add(number, 4);  // x and y, as fractions
+  folder.write("far.tif", tiff + std::string(200, '\x7f'));
+  try {
+    read_image(folder / "far.tif");
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("its windows reach to pixel 2147483520"), std::string::npos) << e.what();
+  }
+}
+
 // The image library reads 28 formats, and its readers of rare ones crash or do not end with damaged files. How a file begins
 // says which reader gets it, not its name, and no other one tries.
 TEST_F(HostileFiles, images_of_formats_that_are_not_read_reach_no_reader) {
