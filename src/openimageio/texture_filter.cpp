@@ -146,10 +146,10 @@ Ellipse ellipse_of(const UvFootprint& f, float width, float height) {
 /// The level that blurs by a circle of so many texels.
 float detail_of(float width) { return 0.5f * std::log2(1 + square(width) / 4); }
 
-/// Coordinates near the image, where whole numbers can count texels.
-Point2 near(Point2 at, Wrap wrap) {
+/// Coordinates near the image, where whole numbers can count texels; its longer side has so many.
+Point2 near(Point2 at, Wrap wrap, int texels) {
   if (!(std::isfinite(at.x) && std::isfinite(at.y))) return {NAN, NAN};
-  constexpr float far = 1000;
+  const float far = std::min(1000.0f, 1e9f / float(texels));
   if (wrap == Wrap::repeat) return {at.x - std::floor(at.x), at.y - std::floor(at.y)};
   if (wrap == Wrap::mirror) return {at.x - 2 * std::floor(at.x / 2), at.y - 2 * std::floor(at.y / 2)};
   return {clamp(at.x, -far, far), clamp(at.y, -far, far)};
@@ -159,7 +159,7 @@ Point2 near(Point2 at, Wrap wrap) {
 
 void CachedTexture::nearest(Point2 at, Wrap wrap, float* out) const {
   std::fill_n(out, channels_, 0.0f);
-  at = near(at, wrap);
+  at = near(at, wrap, std::max(levels_[0].width, levels_[0].height));
   if (!(at.x == at.x)) return;
   TexelReader reader(*this, 0, wrap, out);
   reader.add(int(std::floor(at.x * reader.width())), int(std::floor((1 - at.y) * reader.height())), 1.0f);
@@ -167,7 +167,7 @@ void CachedTexture::nearest(Point2 at, Wrap wrap, float* out) const {
 
 void CachedTexture::bilinear(Point2 at, Wrap wrap, float* out) const {
   std::fill_n(out, channels_, 0.0f);
-  at = near(at, wrap);
+  at = near(at, wrap, std::max(levels_[0].width, levels_[0].height));
   if (!(at.x == at.x)) return;
   TexelReader reader(*this, 0, wrap, out);
   reader.add_between(at.x * reader.width() - 0.5f, (1 - at.y) * reader.height() - 0.5f, 1);
@@ -189,7 +189,7 @@ void CachedTexture::mean(Point2 at, const UvFootprint& f, Wrap wrap, float* out)
 
 void CachedTexture::line(Point2 at, Vector2 half_line, float length, float detail, Wrap wrap, float* out) const {
   std::fill_n(out, channels_, 0.0f);
-  at = near(at, wrap);
+  at = near(at, wrap, std::max(levels_[0].width, levels_[0].height));
   if (!(at.x == at.x)) return;
   const size_t top = levels_.size() - 1;
   const auto add_level = [&](size_t level, float size, float share) {

@@ -57,6 +57,7 @@ const std::multimap<std::string, std::string> never_tried = {
     {"LightTracer", "the value of a plane under a distant light is the known one"},  // all noise, with few samples
     {"CosineLobeEmission", "power is the integral of radiance, on a Point"},         // an amount of a black radiance was drawn
     {"CosineLobeEmission", "power is the integral of radiance, on a Environment"},
+    {"DiffuseEmission", "power is the integral of radiance, on a Environment"},  // intensities were drawn, which it has none of
     {"ProjectorEmission", "power is the integral of radiance, on a Rectangle"},  // it shines backwards
     {"ProjectorEmission", "power is the integral of radiance, on a Environment"},
     {"IesEmission", "power is the integral of radiance, on a Environment"},

@@ -14,7 +14,7 @@ processor's time, and five times as long by the clock, as other programs may be 
     odd       an exit status that is none of 0, 1, 2, or "unexpected failure"
 
 Exit status: 0 when nothing is reported. For a program with sanitizers give --sanitized: those need an address space without limit,
-so that its use is only looked at afterwards.
+so that the limit is on what it may write to (with --server), or on what it uses at a time.
 """
 import argparse
 import collections
@@ -24,10 +24,12 @@ import pathlib
 import random
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 
 import mutations
 import seeds
@@ -37,21 +39,50 @@ SECONDS = 20
 THREAD = threading.local()
 
 
-def run(arguments, command, folder):
-    """(status, text, processor's seconds, peak memory [bytes]); status None: it took too long."""
-    text = folder / "said"
+class Server:
+    """Runs commands one after another; see server.cpp."""
+
+    def __init__(self, arguments):
+        environment = dict(arguments.environment, LD_PRELOAD=arguments.server, OPENIMAGEIO_THREADS="1", OPENBLAS_NUM_THREADS="1",
+                           ETENDUE_SERVER_LOADS=str(pathlib.Path(arguments.program).parent / "libetendue_openimageio.so"))
+        self.memory = MEMORY if arguments.sanitized else 0
+        self.process = subprocess.Popen([arguments.program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
+
+    def run(self, seconds, command, folder, text):
+        """(status, processor's seconds, peak memory [bytes])"""
+        self.process.stdin.write("\x1f".join([str(folder), str(text), str(self.memory), *command]) + "\n")
+        self.process.stdin.flush()
+        child = int(self.process.stdout.readline().split()[1])
+        timer = threading.Timer(5 * seconds, os.kill, (child, signal.SIGKILL))
+        timer.start()
+        answer = self.process.stdout.readline().split()
+        timer.cancel()
+        return int(answer[1]), float(answer[3]), int(answer[5]) * 1024
+
+
+def run_anew(arguments, command, folder, text):
     with open(text, "wb") as out:
         process = subprocess.Popen([arguments.program, *command], cwd=folder, stdin=subprocess.DEVNULL, stdout=out, stderr=out,
                                    env=arguments.environment)
         timer = threading.Timer(5 * arguments.seconds, process.kill)
         timer.start()
         _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        seconds = usage.ru_utime + usage.ru_stime
-        late = not timer.is_alive() or seconds > arguments.seconds
         timer.cancel()
-    said = text.read_bytes().decode(errors="replace")
-    return None if late else process.returncode, said, seconds, usage.ru_maxrss * 1024
+        process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+
+
+def run(arguments, command, folder):
+    """(status, text, processor's seconds, peak memory [bytes]); status None: it took too long."""
+    text, begin = folder / "said", time.monotonic()
+    if arguments.server:
+        if not hasattr(THREAD, "server"):
+            THREAD.server = Server(arguments)
+        status, seconds, memory = THREAD.server.run(arguments.seconds, command, folder, text)
+    else:
+        status, seconds, memory = run_anew(arguments, command, folder, text)
+    late = seconds > arguments.seconds or time.monotonic() - begin > 5 * arguments.seconds
+    return None if late else status, text.read_bytes().decode(errors="replace"), seconds, memory
 
 
 def verdict(status, said, memory, seed, data, limit):
@@ -89,7 +120,9 @@ def attack(arguments, all_seeds, number):
               f"{seconds:.1f} s, {memory >> 20} MB\n    " + "\n    ".join(said.strip().splitlines()[-12:])[:2000], flush=True)
         if arguments.keep:
             kept = pathlib.Path(arguments.keep) / f"{number}-{problem}"
-            shutil.copytree(folder, kept, dirs_exist_ok=True)
+            kept.mkdir(parents=True, exist_ok=True)
+            for name in (seed.name, *seed.beside, "said"):
+                shutil.copy(folder / name, kept)
     return seed.format, problem, status, seconds, memory
 
 
@@ -101,13 +134,15 @@ def main():
     parser.add_argument("--first", type=int, default=0, help="the first number")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", type=int)
-    parser.add_argument("--format", help="only formats that begin so")
+    parser.add_argument("--format", help="only formats that begin so, or so: some, with commas between")
     parser.add_argument("--keep", help="a folder for the inputs that something is reported of")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--seconds", type=float, default=SECONDS)
     parser.add_argument("--sanitized", action="store_true")
+    parser.add_argument("--server", help="libhostile_server.so: the program is started once, which is ten times as fast")
     arguments = parser.parse_args()
     arguments.program = str(pathlib.Path(arguments.program).resolve())
+    arguments.server = arguments.server and str(pathlib.Path(arguments.server).resolve())
     arguments.memory = 2 << 30
     arguments.environment = dict(os.environ)
     if arguments.sanitized:
@@ -129,7 +164,7 @@ def main():
                     wrong += 1
                     print(f"a right file is refused: {seed.format}: {' '.join(command)}: status {status}\n    {said.strip()}")
         if arguments.format:
-            all_seeds = [s for s in all_seeds if s.format.startswith(arguments.format)]
+            all_seeds = [s for s in all_seeds if s.format.startswith(tuple(arguments.format.split(",")))]
         numbers = [arguments.only] if arguments.only is not None else range(arguments.first, arguments.first + arguments.count)
         with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
             results = list(pool.map(lambda n: attack(arguments, all_seeds, n), numbers))

@@ -3,12 +3,12 @@
 `seeds(program, plugin, folder)` gives a list of Seed. A case puts damaged bytes into a file named `Seed.name`, beside the files
 of `Seed.beside`, and runs the program with one of `Seed.commands` in that folder.
 """
-import base64
 import dataclasses
 import pathlib
 import struct
 import subprocess
-import zlib
+
+import seed_images
 
 
 @dataclasses.dataclass
@@ -36,123 +36,10 @@ CHECK = ["check", "scene.etd"]
 # ---- images ---------------------------------------------------------------------------------------------------------------
 
 
-def exr(compression, tiles=None, width=12, height=20, channels=("B", "G", "R")):
-    def attribute(name, kind, value):
-        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
-
-    listed = b"".join(c.encode() + b"\0" + struct.pack("<iB3xii", 1, 0, 1, 1) for c in channels) + b"\0"
-    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    header = struct.pack("<II", 20000630, 2 | (0x200 if tiles else 0))
-    header += attribute("channels", "chlist", listed)
-    header += attribute("compression", "compression", bytes([compression]))
-    header += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
-    header += attribute("lineOrder", "lineOrder", b"\0")
-    header += attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
-    header += attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0))
-    header += attribute("screenWindowWidth", "float", struct.pack("<f", 1))
-    if tiles:
-        header += attribute("tiles", "tiledesc", struct.pack("<2IB", tiles, tiles, 0))
-    header += b"\0"
-
-    def rows(x0, x1, y0, y1):
-        return b"".join(
-            struct.pack("<e", (x + y + k) / 32) for y in range(y0, y1) for k in range(len(channels)) for x in range(x0, x1)
-        )
-
-    def packed(raw):
-        if compression == 0:
-            return raw
-        even, odd = raw[::2], raw[1::2]  # ZIP: bytes of one place together, then differences
-        mixed = bytearray(even + odd)
-        for i in range(len(mixed) - 1, 0, -1):
-            mixed[i] = (mixed[i] - mixed[i - 1] + 128) % 256
-        small = zlib.compress(bytes(mixed))
-        return small if len(small) < len(raw) else raw
-
-    chunks = []
-    if tiles:
-        for ty in range(0, height, tiles):
-            for tx in range(0, width, tiles):
-                data = packed(rows(tx, min(tx + tiles, width), ty, min(ty + tiles, height)))
-                chunks.append(struct.pack("<5i", tx // tiles, ty // tiles, 0, 0, len(data)) + data)
-    else:
-        step = 16 if compression == 3 else 1
-        for y in range(0, height, step):
-            data = packed(rows(0, width, y, min(y + step, height)))
-            chunks.append(struct.pack("<2i", y, len(data)) + data)
-    at, table = len(header) + 8 * len(chunks), b""
-    for chunk in chunks:
-        table += struct.pack("<Q", at)
-        at += len(chunk)
-    return header + table + b"".join(chunks)
-
-
-def png(depth, kind, width=9, height=7, interlaced=0):
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[kind]
-    row = b"\0" + bytes((37 * i) % 251 for i in range((width * channels * depth + 7) // 8))
-    extra = chunk(b"PLTE", bytes(range(48))) if kind == 3 else b""
-    extra += chunk(b"tEXt", b"transfer\0srgb")
-    header = struct.pack(">2I5B", width, height, depth, kind, 0, 0, interlaced)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + extra + chunk(b"IDAT", zlib.compress(row * height)) + chunk(b"IEND", b"")
-
-
-def hdr(packed, width=16, height=5):
-    text = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=1\n\n-Y %d +X %d\n" % (height, width)
-    pixels = b"".join(bytes([100, 2 * i, 50, 128]) for i in range(width))
-    if not packed:
-        return text + pixels * height
-    row = b"\2\2" + struct.pack(">H", width) + b"".join(bytes([128 + width, 40 + k]) for k in range(4))
-    return text + row * height
-
-
-def tga(packed):
-    header = struct.pack("<3B2HB4H2B", 0, 0, 10 if packed else 2, 0, 0, 0, 0, 0, 8, 6, 24, 0)
-    return header + (bytes([0x87, 10, 20, 30]) * 6 if packed else bytes(i % 256 for i in range(8 * 6 * 3)))
-
-
-def tiff(compression, width=10, height=8):
-    pixels = bytes((7 * i) % 256 for i in range(width * height * 3))
-    data = zlib.compress(pixels) if compression == 8 else pixels
-    entries = [(256, 4, 1, width), (257, 4, 1, height), (258, 3, 3, 0), (259, 3, 1, compression), (262, 3, 1, 2)]
-    entries += [(273, 4, 1, 0), (277, 3, 1, 3), (278, 4, 1, height), (279, 4, 1, len(data))]
-    start = 8 + 2 + 12 * len(entries) + 4
-    values = {258: start, 273: start + 6}
-    table = b"".join(struct.pack("<2H2I", t, k, n, values.get(t, v)) for t, k, n, v in entries)
-    return b"II*\0" + struct.pack("<IH", 8, len(entries)) + table + struct.pack("<I3H", 0, 8, 8, 8) + data
-
-
-JPEG = base64.b64decode(
-    "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABsSFBcUERsXFhceHBsgKEIrKCUlKFE6PTBCYFVlZF9VXVtqeJmBanGQc1tdhbWGkJ6jq62rZ4C8ybqmx5moq6T/2wBD"
-    "ARweHigjKE4rK06kbl1upKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKT/wAARCAAIABADASIAAhEBAxEB/8QAFQABAQAA"
-    "AAAAAAAAAAAAAAAAAAT/xAAXEAEAAwAAAAAAAAAAAAAAAAAAAwVi/8QAFQEBAQAAAAAAAAAAAAAAAAAAAwT/xAAaEQEAAQUAAAAAAAAAAAAAAAACAAEDBDFR"
-    "/9oADAMBAAIRAxEAPwCKGtyuhq8glCqtw8a++z//2Q=="
-)
-
-
 def images():
     # EXR files of the damaged kinds that were once found by chance: each made the program ask for gigabytes.
     found = [(f"exr found {p.stem}", "exr", p.read_bytes()) for p in sorted(pathlib.Path(__file__).parent.glob("*.exr"))]
-    made = [
-        ("exr plain", "exr", exr(0)),
-        ("exr zip", "exr", exr(3)),
-        ("exr tiled", "exr", exr(3, 8)),
-        ("exr channels", "exr", exr(2, None, 5, 3, ("A", "coat.B", "coat.G", "coat.R", "depth.Z"))),
-        ("png rgb", "png", png(8, 2)),
-        ("png grey 16", "png", png(16, 0)),
-        ("png palette", "png", png(4, 3)),
-        ("png alpha", "png", png(8, 6)),
-        ("hdr plain", "hdr", hdr(False)),
-        ("hdr packed", "hdr", hdr(True)),
-        ("tga", "tga", tga(False)),
-        ("tga packed", "tga", tga(True)),
-        ("tiff", "tif", tiff(1)),
-        ("tiff zip", "tif", tiff(8)),
-        ("jpeg", "jpg", JPEG),
-    ]
-    for name, ending, data in made + found:
+    for name, ending, data in list(seed_images.small_images()) + found:
         file = f"input.{ending}"
         texture = scene(f'Sphere {{ shader: Lambertian {{ color: ImageMap {{ file: "{file}" }} }} }}')
         sky = scene(f'Environment {{ emission: EnvironmentEmission {{ file: "{file}" }} }}')
@@ -281,11 +168,22 @@ def tables():
 # ---- descriptions, checkpoints, plugins -----------------------------------------------------------------------------------
 
 
+JSON = rb"""{ "$schema": "etendue.schema.json", "$params": { "grey": 0.5 }, "$names": { "red": "rgb(grey, 0.1, 0.1)" },
+ "class": "Job", "camera": { "class": "PerspectiveCamera", "from": [0, 0, "5 m"], "to": [0, 0, 0] },
+ "image": { "class": "ImageBuffer", "width": 4, "height": 4 }, "renderer": { "class": "PathTracer", "samples": "2 * 2" },
+ "scene": { "class": "BruteForceScene", "objects": [
+  { "class": "Sphere", "shader": { "class": "Lambertian", "color": "red" }, "transform": "translate(0, \u0031, 0)" },
+  { "class": "TriangleMesh", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]] },
+  { "class": "Sphere", "centre": [0, 3, 3], "emission": { "class": "DiffuseEmission", "radiance": [1, 1, 1e0] } } ] } }
+"""
+
+
 def descriptions():
     root = pathlib.Path(__file__).resolve().parents[2]
     # Those whose files lie elsewhere are read as far as that, which the messages then name.
     for path in sorted((root / "tests/fuzz/corpus").glob("*.etd")) + [root / "scenes/cornell_box.etd", root / "scenes/csg.etd"]:
         yield Seed("etd " + path.stem, "scene.etd", path.read_bytes(), [CHECK], {}, True)
+    yield Seed("etd json", "scene.json", JSON, [["check", "scene.json"]], {}, True)
     included = {"scene.etd": scene("Sphere { radius: r }", 'include "input.etd"\n')}
     yield Seed("etd included", "input.etd", b"r = 1 + 2 * sqrt(0.5)\ns = [1, 2, [3, -4]]\n", [CHECK], included, True)
     yield Seed("etd rendered", "scene.etd", scene("Sphere { shader: Plastic {} }, Box { transform: rotate(30, \"y\") }"), [CHECK], {}, True)

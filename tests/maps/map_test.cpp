@@ -83,6 +83,20 @@ TEST(ImageMap, InterpolatesAndWraps) {
   EXPECT_EQ(map("black", "nearest")->scalar(at(1.25f, 0.75f)), 0);
 }
 
+// A thousand times as far out as it is wide, places in texels are beyond what whole numbers count.
+TEST(ImageMap, FarBesideAWideImageIsItsBorder) {
+  std::vector<float> ramp(2'200'000, 0.5f);
+  ramp.front() = 0.25f;
+  ramp.back() = 0.75f;
+  const ImageFile file("wide.exr", {int(ramp.size()), 1, 1, NumberType::single}, ramp);
+  for (const char* const interpolation : {"nearest", "bilinear"}) {
+    const Ref<ObjectMap> map =
+        create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", interpolation}, {"wrap", "clamp"}});
+    EXPECT_EQ(map->scalar(at(-900, 0.5f)), 0.25f) << interpolation;
+    EXPECT_EQ(map->scalar(at(900, 0.5f)), 0.75f) << interpolation;
+  }
+}
+
 TEST(ImageMap, EightBitsAreSrgbAndDecodedBeforeFiltering) {
   const ImageFile file("bits.png", {2, 1, 3, NumberType::uint8}, {0, 0, 0, 1, 1, 1});
   const Ref<ObjectMap> map =

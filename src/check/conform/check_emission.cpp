@@ -24,6 +24,7 @@ Ref<SceneObject> host_of(EmissionShader& emission, const std::string& name) {
   const Transform turn = Transform::rotate(0.8f, {1, 2, -0.5f});
   host->transform = host->infinite() ? turn : Transform::translate({0.3f, -0.2f, 0.5f}) * turn;
   host->emission = Ref<EmissionShader>(&emission);
+  emission.prepare();  // as before every render: what it remembers is of objects that are gone, and this may lie where one was
   host->prepare();
   if (host->infinite()) host->enclose({0.1f, 0.2f, 0.3f}, 1.5f);
   return host;
