@@ -78,6 +78,15 @@ TEST(SkyNumbers, IrradianceOfTheSun) {
   EXPECT_NEAR(get(*sky(50, true), "sun_diameter").as<Number>()->value / degree, 2 * 959.63 / 3600, 2e-5);
 }
 
+// Beyond the model's last channel light falls off as that of a black body of the sun's 5778 K.
+TEST(SkyNumbers, BeyondRed) {
+  const Ref<EmissionShader> e = sky(40, false);
+  const auto at = [&](float lambda) { return double(seen(*e, Vector3{0, 1, 0}, one(lambda))[0]); };
+  const auto planck = [](double nm) { return std::pow(nm, -5) / std::expm1(1.438777e7 / (nm * 5778)); };
+  for (const float lambda : {740.0f, 780.0f, 830.0f})
+    EXPECT_NEAR(at(lambda) / at(720), planck(double(lambda)) / planck(720), 1e-4) << lambda;
+}
+
 /// Over the upper half, but for a disc around the sun of a radius [deg]: sums of f(direction), fine around the sun.
 template <class F>
 double over_sky(double elevation, F&& f, double radius = 0) {

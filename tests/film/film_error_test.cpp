@@ -245,5 +245,33 @@ TEST(FilmError, correlated_samples_spread_by_steps) {
   }
 }
 
+// Eight steps of as many samples, whose means are as 1, 2, … 8: the variance of such numbers is 8 * 9 / 12 = 6 (unbiased), so
+// that of their mean, 4.5, is 6 / 8.
+TEST(FilmError, eight_steps_spread_as_eight_numbers) {
+  for (const bool splats : {false, true}) {
+    const Ref<ImageBuffer> image = picture(test::make_filter("BoxFilter"));
+    Film film(*image, Estimator::correlated);
+    for (int step = 0; step < 8; ++step) {
+      ImageTile tile;
+      tile.begin(*image, image->area());
+      for (int y = 0; y < 7; ++y)
+        for (int x = 0; x < 9; ++x) {
+          tile.count_path();
+          const Spectrum value(float(step + 1));
+          const Point2 at{float(x) + 0.5f, float(y) + 0.5f};
+          tile.contribute(at, x, y, 0, splats ? Spectrum() : value, wavelengths);
+          if (splats) tile.splat(at, x, y, 0, value, wavelengths, 1);
+        }
+      film.merge(tile);
+      film.end_step();
+    }
+    // The relative error is smoothed by a thousandth of the mean.
+    EXPECT_NEAR(film.relative_error(), std::sqrt(6.0 / 8) / (4.5 * 1.001), 1e-6) << splats;
+    const Image developed = film.develop();
+    const auto variance = size_t(std::ranges::find(developed.channels, std::string("variance.Y")) - developed.channels.begin());
+    EXPECT_NEAR(developed.at(4, 3, variance) / std::pow(developed.at(4, 3, 1), 2), 6.0 / 8 / (4.5 * 4.5), 1e-6) << splats;
+  }
+}
+
 }  // namespace
 }  // namespace etendue

@@ -112,6 +112,22 @@ TEST(ImageFilter, AgreesWithTheMeanOverTheEllipse) {
     }
 }
 
+// Of x^2 any mean around x is x^2 + the variance of what it is taken over: w^2 / 16 of a circle w wide, and 1 / 6 on the
+// average of the interpolation between texels. It is so for circles that one of the halved images stands for.
+TEST(ImageFilter, BlursAsMuchAsACircleDoes) {
+  const GreyImage bowl("bowl", 128, 128, [](int x, int) { return square(float(x) + 0.5f - 64); });
+  const Ref<ObjectMap> map = bowl.map();
+  for (const float squared : {0.0f, 12.0f, 60.0f}) {  // 4 (4^level - 1)
+    double variance = 0;
+    constexpr int n = 256;
+    for (int i = 0; i < n; ++i) {  // over texels and squares of texels alike
+      const float x = 60 + 8 * (float(i) + 0.5f) / n;
+      variance += double(map->scalar(seen(x / 128, 0.4f, std::sqrt(squared) / 128)) - square(x - 64)) / n;
+    }
+    EXPECT_NEAR(variance, double(squared) / 16 + 1 / 6.0, 2e-3) << squared;
+  }
+}
+
 TEST(ImageFilter, KeepsTheMeanOfImagesOfAnySize) {
   test::Random texel(3), random(4);
   for (const auto& [w, h] : {std::pair(1, 1), {3, 3}, {7, 1}, {1, 6}, {63, 63}, {100, 37}, {64, 5}}) {

@@ -178,6 +178,9 @@ TEST(Words, OfChoices) {
   EXPECT_EQ(said("FeatureRenderer { feature: nonsense }"), "has no choice 'nonsense'");
   // A word of one member says nothing of another.
   EXPECT_EQ(said("NurbsSurface { keep: clamped }"), "has no choice 'clamped'");
+  // Nor where the other one has the choice that it means: 'both' of sides, 'bilinear' of ways to divide faces.
+  EXPECT_EQ(said("DirectRenderer { strategy: double_sided }"), "has no choice 'double_sided'");
+  EXPECT_EQ(said("ImageMap { file: \"x.png\", interpolation: simple }"), "has no choice 'simple'");
 }
 
 TEST(Words, OfUnitsAndCalls) {

@@ -56,6 +56,37 @@ TEST(CheckerMap, FlatSurfacesBetweenCubesDoNotFlicker) {
   EXPECT_NE(map->scalar(p), first);
 }
 
+// Where the normal is (0.6, 0, 0.8) the projections along x and z count as 0.6^s and 0.8^s: u is y on the one, x on the other.
+TEST(Mappings, TriplanarBlendsByPowersOfTheNormal) {
+  const Ref<ObjectMap> across = create<ObjectMap>("FormulaMap", {{"formula", "u"}});
+  SurfacePoint p = test::surface_point({0.6f, 0, 0.8f});
+  p.position = p.object_position = {2, 5, 7};
+  for (const double s : {1.0, 2.0, 5.0}) {
+    const Ref<ObjectMap> map = create<ObjectMap>("TriplanarMap", {{"map", across}, {"sharpness", s}});
+    const double x = std::pow(0.6, s), z = std::pow(0.8, s);
+    EXPECT_NEAR(double(map->scalar(p)), (5 * x + 2 * z) / (x + z), 1e-5) << s;
+  }
+}
+
+// On a square metre that is seen from straight above it makes no difference which way coordinates are turned: what is filtered
+// over the footprint at turned coordinates is what the map is at those coordinates.
+TEST(Mappings, TurnedCoordinatesKeepTheFootprint) {
+  test::TestSquare square(1);
+  square.reference();
+  const Ref<ObjectMap> checker = create<ObjectMap>("CheckerMap", {{"repeat", std::vector<double>{4, 4, 1}}}),
+                       turned = create<ObjectMap>("UvTransformMap", {{"map", checker}, {"angle", 30.0}});
+  const float c = std::cos(radians(30)), s = 0.5f;
+  test::Random random(1);
+  for (int i = 0; i < 50; ++i) {
+    SurfacePoint p = at(random(), random());
+    p.object = &square;
+    p.footprint = 0.2f * random();
+    SurfacePoint q = p;
+    q.uv = {c * p.uv.x - s * p.uv.y, s * p.uv.x + c * p.uv.y};  // counterclockwise: from u towards v
+    EXPECT_NEAR(turned->scalar(p), checker->scalar(q), 1e-4f);
+  }
+}
+
 // A 2 x 2 image: grey values that tell the texels apart.
 const std::vector<float> four{0.1f, 0.2f, 0.3f, 0.4f};
 

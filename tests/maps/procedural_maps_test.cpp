@@ -106,6 +106,17 @@ TEST(Octaves, AreBandLimited) {
   }
 }
 
+TEST(Octaves, AreWavesTwiceAsFineAndHalfAsHigh) {
+  // Of two octaves: (noise(p) + gain noise(lacunarity p)) / (1 + gain), each with a seed of its own.
+  test::Random random(10);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 p = anywhere(random, 16);
+    EXPECT_NEAR((Octaves{2, 2, 0.5f, 5}.fbm(p, 0)), (perlin_noise(p, 5) + 0.5f * perlin_noise(2 * p, 6)) / 1.5f, 1e-5f);
+    EXPECT_NEAR((Octaves{2, 3, 0.8f, 5}.turbulence(p, 0)),
+                (std::abs(perlin_noise(p, 5)) + 0.8f * std::abs(perlin_noise(3 * p, 6))) / 1.8f, 1e-5f);
+  }
+}
+
 TEST(Periodic, MeansAreIntegrals) {
   test::Random random(5);
   for (int i = 0; i < 200; ++i) {
@@ -163,6 +174,32 @@ TEST(Patterns, FilteredIsTheMeanOfSharp) {
       EXPECT_NEAR(maps[m]->scalar(square_point(square, u, v, width)), mean / (n * n), 8e-3f)
           << m << " at " << u << " " << v << " over " << width;
     }
+}
+
+// The mean of 3 t^2 - 2 t^3 from 0 to b is b^2 - b^3 / 2.
+TEST(Patterns, SmoothRampsAreIntegrated) {
+  test::TestSquare square(1);
+  square.reference();
+  const Ref<ObjectMap> ramp = create<ObjectMap>("RampMap", {{"interpolation", "smooth"}});
+  for (const float b : {0.2f, 0.5f, 0.75f, 1.0f})
+    EXPECT_NEAR(ramp->scalar(square_point(square, b / 2, 0.5f, b)), b * b * (1 - b / 2), 1e-5f) << b;
+}
+
+// On a square of one metre rows are 1/9 m high, their joints 0.3 of it, 1/30 m: a tenth of the length of bricks of 1/3 m.
+TEST(Patterns, BricksHaveJointsOfOneThickness) {
+  test::TestSquare square(1);
+  square.reference();
+  const Ref<ObjectMap> wall =
+      create<ObjectMap>("BricksMap", {{"repeat", std::vector<double>{3, 9}}, {"joint", 0.3}, {"brick", 1.0}, {"mortar", 0.0}});
+  double along = 0, up = 0;
+  constexpr int n = 9000;
+  for (int i = 0; i < n; ++i) {
+    const float t = (float(i) + 0.5f) / n;
+    along += double(wall->scalar(square_point(square, t, 0.5f / 9, 0))) / n;  // through the lowest row
+    if (i < n / 9) up += double(wall->scalar(square_point(square, 0.5f / 3, t, 0))) / (n / 9.0);
+  }
+  EXPECT_NEAR(along, 1 - 3.0 / 30, 2e-3);
+  EXPECT_NEAR(up, 1 - 9.0 / 30, 2e-3);
 }
 
 TEST(Patterns, SolidTexturesFadeToTheirMeans) {

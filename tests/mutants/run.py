@@ -42,6 +42,10 @@ SLOW = ["BuiltIn/*", "Conform*", "Faulty*", "Conform.*", "Checkpoint*", "Verify*
         "SubdivisionSurface*", "DisplacedMesh*", "Subsurface*", "SceneStructures*", "Measured*"]
 
 
+# What is made: the library, what it loads for image files from the folder it lies in itself, and the tests.
+LIBRARY, IMAGES = "libetendue.so", "libetendue_openimageio.so"
+
+
 class Mutant:
     """One file: a line `# what the mistake is`, lines `file:` and `tests:`, and pairs of blocks `--- find`, `--- replace`."""
 
@@ -71,8 +75,8 @@ class Mutant:
             raise ValueError(f"{path.name}: wants '# what', 'file:', 'tests:', '--- find' and '--- replace'")
 
     def area(self):
-        parts = self.edits[0][0].split("/")
-        return parts[1] if parts[0] == "src" else "include"
+        folders = [part for part in self.edits[0][0].split("/")[:-1] if part not in ("src", "include", "etendue", "components")]
+        return folders[0] if folders else "include"
 
     def apply(self):
         """Texts of the changed files by their paths; ValueError where the mistake does not apply any more."""
@@ -115,7 +119,7 @@ class Build:
             made = words[words.index("-o") + 1]
             self.compile[made] = (entry["file"], words)
         self.includes = self.dependencies()
-        self.links = {name: self.link_command(name) for name in ("libetendue.so", "tests/etendue_tests")}
+        self.links = {name: self.link_command(name) for name in (LIBRARY, IMAGES, "tests/etendue_tests")}
 
     def ninja(self, *words):
         return subprocess.run(["ninja", "-C", str(self.folder), *words], check=True, capture_output=True, text=True).stdout
@@ -199,11 +203,14 @@ class Build:
                 continue
             words = [objects.get(w) or w for w in self.links[name]]
             soname = [w[len("-Wl,-soname,"):] for w in words if w.startswith("-Wl,-soname,")]
-            out = place / (soname[0] if soname else "etendue_tests")
+            out = place / (soname[0] if soname else os.path.basename(name))
             words[words.index("-o") + 1] = str(out)
             self.run(words)
             if not name.startswith("lib"):
                 tests = out
+        if wanted[IMAGES] and not wanted[LIBRARY]:
+            library = (self.folder / LIBRARY).resolve()
+            (place / os.readlink(self.folder / LIBRARY)).symlink_to(library)
         return tests
 
 

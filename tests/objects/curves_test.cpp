@@ -216,6 +216,8 @@ TEST(Curve, SplinesRunWhereTheyShould) {
   EXPECT_LT(distance(at("bezier", 0.5f), {1.5f, 0.5f, 0.75f}), 2e-3f);
   EXPECT_LT(distance(at("b_spline", 0.5f), {1.5f, 0.5f, 46 / 48.0f}), 2e-3f);
   EXPECT_LT(distance(at("catmull_rom", 1 / 3.0f), {1, 0, 1}), 2e-3f);
+  // What is a parabola at four even points, here z = x (3 - x) / 2, is that parabola between the inner two.
+  EXPECT_LT(distance(at("catmull_rom", 0.5f), {1.5f, 0.5f, 1.125f}), 2e-3f);
 }
 
 TEST(Curve, RibbonsAreFlat) {

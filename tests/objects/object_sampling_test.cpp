@@ -94,6 +94,20 @@ TEST(Objects, SurfacePointsAgreeWithRays) {
   }
 }
 
+// A place that is 0.3 of the first corner, 0.2 of the second and 0.5 of the third has a normal along the same of their normals.
+TEST(Objects, NormalsOfCornersAreInterpolated) {
+  const Ref<SceneObject> mesh = object("TriangleMesh", {{"positions", {0, 0, 0, 4, 0, 0, 0, 4, 0}},
+                                                        {"normals", {0, 0, 1, 0.6, 0, 0.8, 0, 0.28, 0.96}},
+                                                        {"triangles", {0, 1, 2}}});
+  const Ray down = ray({0.8f, 2, 1}, {0, 0, -1});
+  Hit hit;
+  ASSERT_TRUE(mesh->intersect(down, hit));
+  SurfacePoint p;
+  mesh->surface_point(down, hit, p);
+  const Vector3 expected = normalize(Vector3{0.2f * 0.6f, 0.5f * 0.28f, 0.3f + 0.2f * 0.8f + 0.5f * 0.96f});
+  EXPECT_LT(length(Vector3(p.shading_normal) - expected), 1e-5f);
+}
+
 TEST(Objects, AreaSamplingMatchesItsDensity) {
   // The mean of 1/density is the area; the mean of position/density its first moment, compared with hits of parallel
   // rays (which see each piece of area under its cosine). 5 standard errors.
@@ -128,6 +142,8 @@ TEST(Objects, PointsLieEvenly) {
       {"Cylinder", {{"radius", 2}, {"height", 3}, {"caps", false}}, 4, 9 / 12.0},
       // A cone from radius a to b: of what is even along its side, r = a + (b - a) t has the density r.
       {"Cone", {{"radius", 3}, {"top_radius", 0}, {"height", 2}, {"caps", false}}, 9 / 2.0, 4 / 6.0},
+      // Over q = 1 + 3 r^2 / 4 from 1 to 4 the density is sqrt(q); r^2 = 4 (q - 1) / 3 and z^2 = (q - 1)^2 / 3.
+      {"Paraboloid", {{"radius", 2}, {"height", std::sqrt(3.0)}, {"cap", false}}, 232 / 105.0, 848 / 735.0},
       // (R + r cos p)^2 with the density R + r cos p; (r sin p)^2 with the same.
       {"Torus", {{"radius", 2}, {"tube_radius", 1}}, 4 + 3 / 2.0, 1 / 2.0},
   };
@@ -145,6 +161,24 @@ TEST(Objects, PointsLieEvenly) {
     EXPECT_NEAR(around, e.around, 1e-3 * e.around);
     EXPECT_NEAR(along, e.along, 1e-3 * e.along + 1e-9);
   }
+}
+
+// Of points spread otherwise the mean of 1 / density is the area: of an oblate ellipsoid 2 pi (a^2 + c^2 / e artanh e), of a
+// prolate one 2 pi (a^2 + a c / e asin e). Both are flat or long enough not to have their points evenly on the unit sphere.
+TEST(Objects, PointsOfEllipsoidsAddUpToTheirAreas) {
+  const auto expect = [](double a, double c, double area) {
+    const Ref<SceneObject> shape = object("Ellipsoid", {{"radii", {a, a, c}}});
+    constexpr int side = 512;
+    double sum = 0;
+    for (int i = 0; i < side * side; ++i) {
+      const SurfaceSample s = shape->sample_area({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}, 0);
+      sum += 1 / double(s.density) / (side * side);
+    }
+    EXPECT_NEAR(sum / area, 1, 2e-3) << a << " " << c;
+  };
+  const auto e = [](double ratio) { return std::sqrt(1 - ratio * ratio); };
+  expect(1, 0.2, 2 * M_PI * (1 + 0.04 / e(0.2) * std::atanh(e(0.2))));
+  expect(1, 3, 2 * M_PI * (1 + 3 / e(1 / 3.0) * std::asin(e(1 / 3.0))));
 }
 
 /// All surface points of an object along a ray.

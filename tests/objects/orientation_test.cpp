@@ -190,6 +190,28 @@ TEST(Orientation, AnEnvironmentIsNotMirrored) {
   EXPECT_LT(brightest(camera, "Environment { emission: EnvironmentEmission { file: \"" + left.path + "\" } }\n").x, 4);
 }
 
+// A map around the scene sees longitude as an image's columns grow, and v upwards from straight below.
+TEST(Orientation, AnEnvironmentsMap) {
+  const auto seen = [](const std::string& formula, const Vector3& d) {
+    const std::string camera = fmt::format(
+        "PerspectiveCamera {{ from: [0, 0, 0], to: [{}, {}, {}], up: [0.1, 1, 0.05], fov: 0.01 deg }}", d.x, d.y, d.z);
+    return measure(job_text("PathTracer { samples: 1, max_depth: 1 }", camera, 1,
+                            "Environment { emission: EnvironmentEmission { radiance: FormulaMap { formula: \"" + formula +
+                                "\" } } }\n"))
+        .mean.y;
+  };
+  const auto expect = [&](const Vector3& d, Point2 uv) {
+    EXPECT_NEAR(seen("u", d) / seen("1", d), uv.x, 1e-3) << d.x << " " << d.y << " " << d.z;
+    EXPECT_NEAR(seen("v", d) / seen("1", d), uv.y, 1e-3) << d.x << " " << d.y << " " << d.z;
+  };
+  expect({0, 0, 1}, {0.5f, 0.5f});
+  expect({1, 0, 0}, {0.25f, 0.5f});
+  expect({-1, 0, 0}, {0.75f, 0.5f});
+  expect({1, 1, 0}, {0.25f, 0.75f});                                     // 45 degrees up
+  expect({0, -std::sqrt(3.0f), 1}, {0.5f, 1 / 6.0f});                    // 60 degrees down
+  expect({h, std::sqrt(1 / 3.0f), h}, {3 / 8.0f, 1 / 2.0f + 1 / 6.0f});  // 30 degrees up, between +x and +z
+}
+
 // The image's top towards +y and its right towards -x, as seen from behind.
 TEST(Orientation, AProjectedImage) {
   const auto lit = [](int x, int y) {

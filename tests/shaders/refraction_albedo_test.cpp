@@ -69,5 +69,23 @@ TEST(MultipleRefraction, GivesBackWhatIsLost) {
       }
 }
 
+// What surfaces of F = 1 scatter more than once has the albedo that scattering once lacks, however they are grooved.
+TEST(MultipleReflection, GivesBackWhatIsLost) {
+  for (const Kind kind : {Kind::ggx, Kind::beckmann})
+    for (const auto& [x, y] : {std::pair{0.4f, 0.4f}, {0.5f, 0.1f}, {0.4f, 0.8f}, {0.9f, 0.6f}}) {
+      const MultipleReflection more({kind, x, y});
+      const Vector3 out{0.6f, 0, 0.8f};
+      double albedo = 0;
+      constexpr int heights = 200, azimuths = 96;
+      for (int i = 0; i < heights; ++i)
+        for (int k = 0; k < azimuths; ++k) {  // points of a disc are directions as cosines weight them
+          const float r = std::sqrt((float(i) + 0.5f) / heights), phi = 2 * pi * (float(k) + 0.5f) / azimuths;
+          const Vector3 in{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
+          albedo += double(more.value(out, in)) * M_PI / (heights * azimuths);
+        }
+      EXPECT_NEAR(albedo / double(more.missing(out)), 1, 0.01) << (kind == Kind::ggx ? "ggx " : "beckmann ") << x << " " << y;
+    }
+}
+
 }  // namespace
 }  // namespace etendue

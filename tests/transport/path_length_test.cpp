@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/render_support.h"
 
 namespace etendue::test {
@@ -37,6 +39,30 @@ const std::string plate =
 
 std::string sheet(const std::string& shader, double z = 1) {
   return fmt::format("Rectangle {{ corner: [-4, -4, {}], edge_u: [8, 0, 0], edge_v: [0, 8, 0], shader: {} }}\n", z, shader);
+}
+
+// A matt floor in the sun and a wall at its edge that the sun only grazes: the wall is lit by the floor alone.
+const std::string along = "OrthographicCamera { from: [1, 0, 2], to: [0, 0, 2], up: [0, 0, 1], width: 3.9 }";
+const std::string floor_and_wall =
+    "Rectangle { corner: [0, -2, 0], edge_u: [4, 0, 0], edge_v: [0, 4, 0], shader: Lambertian { color: 0.5 } }\n"
+    "Rectangle { corner: [0, -2, 0], edge_u: [0, 4, 0], edge_v: [0, 0, 4], shader: Lambertian { color: 0.5 } }\n";
+
+/// How much of what a place on the wall sees, by cosines, is floor, averaged over what the camera sees of the wall. Of a
+/// rectangle a deep and b wide that is seen from the height h above its corner, at a right angle to its depth, the part is
+/// (atan(b / h) - h / c atan(b / c)) / 2 pi with c^2 = h^2 + a^2 (Lambert's contour integral).
+double floor_seen_from_wall() {
+  constexpr int steps = 400;
+  const auto part = [](double b, double h) {
+    const double c = std::hypot(h, 4.0);
+    return (std::atan(b / h) - h / c * std::atan(b / c)) / (2 * M_PI);
+  };
+  double sum = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int k = 0; k < steps; ++k) {
+      const double y = 3.9 * ((i + 0.5) / steps - 0.5), h = 2 + 3.9 * ((k + 0.5) / steps - 0.5);
+      sum += part(2 - y, h) + part(2 + y, h);
+    }
+  return sum / (steps * steps);
 }
 
 const double r = 0.04, through_pane = (1 - r) / (1 + r);
@@ -82,6 +108,7 @@ std::vector<LengthCase> length_cases() {
            "Box { centre: [0, 0, 2], size: [9, 9, 1], shader: PassThrough {}, interior: HomogeneousVolume { absorption: 1 } "
            "}\n",
        {"PathTracer { samples: 16", "BidirectionalPathTracer { samples: 64", "LightTracer { samples: 65536"}},
+      {"LitByTheFloor", 3, 0.5 * 0.5 * floor_seen_from_wall(), along, floor_and_wall + sun, with_media},
       // Light scattered once by a thin layer of albedo 1 and depth t: (1 - exp(-2 t)) / (8 pi) of the sun's irradiance pi.
       {"ScatteredInAMedium", 2, (1 - std::exp(-0.2)) / 8,
        "OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 2 }",
