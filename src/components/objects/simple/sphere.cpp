@@ -1,6 +1,7 @@
 // Sphere: also an ellipsoid, when its transform stretches.
 
 #include "etendue/core/warp.h"
+#include "geometry/ellipsoid_area.h"
 #include "geometry/geometry.h"
 
 namespace etendue {
@@ -248,18 +249,7 @@ class Sphere final : public SceneObject {
   float area_of(const Transform& t) const {
     const float s = similarity_scale(t);
     if (s > 0) return 4 * pi * square(s * radius);
-    // An ellipsoid: the stretch averaged over the sphere; the midpoint rule converges fast on a smooth closed surface.
-    constexpr int rings = 96, sectors = 96;
-    double sum = 0, weight = 0;
-    for (int i = 0; i < rings; ++i) {
-      const float theta = pi * (float(i) + 0.5f) / rings, sine = std::sin(theta);
-      for (int k = 0; k < sectors; ++k) {
-        const float phi = 2 * pi * (float(k) + 0.5f) / sectors;
-        sum += double(sine * area_stretch(t, Normal3(sine * std::cos(phi), sine * std::sin(phi), std::cos(theta))));
-        weight += double(sine);
-      }
-    }
-    return 4 * pi * radius * radius * float(sum / weight);
+    return float(ellipsoid_area(t, {radius, radius, radius}));
   }
 
   Ball ball_;          // outside for a round still sphere, else in the object's coordinates
