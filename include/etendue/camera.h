@@ -55,8 +55,8 @@ class Camera : public Component {
     DoublePoint3 position;
     double distance = 0;
   };
-  /// Where it is when the shutter opens: asked before it is prepared. The renderer counts from near there, or from the middle of
-  /// what is seen, so that floats are fine where they have to be. A camera that does not say has everything counted from the
+  /// Where it is when the shutter opens: asked before it is prepared. The renderer counts from near there, or from the middle
+  /// of what is seen, so that floats are fine where they have to be. A camera that does not say has everything counted from the
   /// origin.
   virtual std::optional<Place> place() const { return std::nullopt; }
   /// The point of the world that the renderer counts from: for a camera that says its place, rays, lens points and points it is

@@ -18,13 +18,14 @@ using namespace std::string_view_literals;
 
 /// The most numbers (channels of pixels) that a byte of a file can stand for. PNG: deflate makes 1032 bytes of one, each with
 /// up to eight pixels. JPEG: six blocks of at least one bit each for 256 pixels of three channels, twice that to be safe. TGA:
-/// a packet of five bytes for 128 pixels of four. TIFF, uncompressed: eight pixels of one bit. No other packs better than the
-/// last.
+/// a packet of five bytes for 128 pixels of four. BMP: two bytes for 255 pixels of four. TIFF, uncompressed: eight pixels of
+/// one bit. No other packs better than the last.
 double most_packed(const OIIO::ImageInput& input) {
   const std::string_view format = input.format_name();
   if (format == "png") return 8 * 1032;
   if (format == "jpeg") return 2048;
   if (format == "targa") return 128;
+  if (format == "bmp") return 512;
   if (format == "tiff" && input.spec().get_string_attribute("compression") == "none") return 8;
   return 65536;
 }
@@ -75,6 +76,7 @@ constexpr Beginning beginnings[] = {
     {"PF"sv, "pnm"},
     {"Pf"sv, "pnm"},
     {"RIFF"sv, "webp"},
+    {"BM"sv, "bmp"},
 };
 
 /// The reader for a file. TGA begins with nothing of its own; the file's name must say it.
@@ -87,7 +89,7 @@ const char* reader_for(RegularFile& file, const std::string& path) {
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   if (ending == "tga" || ending == "tpic") return "targa";
   throw Error(
-      "it does not begin as an image of a format that is read here: OpenEXR, HDR, PNG, JPEG, TIFF, PNM, PFM, WebP, TGA");
+      "it does not begin as an image of a format that is read here: OpenEXR, HDR, PNG, JPEG, TIFF, PNM, PFM, WebP, BMP, TGA");
 }
 
 }  // namespace

@@ -101,6 +101,18 @@ def tga(packed=False, palette=False):
     return data + area + bytes([2, 2]) + bytes(range(12)) + struct.pack("<2I", len(data), 0) + b"TRUEVISION-XFILE.\0"
 
 
+def bmp(bits, packed=False, width=7, height=5):
+    """Of 24 bits, or of 8 or 4 with a palette; `packed`: in runs of equal pixels."""
+    palette = b"" if bits == 24 else bytes(i % 256 for i in range(4 << bits))
+    row = (width * bits + 31) // 32 * 4
+    data = bytes((5 * i) % 256 for i in range(row * height))
+    if packed:
+        data = b"\0\0".join([bytes([width, 3])] * height) + b"\0\1"
+    start = 14 + 40 + len(palette)
+    header = struct.pack("<2sIHHI", b"BM", start + len(data), 0, 0, start)
+    return header + struct.pack("<IiiHHIIiiII", 40, width, height, 1, bits, packed, len(data), 2835, 2835, 0, 0) + palette + data
+
+
 def tiff(compression, width=10, height=8):
     pixels = bytes((7 * i) % 256 for i in range(width * height * 3))
     data = zlib.compress(pixels) if compression == 8 else pixels
@@ -208,6 +220,9 @@ def small_images():
     for packed in (False, True):
         for palette in (False, True):
             yield "tga" + " packed" * packed + " palette" * palette, "tga", tga(packed, palette)
+    for bits in (24, 8, 4):
+        yield f"bmp {bits}", "bmp", bmp(bits)
+    yield "bmp packed", "bmp", bmp(8, True)
     yield "tiff", "tif", tiff(1)
     yield "tiff zip", "tif", tiff(8)
     yield "jpeg", "jpg", JPEG

@@ -50,8 +50,9 @@ class Film {
   Film& operator=(const Film&) = delete;
 
   Estimator estimator() const;
-  /// Takes over a description that was prepared again, or another kind of algorithm. Keeps what was collected where that is still
-  /// valid, when only layers that need nothing further are wanted or not; else the film is empty then. Whether it was kept.
+  /// Takes over a description that was prepared again, or another kind of algorithm. Keeps what was collected where that is
+  /// still valid, when only layers that need nothing further are wanted or not; else the film is empty then. Whether it was
+  /// kept.
   bool follow(const ImageBuffer&, Estimator);
   /// Empties the film.
   void clear();

@@ -23,11 +23,11 @@ class ImageMap final : public ObjectMap {
   static void describe(Description<ImageMap>& d) {
     d.summary("An image file over the surface coordinates: its lower left corner is at (0, 0), its upper right one at (1, 1).")
         .group("Image")
-        .member<&ImageMap::file>(
-            "file", "",
-            "the image: OpenEXR, HDR, PNG, JPEG, TIFF, PNM, PFM, WebP or TGA. With <UDIM> in its name: one image for each unit "
-            "square of u and v, from files with 1001 + u + 10 v in that place; black where there is none",
-            required)
+        .member<&ImageMap::file>("file", "",
+                                 "the image: OpenEXR, HDR, PNG, JPEG, TIFF, PNM, PFM, WebP, BMP or TGA. With <UDIM> in its "
+                                 "name: one image for each unit "
+                                 "square of u and v, from files with 1001 + u + 10 v in that place; black where there is none",
+                                 required)
         .group("Placement")
         .member<&ImageMap::interpolation>(
             "interpolation", "",
