@@ -231,6 +231,31 @@ Corner read_corner(Lines& lines, const MeshData& so_far, const Counts& all) {
   return c;
 }
 
+struct Face {
+  std::vector<std::uint32_t> corners, positions;
+};
+
+/// Cuts faces into triangles: by positions, then named by vertices.
+class FaceCutter {
+ public:
+  void cut(const Face& polygon, MeshData& mesh) {
+    face_.positions.clear();
+    face_.triangles.clear();
+    order_.clear();
+    for (std::uint32_t p : polygon.positions) {
+      order_.push_back(std::uint32_t(face_.positions.size()));
+      face_.positions.push_back(mesh.positions[p]);
+    }
+    append_polygon(face_, order_.data(), order_.size());
+    for (const auto& t : face_.triangles)
+      mesh.triangles.push_back({polygon.corners[t[0]], polygon.corners[t[1]], polygon.corners[t[2]]});
+  }
+
+ private:
+  MeshData face_;
+  std::vector<std::uint32_t> order_;
+};
+
 MeshData parse(std::string_view file, PolygonMesh* polygons) {
   const Counts all = count(file);
   if (all.positions == 0) throw Error("it has no vertices");
@@ -247,25 +272,9 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   mesh.triangles.reserve(all.faces);
   Vertices vertices(plain ? 0 : all.positions);
   std::vector<std::uint32_t> corners, positions;
-  struct Face {
-    std::vector<std::uint32_t> corners, positions;
-  };
   std::vector<Face> late;  // faces that stand before their vertices and have more than three corners
-  MeshData face;
-  std::vector<std::uint32_t> order;
+  FaceCutter cutter;
   std::vector<std::string> materials;
-  const auto cut = [&](const Face& polygon) {  // by positions, then named by vertices
-    face.positions.clear();
-    face.triangles.clear();
-    order.clear();
-    for (std::uint32_t p : polygon.positions) {
-      order.push_back(std::uint32_t(face.positions.size()));
-      face.positions.push_back(mesh.positions[p]);
-    }
-    append_polygon(face, order.data(), order.size());
-    for (const auto& t : face.triangles)
-      mesh.triangles.push_back({polygon.corners[t[0]], polygon.corners[t[1]], polygon.corners[t[2]]});
-  };
   for (Lines lines(file); lines.next();) {
     const std::string_view word = lines.keyword();
     if (word == "v") {
@@ -299,7 +308,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
       } else if (!known) {
         late.push_back({corners, positions});
       } else {
-        cut({corners, positions});
+        cutter.cut({corners, positions}, mesh);
       }
     }
   }
@@ -310,7 +319,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
     if (!plain) name_corners(vertices.corners(), *polygons);
     return mesh;
   }
-  for (const Face& polygon : late) cut(polygon);
+  for (const Face& polygon : late) cutter.cut(polygon, mesh);
   mesh.materials = materials;
   if (plain) return mesh;
 

@@ -44,6 +44,7 @@ Spectrum mix(float t, Spectrum a, Spectrum b) { return a * (1 - t) + b * t; }
 class Principled final : public Shader {
  public:
   static void describe(Description<Principled>&);
+  static void describe_upper_layers(Description<Principled>&);
   void prepare() override;
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
@@ -151,8 +152,12 @@ void Principled::describe(Description<Principled>& d) {
                                              when("subsurface_weight"))
       .member<&Principled::subsurface_scatter_anisotropy>("subsurface_scatter_anisotropy", "1",
                                                           "of thin walls: -1 all back, 0 as much to both sides, 1 all through",
-                                                          range(-1, 1), when("subsurface_weight"), when("thin_walled"))
-      .group("Coat")
+                                                          range(-1, 1), when("subsurface_weight"), when("thin_walled"));
+  describe_upper_layers(d);
+}
+
+void Principled::describe_upper_layers(Description<Principled>& d) {
+  d.group("Coat")
       .member<&Principled::coat_weight>("coat_weight", "1", "fraction of the surface that has a clear coat", Meaning::number,
                                         soft(0, 1))
       .member<&Principled::coat_color>("coat_color", "1", "tint of what is seen through the coat, straight on",
