@@ -116,9 +116,11 @@ std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
     }
     const std::uint32_t size = samples_per_step();
     if (before_short_step && !done.empty() && part.end > done.back().end) {
+      std::unique_ptr<RenderProcess> again = fresh_process();
+      again->load_state(before_short_step->renderer);
       const std::lock_guard lock(counts);
       film->load_state(before_short_step->image);
-      process->load_state(before_short_step->renderer);
+      process = std::move(again);
       drop_short_pass(done, size);
       before_short_step.reset();
     }
