@@ -17,7 +17,8 @@ thread_local const Render::Members* within = nullptr;
 // ---- turns ------------------------------------------------------------------------------------------------------------------
 
 BetweenSteps::BetweenSteps(const Render::Members& m, bool interrupt) {
-  if (within == &m) throw Error("a render cannot be changed from within its own step: do it from another thread");
+  if (within == &m)
+    throw Error("a render can neither be changed nor replayed from within its own step: do it from another thread");
   {
     const std::lock_guard lock(m.turn);
     ++m.waiting;

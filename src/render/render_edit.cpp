@@ -9,10 +9,10 @@ namespace {
 /// Whoever looks at a render sees its parts as they are; here is where they change.
 Component& editable(const Edit& edit) { return const_cast<Component&>(*edit.component); }
 
-/// Sets members, and puts all back unless it is told to keep them.
-class Settings {
+/// Sets members, all or none; `put_back` makes them what they were.
+class Changes {
  public:
-  explicit Settings(std::span<const Edit> edits) {
+  explicit Changes(std::span<const Edit> edits) {
     for (const Edit& edit : edits) {
       before_.push_back({edit.component, edit.member, get(*edit.component, edit.member)});
       try {
@@ -58,7 +58,7 @@ void Render::edit(std::span<const Edit> edits) {
   std::optional<BetweenSteps> alone;
   if (consequences.effect() != Effect::retone) alone.emplace(*m, consequences.effect() >= Effect::rerender);
   const std::unique_lock unseen(m->look);
-  Settings settings(edits);
+  Changes changes(edits);
   if (alone) m->park_process();
   try {
     consequences.prepare(*m->job, *m->holders);
@@ -66,7 +66,7 @@ void Render::edit(std::span<const Edit> edits) {
   } catch (...) {
     const std::exception_ptr reason = std::current_exception();
     try {
-      settings.put_back();
+      changes.put_back();
       consequences.prepare(*m->job, *m->holders);
     } catch (const std::exception& e) {
       m->broken = std::string("an edit that failed could not be undone: ") + e.what();

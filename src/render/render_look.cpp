@@ -69,31 +69,35 @@ std::vector<std::string> Render::write_outputs(const std::string& default_stem) 
   return written;
 }
 
-// ---- single samples
-// -----------------------------------------------------------------------------------------------------------
+// ---- single samples ---------------------------------------------------------------------------------------------------------
 
-std::unique_ptr<RenderProcess> Render::start_at(std::uint32_t sample) const {
-  const std::shared_lock sharing = share(*m);
-  const Job& job = *m->job;
-  const std::uint32_t step = m->samples_per_step(), begin = sample / step * step;
-  Film film(*job.image);  // what steps before leave there is not looked at
+/// Starting a process builds the light sampler that others use: nobody else may be at work.
+std::unique_ptr<RenderProcess> Render::Members::process_at(std::uint32_t sample) const {
+  const std::uint32_t step = samples_per_step(), begin = sample / step * step;
+  Film unseen(*job->image);  // what steps before leave there is not looked at
   const std::atomic<bool> never{false};
-  ParallelSchedule schedule(film, m->settings.threads, never);
-  return rendering(job, [&] {
-    std::unique_ptr<RenderProcess> process = job.renderer->start(m->context());
-    for (std::uint32_t first = job.renderer->steps_depend() ? 0 : begin;; first += step) {
-      const Step at{first / step, {first, first + step}};
-      process->prepare_step(schedule, at);
-      if (first == begin) return process;
-      process->step(schedule, at);
+  ParallelSchedule schedule(unseen, settings.threads, never);
+  return rendering(*job, [&] {
+    std::unique_ptr<RenderProcess> at = job->renderer->start(context());
+    for (std::uint32_t first = job->renderer->steps_depend() ? 0 : begin;; first += step) {
+      const Step one{first / step, {first, first + step}};
+      at->prepare_step(schedule, one);
+      if (first == begin) return at;
+      at->step(schedule, one);
     }
   });
 }
 
+std::unique_ptr<RenderProcess> Render::start_at(std::uint32_t sample) const {
+  const BetweenSteps alone(*m, false);
+  return m->process_at(sample);
+}
+
 Point2 Render::replay(int x, int y, std::uint32_t sample, PathRecord& record) const {
+  const BetweenSteps alone(*m, false);
   if (!m->job->image->sampled_area().contains(x, y))
     throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
-  const std::unique_ptr<RenderProcess> process = start_at(sample);
+  const std::unique_ptr<RenderProcess> process = m->process_at(sample);
   Arena arena;
   PathRequest request;
   request.observe.record = &record;

@@ -1,7 +1,7 @@
 #pragma once
 // What a Render holds, and who may touch it when.
 //
-// A step and a replay share the description, which an edit, a load or an addition has alone (`description`). What shows
+// A step and a look share the description, which an edit, a load, an addition or a replay has alone (`description`). What shows
 // pictures (tone map, outputs) is apart from it (`look`), so that showing waits for no step. What is counted (`done`,
 // `seconds`, …) changes under `counts`, together with the film's ends of steps. Locks are taken in this order: editing,
 // description, look, counts, the film's.
@@ -64,6 +64,7 @@ struct Render::Members {
   IndexRange wanted() const;
   std::uint32_t samples_per_step() const;
   std::unique_ptr<RenderProcess> fresh_process() const;
+  std::unique_ptr<RenderProcess> process_at(std::uint32_t sample) const;
   void park_process();
   void follow(const Consequences&);
   void empty();

@@ -213,6 +213,25 @@ TEST(RenderEdit, the_look_changes_while_a_step_is_at_hand_and_loses_nothing) {
   runs.join();
 }
 
+TEST(RenderEdit, samples_are_replayed_while_it_renders) {
+  const Ref<Job> job = load_job_text(world, "world.etd");
+  PathRecord at_rest, meanwhile;
+  const Point2 place = Render(job).replay(3, 2, 1, at_rest);
+  job->renderer->samples = 1 << 17;
+  std::atomic<bool> begun{false};
+  Render render(job, {.on_progress = [&](const Progress&) { begun = true; }, .progress_interval = 0});
+  std::thread runs([&] { render.run(); });
+  while (!begun) std::this_thread::yield();
+  for (int n = 0; n < 3; ++n) {
+    meanwhile = {};
+    EXPECT_EQ(render.replay(3, 2, 1, meanwhile), place);
+    EXPECT_EQ(meanwhile.vertices.size(), at_rest.vertices.size());
+    for (int i = 0; i < spectrum_size; ++i) EXPECT_EQ(meanwhile.result[i], at_rest.result[i]);
+  }
+  render.abort();
+  runs.join();
+}
+
 /// One thread renders, one looks, one edits at random.
 TEST(RenderEdit, random_edits_of_every_part_while_it_renders) {
   const char* asked = std::getenv("ETENDUE_RANDOM_EDITS");

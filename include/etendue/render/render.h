@@ -35,7 +35,7 @@ struct RenderSettings {
   /// Only these steps; how many there are follows from the picture's size and the samples.
   std::optional<IndexRange> steps = {};
   /// Called while it renders, from whatever thread is at work, one at a time. It may look, stop and abort, but neither edit,
-  /// save nor load.
+  /// replay, save nor load.
   std::function<void(const Progress&)> on_progress = {};
   double progress_interval = 0.25;   ///< [s]
   std::string checkpoint_file = {};  ///< where `run` keeps the state while it renders; empty: nowhere
@@ -131,7 +131,8 @@ class Render {
   // ---- single samples
   // ---------------------------------------------------------------------------------------------------------
 
-  /// A process of the renderer at the step a sample is in, ready to be asked for it; to be used before the next edit.
+  /// A process of the renderer at the step a sample is in, ready to be asked for it; made between two steps of the render, and
+  /// to be used while neither an edit nor another such process is made. Where steps depend all before it are rendered first.
   std::unique_ptr<RenderProcess> start_at(std::uint32_t sample) const;
   /// Renders one sample alone; returns its film point. Throws Error when there is no such pixel, or when the algorithm's
   /// samples are not those of pixels.
