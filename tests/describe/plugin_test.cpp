@@ -32,14 +32,18 @@ class Plugin : public ::testing::Test {
   fs::path folder = fs::temp_directory_path() / ("etendue-plugin-" + std::to_string(getpid()));
   void SetUp() override { fs::create_directories(folder); }
   void TearDown() override { fs::remove_all(folder); }
+  /// Installs the package into the folder, and builds what is outside of the tree against that.
+  bool install_and_build(const std::string& target) const {
+    const std::string f = folder.string();
+    return run("cmake --install " ETENDUE_BINARY_DIR " --prefix " + f + "/installed") == 0 &&
+           run("cmake -G Ninja -S " ETENDUE_SOURCE_DIR "/tests/plugin -B " + f + "/build -DCMAKE_PREFIX_PATH=" + f +
+               "/installed && cmake --build " + f + "/build --target " + target) == 0;
+  }
 };
 
 TEST_F(Plugin, BuildsOutOfTreeAndRenders) {
-  const std::string f = folder.string(), source = ETENDUE_SOURCE_DIR "/tests/plugin";
-  ASSERT_EQ(run("cmake --install " ETENDUE_BINARY_DIR " --prefix " + f + "/installed"), 0);
-  ASSERT_EQ(run("cmake -G Ninja -S " + source + " -B " + f + "/build -DCMAKE_PREFIX_PATH=" + f +
-                "/installed && cmake --build " + f + "/build"),
-            0);
+  const std::string f = folder.string();
+  ASSERT_TRUE(install_and_build("all"));
   const std::string library = f + "/build/libgold.so";
   ASSERT_TRUE(fs::exists(library));
 
@@ -121,11 +125,8 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
 }
 
 TEST_F(Plugin, AProgramDrivesARender) {
-  const std::string f = folder.string(), source = ETENDUE_SOURCE_DIR "/tests/plugin";
-  ASSERT_EQ(run("cmake --install " ETENDUE_BINARY_DIR " --prefix " + f + "/installed"), 0);
-  ASSERT_EQ(run("cmake -G Ninja -S " + source + " -B " + f + "/build -DCMAKE_PREFIX_PATH=" + f +
-                "/installed && cmake --build " + f + "/build --target drive_a_render"),
-            0);
+  const std::string f = folder.string();
+  ASSERT_TRUE(install_and_build("drive_a_render"));
   std::ofstream(f + "/small.etd") << R"(Job { renderer: PathTracer { samples: 64 }, image: ImageBuffer { width: 16, height: 12 }
       camera: PerspectiveCamera { from: [0, 0, -4], to: [0, 0, 0] }, outputs: [ NpyOutput {} ]
       scene: BruteForceScene { objects: [ Sphere { shader: Lambertian {} }, Environment { emission: DiffuseEmission { sides: both } } ] } })";
