@@ -19,30 +19,42 @@ double chance_to_keep(Schedule& schedule, const PhotonWalks& walks, std::uint64_
 
 }  // namespace
 
-void PhotonProcess::make_photons(Schedule& schedule, const Step& step, const Request& request) {
+void PhotonProcess::share(const Step& step) {
   const SampleKey key(context.seed, -1, -1, step.number);
   NumberStream numbers(*renderer.sampler, key);
   shares_ = true;
   wavelengths_ = context.wavelengths.sample(key, numbers.next());
   time_ = context.camera.shutter_time(numbers.next());
+}
 
+PhotonProcess::Photons PhotonProcess::make_photons(Schedule& schedule, const Step& step, const Request& request) const {
   const ImageBuffer& image = context.image;
-  PhotonWalks walks{context, *renderer.light_sampler, *renderer.sampler, step.number, wavelengths_, time_, {}, {}};
-  walks.walks = request.walks > 0 ? request.walks : std::uint64_t(image.width) * std::uint64_t(image.height);
-  walks.limits = request.limits;
-  walks.fewest_vertices = request.fewest_vertices;
-  walks.abort = schedule.abort;
+  PhotonWalks walks{.context = context,
+                    .lights = *renderer.light_sampler,
+                    .numbers = *renderer.sampler,
+                    .step = step.number,
+                    .wavelengths = wavelengths_,
+                    .time = time_,
+                    .walks = request.walks > 0 ? request.walks : std::uint64_t(image.width) * std::uint64_t(image.height),
+                    .limits = request.limits,
+                    .kinds = request.kinds,
+                    .targets = request.targets,
+                    .fewest_vertices = request.fewest_vertices,
+                    .abort = schedule.abort};
   walks.kept = chance_to_keep(schedule, walks, request.most);
 
-  const double n = double(walks.walks) * walks.kept, shrunk = shrunk_area(step.number, request.shrinking);
-  surface_radius_ = float(request.radius * std::sqrt(shrunk));
-  medium_radius_ = float(request.radius * std::cbrt(shrunk));
-  merging_ = {n * double(pi) * double(surface_radius_) * double(surface_radius_),
-              n * 4 / 3 * double(pi) * std::pow(double(medium_radius_), 3)};
-  const StrategyWeights against{request.heuristic, true, merging_};
+  Photons photons;
+  photons.walks = double(walks.walks) * walks.kept;
+  const double shrunk = shrunk_area(step.number, request.shrinking);
+  const double r = request.radius * std::sqrt(shrunk), in_medium = request.radius * std::cbrt(shrunk);
+  photons.surface_radius = float(r);
+  photons.medium_radius = float(in_medium);
+  photons.merging = {photons.walks * double(pi) * r * r,
+                     photons.walks * 4 / 3 * double(pi) * in_medium * in_medium * in_medium};
+  const StrategyWeights against{request.weighted ? *request.weighted : Heuristic::power, true, photons.merging};
   if (request.weighted) walks.against = &against;
-  photons_ = {};
-  photons_.build(schedule.collect<Photon>(walks.items(), walks));
+  photons.map.build(schedule.collect<Photon>(walks.items(), walks));
+  return photons;
 }
 
 }  // namespace etendue

@@ -69,27 +69,29 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
   for (std::uint64_t n = item * item_size; n < std::min(walks, (item + 1) * item_size); ++n) {
     const ArenaScope memory(arena);
     Wavelengths w = wavelengths;
-    NumberStream walk_numbers(numbers, SampleKey(context.seed, -2, int(step), std::uint32_t(n)));
+    NumberStream walk_numbers(numbers, SampleKey(context.seed, -2 - int(kinds), int(step), std::uint32_t(n)));
     NumberStream chances = walk_numbers.fork("kept");
     SampleContext sample{w, walk_numbers, arena, {}, nullptr, abort};
-    if (!walk_from_luminaire(context.scene, lights, time, limits, sample, walk, light)) continue;
+    if (!walk_from_luminaire(context.scene, lights, time, limits, sample, walk, light, targets)) continue;
     if (sample.aborted()) return;
     const float direct = walk.size() > 1 && against ? sampled_density(lights, walk[1], walk[0], walk[1].out) : 0;
     bool specular = true;  // all the way from the luminaire
     for (size_t i = 1; i < walk.size(); ++i) {
       const KeptVertex& v = walk[i];
-      if (v.connectable() && int(i) >= fewest_vertices && (kept >= 1 || double(chances.next()) < kept)) {
-        Photon& p = photons.emplace_back();
-        p.position = v.point.position;
-        p.out = v.out;
-        p.throughput = v.throughput;
-        p.vertices = int(i);
-        p.single = v.single;
-        p.in_medium = v.in_medium();
-        p.caustic = i > 1 && specular;
-        if (against) p.weight = weight_of(walk, i, direct, *against, front);
-      }
+      const bool caustic = i > 1 && specular;
       specular = specular && v.specular;
+      const bool wanted = kinds == PhotonKinds::all || caustic == (kinds == PhotonKinds::caustics);
+      if (!wanted || !v.connectable() || int(i) < fewest_vertices || (kept < 1 && double(chances.next()) >= kept)) continue;
+      Photon& p = photons.emplace_back();
+      p.position = v.point.position;
+      p.out = v.out;
+      for (int axis = 0; axis < 3; ++axis) p.normal[size_t(axis)] = std::int16_t(32767 * v.point.normal[axis]);
+      p.throughput = v.throughput;
+      p.vertices = std::uint32_t(i);
+      p.single = v.single;
+      p.in_medium = v.in_medium();
+      p.caustic = caustic;
+      if (against) p.weight = weight_of(walk, i, direct, *against, front);
     }
   }
 }

@@ -143,9 +143,9 @@ std::optional<FoundLight> WalkPair::merge(const Photon& photon, int t) const {
   const double merging = z.in_medium() ? weights_.merging.medium : weights_.merging.surface;
   const Spectrum scattered = scattered_from_photon(z, photon, sample_.wavelengths, z.single);
   if (scattered.black()) return {};
-  FoundLight found{photon.vertices, t, true, z.throughput * scattered / float(merging)};
+  FoundLight found{int(photon.vertices), t, true, z.throughput * scattered / float(merging)};
   if (weights_.weighted) {
-    ConnectedPath path{nullptr, photon.vertices, camera_.data(), t, 0, 0, photon.weight.forward, 0, 0, 0,
+    ConnectedPath path{nullptr, int(photon.vertices), camera_.data(), t, 0, 0, photon.weight.forward, 0, 0, 0,
                        true,    weights_.merging};
     path.camera_before_from_light = before_from(camera_, t, photon.out, Transport::importance);
     const float back = scattering_density(z, z.out, photon.out, Transport::radiance);

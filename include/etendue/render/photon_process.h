@@ -18,29 +18,37 @@ class PhotonProcess : public RenderProcess {
   float time(float u) const override { return shares_ ? time_ : RenderProcess::time(u); }
 
  protected:
-  struct Request {
-    std::uint64_t walks = 0;  ///< from luminaires, in each step
-    std::uint64_t most = 0;   ///< photons; where there would be more, each is kept with a chance
-    WalkLimits limits;
-    int fewest_vertices = 1;  ///< see PhotonWalks
-    double radius = 0;        ///< of the first step [m]
-    double shrinking = 0;     ///< a: see photons.h
-    bool weighted = false;    ///< whether photons have weights against connections
-    Heuristic heuristic = Heuristic::power;
-  };
-  /// Makes the photons of a step.
-  void make_photons(Schedule&, const Step&, const Request&);
+  /// Chooses the wavelengths and the moment of a step.
+  void share(const Step&);
 
-  const PhotonMap& photons() const { return photons_; }
-  /// n pi r^2 and n 4/3 pi r^3, by which density estimates are divided.
-  const Merging& merging() const { return merging_; }
-  /// [m], on surfaces and in media.
-  float radius(bool in_medium) const { return in_medium ? medium_radius_ : surface_radius_; }
+  struct Request {
+    std::uint64_t walks = 0;  ///< from luminaires; 0: one for each pixel
+    std::uint64_t most = 0;   ///< photons; where there would be more, each is kept with a chance
+    WalkLimits limits = {};
+    PhotonKinds kinds = PhotonKinds::all;
+    const EmissionTargets* targets = nullptr;  ///< see PhotonWalks
+    int fewest_vertices = 1;
+    double radius = 0;                    ///< of the first step [m]
+    double shrinking = 1;                 ///< a: see photons.h
+    const Heuristic* weighted = nullptr;  ///< how photons are weighted against connections; null: they are not
+  };
+  struct Photons {
+    PhotonMap map;
+    double walks = 0;                             ///< n, as far as their photons were kept
+    float surface_radius = 0, medium_radius = 0;  ///< [m]
+    Merging merging;                              ///< n pi r^2 and n 4/3 pi r^3
+    float radius(const Vertex& v) const { return v.in_medium() ? medium_radius : surface_radius; }
+    /// Calls `visit(photon, n pi r^2 or n 4/3 pi r^3)` for those within the radius of a vertex.
+    template <class Visit>
+    void near(const Vertex& v, const Visit& visit) const {
+      const auto density = float(v.in_medium() ? merging.medium : merging.surface);
+      map.within(v.point.position, radius(v), [&](const Photon& p) { visit(p, density); });
+    }
+  };
+  /// Makes photons of a step, after `share`. Requests of one step that differ in kinds have different numbers.
+  Photons make_photons(Schedule&, const Step&, const Request&) const;
 
  private:
-  PhotonMap photons_;
-  Merging merging_;
-  float surface_radius_ = 0, medium_radius_ = 0;
   bool shares_ = false;
   Wavelengths wavelengths_;
   float time_ = 0;

@@ -14,19 +14,21 @@
 // Photons and what they light must be of one colour and one moment: all paths of a step share their wavelengths and their time.
 
 #include "etendue/transport/bidirectional_weight.h"
+#include "etendue/transport/emission_targets.h"
 #include "etendue/transport/point_tree.h"
 
 namespace etendue {
 
 struct Photon {
   Point3 position;
-  Vector3 out;          ///< unit, to the vertex it came from
-  Spectrum throughput;  ///< alpha_p, flux [W/nm]
-  PhotonWeight weight;  ///< where it was asked for
-  int vertices = 0;     ///< of its walk before it; 1: it came straight from a luminaire
-  bool single = false;  ///< it holds the hero wavelength alone
-  bool in_medium = false;
-  bool caustic = false;  ///< it came from the luminaire by specular scattering alone, once or more
+  Vector3 out;                              ///< unit, to the vertex it came from
+  std::array<std::int16_t, 3> normal = {};  ///< of the surface, times 32767
+  Spectrum throughput;                      ///< alpha_p, flux [W/nm]
+  PhotonWeight weight;                      ///< where it was asked for
+  std::uint32_t vertices : 29 = 0;          ///< of its walk before it; 1: it came straight from a luminaire
+  bool single : 1 = false;                  ///< it holds the hero wavelength alone
+  bool in_medium : 1 = false;
+  bool caustic : 1 = false;  ///< it came from the luminaire by specular scattering alone, once or more
 };
 
 /// What of a photon's light goes on from a vertex near it: f alpha [W/(sr nm)] on a surface; in a medium phase alpha / s_s
@@ -57,6 +59,9 @@ class PhotonMap {
   PointTree tree_;
 };
 
+/// Which photons are kept.
+enum class PhotonKinds : std::uint8_t { all, caustics, no_caustics };
+
 /// The photons of a step: work for Schedule::collect<Photon>(walks.items(), walks).
 struct PhotonWalks {
   const RenderContext& context;
@@ -67,6 +72,8 @@ struct PhotonWalks {
   float time = 0;           ///< [s]
   std::uint64_t walks = 0;  ///< n
   WalkLimits limits;
+  PhotonKinds kinds = PhotonKinds::all;
+  const EmissionTargets* targets = nullptr;  ///< light goes towards these alone
   int fewest_vertices = 1;                   ///< before a photon: 2 leaves out those straight from luminaires
   const StrategyWeights* against = nullptr;  ///< photons have weights against these other strategies; null: none
   double kept = 1;  ///< the chance of a photon to be kept; with fewer photons n counts that part of the walks

@@ -7,6 +7,9 @@
 // the sum being over photons p within r of x, of n walks from luminaires; in media f is the phase function and pi r^2 becomes
 // 4/3 pi r^3 (transport/photons.h). Each step has new photons and a smaller r, so the mean over steps goes to the truth.
 //
+// Photons of caustics, light that mirrors and glass alone threw on, come from walks of their own that begin towards such
+// objects (transport/emission_targets.h); the others leave those out.
+//
 // direct(x) is light straight from luminaires, found by sampling them and by going on from x to see whether one is met,
 // weighted as in path tracing; photons then are those that were scattered before. A walk that has gone on for that sees
 // luminaires alone: all else that comes to x is photons.
@@ -52,16 +55,25 @@ class ProgressivePhotonMapper final : public Renderer {
 class ProgressivePhotonProcess final : public PhotonProcess {
  public:
   ProgressivePhotonProcess(const ProgressivePhotonMapper& r, const RenderContext& c)
-      : PhotonProcess(r, c), settings_(r), first_radius_(double(r.radius) * double(seen_pixel_width(c))) {}
+      : PhotonProcess(r, c), settings_(r), first_radius_(double(r.radius) * double(seen_pixel_width(c))), targets_(c.scene) {}
 
   void prepare_step(Schedule& schedule, const Step& step) override {
-    make_photons(schedule, step,
-                 {.walks = std::uint64_t(settings_.photon_walks),
-                  .most = std::uint64_t(settings_.most_photons),
-                  .limits = {settings_.max_depth - 1, settings_.roulette_depth},
-                  .fewest_vertices = settings_.next_event ? 2 : 1,
-                  .radius = first_radius_,
-                  .shrinking = double(settings_.alpha)});
+    share(step);
+    Request request{.walks = std::uint64_t(settings_.photon_walks),
+                    .most = std::uint64_t(settings_.most_photons),
+                    .limits = {settings_.max_depth - 1, settings_.roulette_depth},
+                    .fewest_vertices = settings_.next_event ? 2 : 1,
+                    .radius = first_radius_,
+                    .shrinking = double(settings_.alpha)};
+    caustics_ = {};
+    if (targets_.useful()) {
+      request.kinds = PhotonKinds::no_caustics;
+      Request caustics = request;
+      caustics.kinds = PhotonKinds::caustics;
+      caustics.targets = &targets_;
+      caustics_ = make_photons(schedule, step, caustics);
+    }
+    photons_ = make_photons(schedule, step, request);
   }
 
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
@@ -85,17 +97,19 @@ class ProgressivePhotonProcess final : public PhotonProcess {
  private:
   template <class Walk>
   void gather(Walk& walk) const {
-    const Vertex& x = walk.vertex;
-    const double density = x.in_medium() ? merging().medium : merging().surface;
-    photons().within(x.point.position, radius(x.in_medium()), [&](const Photon& p) {
-      if (walk.length + p.vertices > settings_.max_depth) return;
-      const bool single = walk.sample.wavelengths.single();
-      walk.add_light(p.vertices, scattered_from_photon(x, p, walk.sample.wavelengths, single) / float(density));
-    });
+    const auto add = [&](const Photon& p, float density) {
+      if (walk.length + int(p.vertices) > settings_.max_depth) return;
+      const Wavelengths& w = walk.sample.wavelengths;
+      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, w, w.single()) / density);
+    };
+    photons_.near(walk.vertex, add);
+    caustics_.near(walk.vertex, add);
   }
 
   const ProgressivePhotonMapper& settings_;
   const double first_radius_;  // [m]
+  const EmissionTargets targets_;
+  Photons photons_, caustics_;
 };
 
 std::unique_ptr<RenderProcess> ProgressivePhotonMapper::begin(const RenderContext& context) const {

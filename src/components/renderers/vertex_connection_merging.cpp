@@ -69,14 +69,14 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
 
   void prepare_step(Schedule& schedule, const Step& step) override {
     if (!settings_.merging) return;
-    make_photons(schedule, step,
-                 {.walks = std::uint64_t(settings_.photon_walks),
-                  .most = std::uint64_t(settings_.most_photons),
-                  .limits = {settings_.max_depth - 1, settings_.roulette_depth},
-                  .radius = first_radius_,
-                  .shrinking = settings_.alpha,
-                  .weighted = settings_.connecting,
-                  .heuristic = settings_.heuristic});
+    share(step);
+    photons_ = make_photons(schedule, step,
+                            {.walks = std::uint64_t(settings_.photon_walks),
+                             .most = std::uint64_t(settings_.most_photons),
+                             .limits = {settings_.max_depth - 1, settings_.roulette_depth},
+                             .radius = first_radius_,
+                             .shrinking = double(settings_.alpha),
+                             .weighted = settings_.connecting ? &settings_.heuristic : nullptr});
   }
 
   Spectrum radiance(const Ray& camera_ray, SampleContext& sample) const override {
@@ -84,7 +84,7 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
     const bool connecting = settings_.connecting, merges = settings_.merging;
     if (sample.observe.features) note_first_surface(context.scene, camera_ray, sample);
     WalkPair walks(context, *settings_.light_sampler, sample,
-                   {settings_.heuristic, connecting, merges ? merging() : Merging{}});
+                   {settings_.heuristic, connecting, merges ? photons_.merging : Merging{}});
     Found found{walks, sample, connecting};
     walks.from_camera(camera_ray, {max_depth, roulette_depth}, found);
     if (connecting) walks.from_luminaire(camera_ray.time, {max_depth - 1, roulette_depth});
@@ -95,8 +95,8 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
       const KeptVertex& z = walks.camera_vertex(t);
       if (!z.connectable()) continue;
       if (merges)
-        photons().within(z.point.position, radius(z.in_medium()), [&](const Photon& photon) {
-          if (photon.vertices + t - 1 <= max_depth) found.add(walks.merge(photon, t));
+        photons_.near(z, [&](const Photon& photon, float) {
+          if (int(photon.vertices) + t - 1 <= max_depth) found.add(walks.merge(photon, t));
         });
       if (!connecting) continue;
       if (t <= max_depth) found.add(walks.sample_luminaire(t));
@@ -128,6 +128,7 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
 
   const VertexConnectionMerging& settings_;
   const double first_radius_;  // [m]
+  Photons photons_;
 };
 
 std::unique_ptr<RenderProcess> VertexConnectionMerging::begin(const RenderContext& context) const {
