@@ -22,6 +22,24 @@ Spectrum scattered_from_photon(const Vertex& at, const Photon& photon, const Wav
   return scattered;
 }
 
+bool parted(const Scene& scene, const Vertex& v, const Photon& photon, float radius) {
+  Point3 from = v.point.position, to = photon.position;
+  if (!v.in_medium()) {
+    const float lift = 0.1f * radius;
+    const Vector3 at_photon = photon.surface_normal();
+    from = from + (dot(v.point.normal, photon.out) > 0 ? lift : -lift) * Vector3(v.point.normal);
+    to = to + (dot(at_photon, photon.out) > 0 ? lift : -lift) * at_photon;
+  }
+  const Vector3 between = to - from;
+  Ray ray;
+  ray.maximum = length(between);
+  if (!(ray.maximum > 0)) return false;
+  ray.origin = from;
+  ray.direction = between / ray.maximum;
+  ray.time = v.point.time;
+  return scene.any(ray);
+}
+
 void PhotonMap::build(std::vector<Photon>&& photons) {
   photons_ = std::move(photons);
   std::vector<Point3> places(photons_.size());

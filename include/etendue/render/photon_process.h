@@ -38,11 +38,13 @@ class PhotonProcess : public RenderProcess {
     float surface_radius = 0, medium_radius = 0;  ///< [m]
     Merging merging;                              ///< n pi r^2 and n 4/3 pi r^3
     float radius(const Vertex& v) const { return v.in_medium() ? medium_radius : surface_radius; }
-    /// Calls `visit(photon, n pi r^2 or n 4/3 pi r^3)` for those within the radius of a vertex.
+    /// Calls `visit(photon, n pi r^2 or n 4/3 pi r^3)` for those within the radius of a vertex from which nothing parts them.
     template <class Visit>
-    void near(const Vertex& v, const Visit& visit) const {
+    void near(const Scene& scene, const Vertex& v, const Visit& visit) const {
       const auto density = float(v.in_medium() ? merging.medium : merging.surface);
-      map.within(v.point.position, radius(v), [&](const Photon& p) { visit(p, density); });
+      map.within(v.point.position, radius(v), [&](const Photon& p) {
+        if (p.in_medium == v.in_medium() && !parted(scene, v, p, radius(v))) visit(p, density);
+      });
     }
   };
   /// Makes photons of a step, after `share`. Requests of one step that differ in kinds have different numbers.

@@ -29,12 +29,19 @@ struct Photon {
   bool single : 1 = false;                  ///< it holds the hero wavelength alone
   bool in_medium : 1 = false;
   bool caustic : 1 = false;  ///< it came from the luminaire by specular scattering alone, once or more
+
+  Vector3 surface_normal() const { return Vector3{float(normal[0]), float(normal[1]), float(normal[2])} / 32767.0f; }
 };
 
 /// What of a photon's light goes on from a vertex near it: f alpha [W/(sr nm)] on a surface; in a medium phase alpha / s_s
 /// [W m/(sr nm)], since the throughput of the walk that came there holds s_s, too. To be divided by n pi r^2 or n 4/3 pi r^3.
 /// `wavelengths` are those of that walk, and `single` says whether it came with the hero alone.
 Spectrum scattered_from_photon(const Vertex& at, const Photon&, const Wavelengths& wavelengths, bool single);
+
+/// Whether something stands between a vertex and a photon within `radius` of it, so that the photon's light does not come
+/// there: a wall on a floor that two rooms share. Looked at from a tenth of the radius above both surfaces, so that their own
+/// shape hides little; the smaller the radius, the less.
+bool parted(const Scene&, const Vertex&, const Photon&, float radius);
 
 /// Photons that can be asked for by their places.
 class PhotonMap {

@@ -211,6 +211,7 @@ class PhotonMapperProcess final : public PhotonProcess {
       const Photon& p = photons.map[each.index];
       const bool wanted = kinds == PhotonKinds::all || (p.vertices > 1 && p.caustic == (kinds == PhotonKinds::caustics));
       if (!wanted || each.squared == infinity || walk.length + int(p.vertices) > settings_.max_depth) continue;
+      if (p.in_medium != v.in_medium() || parted(context.scene, v, p, radius)) continue;
       walk.add_light(int(p.vertices), scattered_from_photon(v, p, w, w.single()) / (float(photons.walks) * place));
     }
   }
@@ -279,7 +280,7 @@ class PhotonMapperProcess final : public PhotonProcess {
     Spectrum value;
   };
   Irradiance irradiance_at(const Photon& at) const {
-    Irradiance e{at.position, side(normal_of(at), at.out), {}};
+    Irradiance e{at.position, side(at.surface_normal(), at.out), {}};
     Near& near = near_on_this_thread();
     float radius = settings_.farthest * pixel_;
     global_.map.tree().nearest(at.position, radius, size_t(settings_.nearest), near);
@@ -287,15 +288,11 @@ class PhotonMapperProcess final : public PhotonProcess {
     for (const PointTree::Near& each : near) {
       const Photon& p = global_.map[each.index];
       const bool farthest = near.size() == size_t(settings_.nearest) && &each == &near.front();
-      if (!p.in_medium && !farthest && dot(p.out, e.normal) > 0 && dot(side(normal_of(p), p.out), e.normal) > 0.9f)
+      if (!p.in_medium && !farthest && dot(p.out, e.normal) > 0 && dot(side(p.surface_normal(), p.out), e.normal) > 0.9f)
         e.value += p.throughput / (float(global_.walks) * pi * square(radius));
     }
     return e;
   }
-  static Vector3 normal_of(const Photon& p) {
-    return Vector3{float(p.normal[0]), float(p.normal[1]), float(p.normal[2])} / 32767.0f;
-  }
-
   /// The light of the irradiance nearest to the last vertex, as if all came along the normal; false: none is near.
   template <class Walk>
   bool add_irradiance(Walk& walk) const {

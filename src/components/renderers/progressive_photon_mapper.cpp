@@ -102,8 +102,8 @@ class ProgressivePhotonProcess final : public PhotonProcess {
       const Wavelengths& w = walk.sample.wavelengths;
       walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, w, w.single()) / density);
     };
-    photons_.near(walk.vertex, add);
-    caustics_.near(walk.vertex, add);
+    photons_.near(context.scene, walk.vertex, add);
+    caustics_.near(context.scene, walk.vertex, add);
   }
 
   const ProgressivePhotonMapper& settings_;

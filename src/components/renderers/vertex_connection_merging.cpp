@@ -95,7 +95,7 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
       const KeptVertex& z = walks.camera_vertex(t);
       if (!z.connectable()) continue;
       if (merges)
-        photons_.near(z, [&](const Photon& photon, float) {
+        photons_.near(context.scene, z, [&](const Photon& photon, float) {
           if (int(photon.vertices) + t - 1 <= max_depth) found.add(walks.merge(photon, t));
         });
       if (!connecting) continue;
