@@ -22,21 +22,17 @@ Spectrum scattered_from_photon(const Vertex& at, const Photon& photon, const Wav
   return scattered;
 }
 
-bool parted(const Scene& scene, const Vertex& v, const Photon& photon, float radius) {
-  Point3 from = v.point.position, to = photon.position;
-  if (!v.in_medium()) {
-    const float lift = 0.1f * radius;
-    const Vector3 at_photon = photon.surface_normal();
-    from = from + (dot(v.point.normal, photon.out) > 0 ? lift : -lift) * Vector3(v.point.normal);
-    to = to + (dot(at_photon, photon.out) > 0 ? lift : -lift) * at_photon;
-  }
-  const Vector3 between = to - from;
+bool parted(const Scene& scene, const Point3& a, const Vector3& normal_a, float time, const Point3& b, const Vector3& normal_b,
+            float radius) {
+  const float lift = 0.1f * radius;
+  const Point3 from = a + lift * normal_a;
+  const Vector3 between = b + lift * normal_b - from;
   Ray ray;
   ray.maximum = length(between);
   if (!(ray.maximum > 0)) return false;
   ray.origin = from;
   ray.direction = between / ray.maximum;
-  ray.time = v.point.time;
+  ray.time = time;
   return scene.any(ray);
 }
 

@@ -55,6 +55,11 @@ void PointTree::divide(std::span<const Point3> points, std::uint32_t* order, siz
   }
 }
 
+std::vector<PointTree::Near>& PointTree::near_on_this_thread() {
+  static thread_local std::vector<Near> near;
+  return near;
+}
+
 void PointTree::nearest(const Point3& p, float radius, size_t count, std::vector<Near>& found) const {
   found.clear();
   if (count == 0) return;

@@ -38,10 +38,22 @@ struct Photon {
 /// `wavelengths` are those of that walk, and `single` says whether it came with the hero alone.
 Spectrum scattered_from_photon(const Vertex& at, const Photon&, const Wavelengths& wavelengths, bool single);
 
-/// Whether something stands between a vertex and a photon within `radius` of it, so that the photon's light does not come
-/// there: a wall on a floor that two rooms share. Looked at from a tenth of the radius above both surfaces, so that their own
-/// shape hides little; the smaller the radius, the less.
-bool parted(const Scene&, const Vertex&, const Photon&, float radius);
+/// A surface's normal on the side of a direction.
+inline Vector3 on_side(const Vector3& normal, const Vector3& direction) {
+  return dot(normal, direction) > 0 ? normal : -normal;
+}
+
+/// Whether something stands between two near places, so that light of the one does not come to the other: a wall on a floor
+/// that two rooms share. Looked at from a tenth of `radius`, their distance at most, above both surfaces on the side of the
+/// normals, so that their own shape hides little; the smaller the radius, the less. In media normals are zero.
+bool parted(const Scene&, const Point3& a, const Vector3& normal_a, float time, const Point3& b, const Vector3& normal_b,
+            float radius);
+/// The same of a photon within `radius` of a vertex.
+inline bool parted(const Scene& scene, const Vertex& v, const Photon& p, float radius) {
+  if (p.in_medium) return parted(scene, v.point.position, {}, v.point.time, p.position, {}, radius);
+  return parted(scene, v.point.position, on_side(Vector3(v.point.normal), p.out), v.point.time, p.position,
+                on_side(p.surface_normal(), p.out), radius);
+}
 
 /// Photons that can be asked for by their places.
 class PhotonMap {

@@ -41,6 +41,8 @@ class PointTree {
   };
   /// The `count` nearest of those nearer than `radius`, in a heap with the farthest first; fewer when there are no more.
   void nearest(const Point3& p, float radius, size_t count, std::vector<Near>& found) const;
+  /// A place for what is found, until the thread looks again.
+  static std::vector<Near>& near_on_this_thread();
 
  private:
   static constexpr size_t leaf = 8;

@@ -12,12 +12,12 @@
 // without the farthest itself (transport/photons.h). Directions from x are chosen by the shader, or towards where photons near
 // x came from (Jensen 1995, "Importance driven path tracing using the photon map"): of cones of opening W around the directions
 // of the K nearest one is taken in proportion to what its photon carries, so that with a share q
-//     p(w) = (1 - q) p_shader(w) + q sum_k P_k [w in cone k] / W.
 // In media no light is gathered: photons at the vertex bring all that was scattered before.
 
-#include "etendue/core/warp.h"
 #include "etendue/render/photon_process.h"
 #include "etendue/transport/camera_walk.h"
+#include "etendue/transport/irradiance_points.h"
+#include "etendue/transport/photon_directions.h"
 #include "etendue/transport/renderer_members.h"
 
 namespace etendue {
@@ -84,61 +84,6 @@ class PhotonMapper final : public Renderer {
   std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
 };
 
-namespace {
-
-using Near = std::vector<PointTree::Near>;
-Near& near_on_this_thread() {
-  static thread_local Near near;
-  return near;
-}
-
-/// The direction of a surface's normal on the side of `out`.
-Vector3 side(const Vector3& normal, const Vector3& out) { return dot(normal, out) > 0 ? normal : -normal; }
-
-/// Directions of photons near a point, for choosing one.
-class PhotonDirections {
- public:
-  static constexpr size_t most = 24;
-  static constexpr float opening = 0.06f;  // 1 - cosine of a cone's half angle: 20 degrees
-
-  /// Of photons on the side of the surface that the walk came from.
-  PhotonDirections(const PhotonMap& map, const Vertex& x, float radius) {
-    Near& near = near_on_this_thread();
-    map.tree().nearest(x.point.position, radius, most, near);
-    const Vector3 normal = side(Vector3(x.point.normal), x.out);
-    for (const PointTree::Near& each : near) {
-      const Photon& p = map[each.index];
-      if (p.in_medium || !(dot(normal, p.out) > 0)) continue;
-      photons_[count_] = &p;
-      sum_ += up_to_[count_] = std::max(p.throughput.average(), 0.0f);
-      ++count_;
-    }
-  }
-  bool empty() const { return !(sum_ > 0); }
-
-  Vector3 sample(float choice, Point2 u) const {
-    float rest = choice * sum_;
-    size_t k = 0;
-    while (k + 1 < count_ && rest >= up_to_[k]) rest -= up_to_[k++];
-    return Frame(Normal3(photons_[k]->out)).to_world(warp::cone(u, opening));
-  }
-  /// [1/sr]
-  float density(const Vector3& direction) const {
-    float met = 0;
-    for (size_t k = 0; k < count_; ++k)
-      if (dot(direction, photons_[k]->out) >= 1 - opening) met += up_to_[k];
-    return met / sum_ * warp::cone_density(opening);
-  }
-
- private:
-  std::array<const Photon*, most> photons_;
-  std::array<float, most> up_to_;
-  size_t count_ = 0;
-  float sum_ = 0;
-};
-
-}  // namespace
-
 class PhotonMapperProcess final : public PhotonProcess {
  public:
   PhotonMapperProcess(const PhotonMapper& r, const RenderContext& c)
@@ -155,7 +100,9 @@ class PhotonMapperProcess final : public PhotonProcess {
     request.kinds = PhotonKinds::caustics;
     if (targets_.useful()) request.targets = &targets_;
     caustics_ = make_photons(schedule, step, request);
-    if (settings_.irradiance && settings_.final_gather) find_irradiance(schedule);
+    if (settings_.irradiance && settings_.final_gather)
+      irradiance_.find(context.scene, global_.map,
+                       {size_t(settings_.nearest), settings_.farthest * pixel_, global_.walks, time(0)});
   }
 
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
@@ -199,7 +146,7 @@ class PhotonMapperProcess final : public PhotonProcess {
   void add_photons(Walk& walk, const Photons& photons, int nearest, float farthest, PhotonKinds kinds) const {
     const Vertex& v = walk.vertex;
     const Wavelengths& w = walk.sample.wavelengths;
-    Near& near = near_on_this_thread();
+    std::vector<PointTree::Near>& near = PointTree::near_on_this_thread();
     float radius = farthest * pixel_;
     photons.map.tree().nearest(v.point.position, radius, size_t(nearest), near);
     if (near.size() == size_t(nearest)) {
@@ -219,8 +166,12 @@ class PhotonMapperProcess final : public PhotonProcess {
   /// All light of a surface that is seen while gathering.
   template <class Walk>
   void add_all(Walk& walk) const {
-    if (!settings_.irradiance || !add_irradiance(walk))
-      add_photons(walk, global_, settings_.nearest, settings_.farthest, PhotonKinds::all);
+    const Vertex& v = walk.vertex;
+    const Spectrum* irradiance = settings_.irradiance ? irradiance_.at(v) : nullptr;
+    if (!irradiance) return add_photons(walk, global_, settings_.nearest, settings_.farthest, PhotonKinds::all);
+    // As if all came along the normal, which is the same for a matt surface.
+    const Vector3 normal = on_side(Vector3(v.point.normal), v.out);
+    walk.add_light(1, v.scatter->evaluate(v.out, normal, Transport::radiance, v.lobes) * *irradiance);
   }
 
   /// Adds light straight from luminaires and chooses where the walk goes on, towards where photons came from if `guided`.
@@ -260,63 +211,11 @@ class PhotonMapperProcess final : public PhotonProcess {
     return walk.go_on(*next);
   }
 
-  /// Irradiance [W/(m^2 nm)] at every fourth photon on a surface, on the side that the photon came to.
-  void find_irradiance(Schedule& schedule) {
-    constexpr size_t step = 4, item_size = 1024;
-    const size_t items = (global_.map.size() + item_size - 1) / item_size;
-    irradiance_ = schedule.collect<Irradiance>(items, [&](std::uint64_t item, std::vector<Irradiance>& found, Arena&) {
-      for (size_t i = item * item_size; i < std::min(global_.map.size(), (item + 1) * item_size); i += step)
-        if (!global_.map[i].in_medium) found.push_back(irradiance_at(global_.map[i]));
-    });
-    std::vector<Point3> places;
-    for (const Irradiance& each : irradiance_) places.push_back(each.position);
-    std::vector<Irradiance> ordered;
-    for (const std::uint32_t i : irradiance_tree_.build(places)) ordered.push_back(irradiance_[i]);
-    irradiance_ = std::move(ordered);
-  }
-  struct Irradiance {
-    Point3 position;
-    Vector3 normal;  ///< on the side it counts for
-    Spectrum value;
-  };
-  Irradiance irradiance_at(const Photon& at) const {
-    Irradiance e{at.position, side(at.surface_normal(), at.out), {}};
-    Near& near = near_on_this_thread();
-    float radius = settings_.farthest * pixel_;
-    global_.map.tree().nearest(at.position, radius, size_t(settings_.nearest), near);
-    if (near.size() == size_t(settings_.nearest)) radius = std::sqrt(near.front().squared);
-    for (const PointTree::Near& each : near) {
-      const Photon& p = global_.map[each.index];
-      const bool farthest = near.size() == size_t(settings_.nearest) && &each == &near.front();
-      if (!p.in_medium && !farthest && dot(p.out, e.normal) > 0 && dot(side(p.surface_normal(), p.out), e.normal) > 0.9f)
-        e.value += p.throughput / (float(global_.walks) * pi * square(radius));
-    }
-    return e;
-  }
-  /// The light of the irradiance nearest to the last vertex, as if all came along the normal; false: none is near.
-  template <class Walk>
-  bool add_irradiance(Walk& walk) const {
-    constexpr size_t most = 8;
-    const Vertex& v = walk.vertex;
-    const Vector3 normal = side(Vector3(v.point.normal), v.out);
-    Near& near = near_on_this_thread();
-    irradiance_tree_.nearest(v.point.position, settings_.farthest * pixel_, most, near);
-    std::sort_heap(near.begin(), near.end());
-    for (const PointTree::Near& each : near) {
-      const Irradiance& e = irradiance_[each.index];
-      if (!(dot(e.normal, normal) > 0.9f)) continue;
-      walk.add_light(1, v.scatter->evaluate(v.out, normal, Transport::radiance, v.lobes) * e.value);
-      return true;
-    }
-    return false;
-  }
-
   const PhotonMapper& settings_;
   const float pixel_;  // [m]
   const EmissionTargets targets_;
   Photons global_, caustics_;
-  std::vector<Irradiance> irradiance_;
-  PointTree irradiance_tree_;
+  IrradiancePoints irradiance_;
 };
 
 std::unique_ptr<RenderProcess> PhotonMapper::begin(const RenderContext& context) const {
