@@ -127,6 +127,9 @@ class CameraWalk : public Walk<clear> {
     return goes_on_ = true;
   }
 
+  /// Adds light that somebody else gathered at the last vertex, whose way from the luminaire has so many segments: photons.
+  void add_light(int segments_before, const Spectrum& light) { add(length + segments_before, throughput * light); }
+
   /// Lets it end after all.
   void end() { goes_on_ = moved_ = false; }
 
