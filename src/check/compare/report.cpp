@@ -60,8 +60,8 @@ class Page {
   void heading() {
     add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Comparison</title>\n"
-        "<style>{}{}{}</style>\n</head>\n<body>\n<h1>Comparison</h1>\n<p class=\"quiet\"><code>{}</code></p>\n<ul>\n",
-        page_style, style, plot_style, escaped(command_line_));
+        "<style>{}{}{}{}</style>\n</head>\n<body>\n<h1>Comparison</h1>\n<p class=\"quiet\"><code>{}</code></p>\n<ul>\n",
+        page_style, style, plot_style, picture_style, escaped(command_line_));
     for (const SceneResult& scene : results_.scenes) {
       add("<li><code>{}</code>: least error after {:.3g} s: <strong>{}</strong>; after {} samples: <strong>{}</strong></li>\n",
           escaped(scene.file), scene.equal_seconds, escaped(winner_text(scene, scene.at_time)), scene.equal_samples,

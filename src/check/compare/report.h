@@ -6,6 +6,8 @@
 
 namespace etendue::comparing {
 
+/// The looks of what `scene_pictures` makes.
+extern const std::string_view picture_style;
 /// The pictures and maps of a scene, as HTML; made while its numbers are at hand.
 std::string scene_pictures(const SceneResult&, const SceneImages&, const ToneMap&, const std::vector<PixelArea>& insets);
 

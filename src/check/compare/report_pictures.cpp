@@ -9,20 +9,22 @@
 #include "report.h"
 
 namespace etendue::comparing {
-namespace {
 
-std::string picture_style() {
-  return "<style>.row { display: flex; flex-wrap: wrap; gap: .8rem; margin: .8rem 0; }\n"
-         "figure { margin: 0; padding: .5rem; background: var(--panel); border-radius: .3rem; }\n"
-         "figure img { display: block; width: 15rem; image-rendering: pixelated; }\n"
-         ".framed { position: relative; } .framed span { position: absolute; outline: 1.5px solid #fff; box-shadow: 0 0 0 "
-         "2.5px #000; }\n"
-         ".small { display: flex; gap: .4rem; margin-top: .4rem; } .small img { width: 7.3rem; }\n"
-         "figcaption { font-size: .85rem; margin-top: .3rem; max-width: 15rem; }\n"
-         ".scale { width: 18rem; font-size: .8rem; margin: .4rem 0 1rem; } .scale .bar { height: .8rem; border: 1px solid "
-         "var(--line); }\n"
-         ".scale .ends { display: flex; justify-content: space-between; }</style>\n";
-}
+const std::string_view picture_style = R"(
+.row { display: flex; flex-wrap: wrap; gap: .8rem; margin: .8rem 0; }
+figure { margin: 0; padding: .5rem; background: var(--panel); border-radius: .3rem; }
+figure img { display: block; width: 15rem; image-rendering: pixelated; }
+.framed { position: relative; }
+.framed span { position: absolute; outline: 1.5px solid #fff; box-shadow: 0 0 0 2.5px #000; }
+.small { display: flex; gap: .4rem; margin-top: .4rem; }
+.small img { width: 7.3rem; }
+figcaption { font-size: .85rem; margin-top: .3rem; max-width: 15rem; }
+.scale { width: 18rem; font-size: .8rem; margin: .4rem 0 1rem; }
+.scale .bar { height: .8rem; border: 1px solid var(--line); }
+.scale .ends { display: flex; justify-content: space-between; }
+)";
+
+namespace {
 
 std::string with_insets(const Shown& shown, const std::vector<PixelArea>& insets, const std::string& caption) {
   std::string text = fmt::format("<figure><div class=\"framed\"><img alt=\"{}\" src=\"{}\">", caption, shown.uri());
@@ -84,8 +86,8 @@ std::string scene_pictures(const SceneResult& scene, const SceneImages& images, 
   for (const SceneImages::One& one : images.variants) pictures.emplace_back(one.picture.begin(), one.picture.end());
   const std::vector<Shown> shown = show_alike(tone_map, pictures, scene.width, scene.height);
 
-  std::string text = picture_style() + "<h3>Pictures</h3>\n<p>The first run of each variant" +
-                     (given.empty() ? ", enlarged where the variants' errors differ most" : "") +
+  std::string text = "<h3>Pictures</h3>\n<p>The first run of each variant" +
+                     std::string(given.empty() ? ", enlarged where the variants' errors differ most" : "") +
                      ".</p>\n<div class=\"row\">\n";
   text += with_insets(shown.front(), insets, "reference");
   for (size_t v = 0; v < scene.variants.size(); ++v) text += with_insets(shown[v + 1], insets, escaped(scene.variants[v].name));
