@@ -25,6 +25,7 @@ void add_schema_command(CLI::App& program, Run& run);
 void add_manual_command(CLI::App& program, Run& run);
 void add_image_command(CLI::App& program, Run& run);
 void add_verify_command(CLI::App& program, Run& run);
+void add_compare_command(CLI::App& program, Run& run);
 void add_conform_command(CLI::App& program, Run& run);
 
 }  // namespace etendue

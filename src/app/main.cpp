@@ -24,6 +24,7 @@ First steps
   etendue classes PathTracer                             one class: its members, units, defaults and ranges
   etendue image diff a.exr b.exr                         how much two pictures differ
   etendue verify box.etd                                 whether all algorithms agree on a scene
+  etendue compare box.etd --renderers A,B --time 1m      which algorithm is better on a scene, and by how much
   etendue conform Shader                                 whether parts do what their interfaces promise
 
 Help on one command: etendue render --help
@@ -60,6 +61,7 @@ int run_program(int argument_count, char** arguments) {
   add_manual_command(program, run);
   add_image_command(program, run);
   add_verify_command(program, run);
+  add_compare_command(program, run);
   add_conform_command(program, run);
 
   refuse_empty_values(program);

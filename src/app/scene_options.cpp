@@ -21,6 +21,10 @@ std::pair<std::string, std::string> split(const std::string& option, const std::
 
 void SceneOptions::add_to(CLI::App& command) {
   command.add_option("FILE", file, "The render description (.etd, or .json)")->required()->type_name("");
+  add_overrides_to(command);
+}
+
+void SceneOptions::add_overrides_to(CLI::App& command) {
   command.add_option("-D,--define", defines, "Replace the value of a param of the file; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
@@ -53,8 +57,10 @@ Ref<Job> SceneOptions::load() const {
   return job;
 }
 
-std::string SceneOptions::command_line() const {
-  std::string text = " " + shell_quoted(file);
+std::string SceneOptions::command_line() const { return " " + shell_quoted(file) + overrides_line(); }
+
+std::string SceneOptions::overrides_line() const {
+  std::string text;
   for (const std::string& define : defines) text += " -D " + shell_quoted(define);
   for (const std::string& set : sets) text += " --set " + shell_quoted(set);
   for (const std::string& plugin : plugins) text += " --plugin " + shell_quoted(plugin);

@@ -17,11 +17,15 @@ struct SceneOptions {
   std::vector<std::string> plugins;
 
   void add_to(CLI::App& command);
+  /// All but the file, for commands that take several.
+  void add_overrides_to(CLI::App& command);
 
   /// Loads plugins and file and applies the overrides. Throws Errors.
   Ref<Job> load() const;
   /// These options as they are written on a command line, quoted for a shell, each with a blank before it.
   std::string command_line() const;
+  /// The same without the file.
+  std::string overrides_line() const;
 };
 
 /// The text in single quotes when a shell would otherwise take it apart.

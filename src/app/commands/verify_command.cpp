@@ -7,6 +7,7 @@
 #include "app/scene_options.h"
 #include "app/text.h"
 #include "check/verify/report.h"
+#include "display_tone_map.h"
 #include "etendue/language/language.h"
 #include "files/input_files.h"
 #include "files/output_files.h"
@@ -110,14 +111,6 @@ std::string VerifyOptions::command_line() const {
   add("--size", size);
   add_number("--inject", inject, defaults.inject);
   return text;
-}
-
-/// The tone map of the report's pictures: the job's, unless that leaves them as they are.
-Ref<ToneMap> display_tone_map(const Job& job) {
-  if (job.tone_map && job.tone_map->clips()) return job.tone_map;
-  Ref<ToneMap> map = make<Job>()->tone_map;
-  prepare_tree(*map);
-  return map;
 }
 
 verify::Collected collect(Render& render, const verify::Choice& choice, const VerifyOptions& options) {

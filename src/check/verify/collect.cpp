@@ -16,38 +16,6 @@ bool written(const Component& component, const std::string& member) {
   return std::any_of(members.begin(), members.end(), [&](const auto& m) { return m.first == member; });
 }
 
-/// What all algorithms take from the job, so that they compute the same thing with the same kind of numbers; one that holds
-/// another renderer inside, for that as well.
-void take_over(Renderer& to, const Renderer& from) {
-  for (const char* member : {"sampler", "light_sampler", "max_depth"})
-    if (!written(to, member) && to.class_info().find(member) && from.class_info().find(member))
-      set(to, member, get(from, member));
-  for (const Member& member : to.class_info().members) {
-    const Value value = get(to, member.name);
-    if (const auto* part = value.as<Ref<Component>>())
-      if (const Ref<Renderer> inner = ref_cast<Renderer>(*part)) take_over(*inner, from);
-  }
-}
-
-Ref<Renderer> parse_renderer(const std::string& expression) {
-  const bool bare = expression.find('{') == std::string::npos;
-  Ref<Renderer> renderer = ref_cast<Renderer>(parse_component(bare ? expression + " {}" : expression, "--renderers"));
-  if (!renderer)
-    throw Error("'" + expression + "' is no renderer; see etendue classes Renderer", {intern("--renderers"), 0, 0});
-  return renderer;
-}
-
-std::string trimmed(const std::string& text) {
-  const size_t begin = text.find_first_not_of(" \t\r\n"), end = text.find_last_not_of(" \t\r\n");
-  return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
-}
-
-std::vector<std::string> missed(const Renderer& renderer, const SceneTraits& traits) {
-  std::vector<std::string> lost;
-  for (const Advice& advice : renderer.misses(traits)) lost.push_back(advice.lost);
-  return lost;
-}
-
 std::string joined(const std::vector<std::string>& parts) {
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
@@ -77,6 +45,36 @@ std::vector<double> means(const Layout& layout, const Image& picture) {
 }
 
 }  // namespace
+
+void take_over(Renderer& to, const Renderer& from) {
+  for (const char* member : {"sampler", "light_sampler", "max_depth"})
+    if (!written(to, member) && to.class_info().find(member) && from.class_info().find(member))
+      set(to, member, get(from, member));
+  for (const Member& member : to.class_info().members) {
+    const Value value = get(to, member.name);
+    if (const auto* part = value.as<Ref<Component>>())
+      if (const Ref<Renderer> inner = ref_cast<Renderer>(*part)) take_over(*inner, from);
+  }
+}
+
+Ref<Renderer> named_renderer(const Job& job, const std::string& expression, const std::string& option) {
+  if (expression == job.renderer->class_info().name) return job.renderer;
+  const bool bare = expression.find('{') == std::string::npos;
+  Ref<Renderer> renderer = ref_cast<Renderer>(parse_component(bare ? expression + " {}" : expression, option));
+  if (!renderer) throw Error("'" + expression + "' is no renderer; see etendue classes Renderer", {intern(option), 0, 0});
+  return renderer;
+}
+
+std::string trimmed(const std::string& text) {
+  const size_t begin = text.find_first_not_of(" \t\r\n"), end = text.find_last_not_of(" \t\r\n");
+  return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
+}
+
+std::vector<std::string> missed_light(const Renderer& renderer, const SceneTraits& traits) {
+  std::vector<std::string> lost;
+  for (const Advice& advice : renderer.misses(traits)) lost.push_back(advice.lost);
+  return lost;
+}
 
 std::vector<std::string> split_expressions(const std::string& list) {
   std::vector<std::string> parts(1);
@@ -112,7 +110,7 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
     for (const std::string& expression : split_expressions(names)) {
       try {
         if (expression.empty()) throw Error("a name is missing in '" + names + "'", {intern("--renderers"), 0, 0});
-        all.push_back({expression, expression == own_class ? job.renderer : parse_renderer(expression), {}});
+        all.push_back({expression, named_renderer(job, expression, "--renderers"), {}});
       } catch (const Errors& several) {
         errors.insert(errors.end(), several.errors.begin(), several.errors.end());
       } catch (const Error& error) {
@@ -141,7 +139,7 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
       }
       prepare_tree(*candidate.renderer);
     }
-    candidate.misses = missed(*candidate.renderer, traits);
+    candidate.misses = missed_light(*candidate.renderer, traits);
     if (!candidate.misses.empty() && !(force && named))
       choice.left_out.push_back({candidate.name, "misses " + joined(candidate.misses)});
     else if (const std::string bias = candidate.renderer->bias(); !bias.empty() && !named)

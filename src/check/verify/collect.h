@@ -29,6 +29,18 @@ struct Choice {
 /// The expressions of a list "A, B{x: [1, 2]}": parts between commas outside of brackets and texts.
 std::vector<std::string> split_expressions(const std::string& list);
 
+/// Without blanks at its ends.
+std::string trimmed(const std::string&);
+
+/// The renderer that an expression names: the job's own class alone is the job's own renderer with all its settings; any other,
+/// "PathTracer{next_event: false}", is a new one. Throws Errors for what is none.
+Ref<Renderer> named_renderer(const Job&, const std::string& expression, const std::string& option);
+/// Gives a new renderer the job's sampler, light sampler and max_depth, unless its expression says otherwise; one that holds
+/// another inside, for that as well. Throws Error when it cannot take them.
+void take_over(Renderer& to, const Renderer& from);
+/// The light of a scene that a renderer cannot find, in words.
+std::vector<std::string> missed_light(const Renderer&, const SceneTraits&);
+
 /// Renderers that find all light of a prepared job's scene. Without names: the job's own and one of each other class that is
 /// unbiased. A name is a class (the job's own class: the job's own renderer) or an expression, "PathTracer{next_event: false}".
 /// Those made here take over the job's sampler, light sampler and max_depth unless their expression says otherwise. `force`

@@ -8,6 +8,10 @@
 namespace etendue::verify {
 namespace {
 
+unsigned char byte(double v) { return static_cast<unsigned char>(std::clamp(v, 0.0, 255.0) + 0.5); }
+
+}  // namespace
+
 std::string png_uri(int width, int height, const std::vector<unsigned char>& rgb) {
   ImageHeader header(width, height, 3, NumberType::uint8);
   header.transfer = "srgb";
@@ -18,10 +22,6 @@ std::string png_uri(int width, int height, const std::vector<unsigned char>& rgb
     throw Error(std::string("cannot make a PNG for the report: ") + e.what());
   }
 }
-
-unsigned char byte(double v) { return static_cast<unsigned char>(std::clamp(v, 0.0, 255.0) + 0.5); }
-
-}  // namespace
 
 std::string base64(const std::vector<unsigned char>& bytes) {
   constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

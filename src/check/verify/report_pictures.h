@@ -9,6 +9,9 @@ namespace etendue::verify {
 /// RFC 4648, with padding.
 std::string base64(const std::vector<unsigned char>& bytes);
 
+/// An image of 8-bit sRGB: "data:image/png;base64,…"
+std::string png_uri(int width, int height, const std::vector<unsigned char>& rgb);
+
 /// Where a renderer sees more (red) or less (blue) than the other: z of each tile of a layer, white at 0, full colour from
 /// `z_of_full_color` on. Tiles that disagree have a black frame, undecided ones a grey one. "data:image/png;base64,…"
 std::string difference_map(const Layout&, const PairAgreement&, size_t layer);

@@ -1,0 +1,152 @@
+#include "compare_options.h"
+
+#include <fmt/format.h>
+
+#include "app/text.h"
+#include "etendue/language/language.h"
+
+namespace etendue {
+
+void CompareOptions::add_to(CLI::App& command) {
+  command.add_option("FILE", files, "Render descriptions (.etd, or .json); several make a matrix of scenes and variants")
+      ->required()
+      ->type_name("");
+  add_overrides_to(command);
+  command
+      .add_option(
+          "--renderers", renderers,
+          "Compare these: classes, or expressions such as 'PathTracer{next_event: false}', with commas between. They take "
+          "over the sampler, light sampler and max_depth of the file's, unless they set their own")
+      ->type_name("A,B,…");
+  command
+      .add_option("--variant", variant_texts,
+                  "Compare the file with these members set as well, as --set does, under a name; may be repeated")
+      ->type_name("'NAME: PATH=VALUE, …'")
+      ->allow_extra_args(false);
+  command.add_option("--time", time, "Each run ends after so much processor time, of all threads together")->type_name("TIME");
+  command.add_option("--samples", samples, "Each run ends after so many samples per pixel")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1 << 30).description(""));
+  command.add_option("--runs", runs, "Independent runs of each variant")
+      ->capture_default_str()
+      ->type_name("K")
+      ->check(CLI::Range(3, 1000).description(""));
+  command
+      .add_option("--reference", references,
+                  "The true picture, of linear values (.exr, .npy) or a checkpoint; once for each FILE. Without: the mean of "
+                  "the variants that are unbiased and find all light")
+      ->type_name("IMAGE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--reference-time", reference_time,
+                  "Render a reference for so much processor time, with the first variant that is unbiased and finds all light")
+      ->type_name("TIME");
+  command.add_option("--report", report, "Write a page with plots, pictures and tables, one HTML file")->type_name("FILE");
+  command.add_option("--csv", csv, "Write the error curves as a table")->type_name("FILE");
+  command.add_option("--json", json, "Write all numbers")->type_name("FILE");
+  command
+      .add_option(
+          "--state", state,
+          "Keep finished runs in this folder; without: beside the report, or else the table. The same command goes on from "
+          "there")
+      ->type_name("FOLDER");
+  command.add_option("--inset", inset_texts, "Show this part of the picture enlarged; without: where variants differ most")
+      ->type_name("X,Y,W,H")
+      ->allow_extra_args(false);
+  command
+      .add_option("--tile", tile, "Side of the tiles in which biases are looked for [pixels]; 0: 32, less in small pictures")
+      ->type_name("PX")
+      ->check(CLI::Range(0, 65536).description(""));
+  command.add_option("--significance", significance, "Probability of calling any of several equal variants better, or biased")
+      ->capture_default_str()
+      ->type_name("P")
+      ->check(CLI::Range(1e-12, 0.5).description(""));
+  command.add_option("--seed", seed, "Choose other random numbers")->type_name("N");
+  command.add_option("--size", size, "Size of the pictures in pixels")->type_name("WxH");
+  command.add_option("--threads", threads, "Threads to use; 0: all cores")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""));
+  command.add_flag("--quiet", quiet, "Print nothing but errors");
+}
+
+Ref<Job> CompareOptions::load(const std::string& path) const {
+  SceneOptions one = *this;
+  one.file = path;
+  Ref<Job> job = one.load();
+  if (!seed.empty()) set_path(*job, "seed", seed);
+  if (!size.empty()) {
+    int n[2];
+    parse_integers(size, 'x', 2, n, "--size", "WxH, such as 640x480");
+    set_path(*job, "image.width", std::to_string(n[0]));
+    set_path(*job, "image.height", std::to_string(n[1]));
+  }
+  return job;
+}
+
+comparing::Budget CompareOptions::budget() const {
+  if ((samples > 0) == !time.empty())
+    throw Error(samples > 0 ? "runs end by --samples or by --time: give one of them"
+                            : "say when runs end: --time 1m (processor time of each) or --samples 256");
+  return {std::uint32_t(samples), time.empty() ? 0 : parse_duration(time, "--time")};
+}
+
+double CompareOptions::reference_seconds() const {
+  if (!references.empty() && !reference_time.empty())
+    throw Error("the reference is --reference or made by --reference-time: give one of them");
+  if (!references.empty() && references.size() != files.size())
+    throw Error(fmt::format("there are {} references for {} scenes: give one for each, in the same order", references.size(),
+                            files.size()),
+                {intern("--reference"), 0, 0});
+  return reference_time.empty() ? 0 : parse_duration(reference_time, "--reference-time");
+}
+
+std::vector<comparing::Variant> CompareOptions::variants() const {
+  std::vector<comparing::Variant> list = comparing::parse_variants(renderers, variant_texts);
+  if (list.empty()) throw Error("there is nothing to compare: name --renderers A,B or --variant 'NAME: PATH=VALUE'");
+  return list;
+}
+
+std::vector<PixelArea> CompareOptions::insets() const {
+  std::vector<PixelArea> list;
+  for (const std::string& text : inset_texts) {
+    int n[4];
+    parse_integers(text, ',', 4, n, "--inset", "X,Y,W,H, such as 100,80,64,48");
+    constexpr int most = 1 << 24;
+    if (n[0] < 0 || n[1] < 0 || n[2] < 1 || n[3] < 1 || n[0] > most || n[1] > most || n[2] > most || n[3] > most)
+      throw Error(fmt::format("'{}' is no part of a picture", text), {intern("--inset"), 0, 0});
+    list.push_back({n[0], n[1], n[0] + n[2], n[1] + n[3]});
+  }
+  return list;
+}
+
+std::string CompareOptions::state_folder() const {
+  if (!state.empty()) return state;
+  for (const std::string* file : {&report, &json, &csv})
+    if (!file->empty()) return *file + ".runs";
+  return {};
+}
+
+std::string CompareOptions::command_line() const {
+  std::string text = "etendue compare";
+  for (const std::string& path : files) text += " " + shell_quoted(path);
+  text += overrides_line();
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) text += fmt::format(" {} {}", option, shell_quoted(value));
+  };
+  const CompareOptions defaults;
+  add("--renderers", renderers);
+  for (const std::string& variant : variant_texts) add("--variant", variant);
+  add("--time", time);
+  if (samples > 0) add("--samples", std::to_string(samples));
+  if (runs != defaults.runs) add("--runs", std::to_string(runs));
+  for (const std::string& reference : references) add("--reference", reference);
+  add("--reference-time", reference_time);
+  for (const std::string& inset : inset_texts) add("--inset", inset);
+  if (tile != defaults.tile) add("--tile", std::to_string(tile));
+  if (significance != defaults.significance) add("--significance", fmt::format("{}", significance));
+  add("--seed", seed);
+  add("--size", size);
+  return text;
+}
+
+}  // namespace etendue

@@ -1,0 +1,12 @@
+#pragma once
+// What `etendue compare` prints.
+
+#include <string>
+
+#include "check/compare/analysis.h"
+
+namespace etendue {
+
+std::string compare_text(const comparing::Results&);
+
+}  // namespace etendue
