@@ -57,6 +57,20 @@ TEST(PointTree, finds_all_within_a_distance_and_the_nearest) {
         std::sort_heap(near.begin(), near.end());
         std::ranges::sort(by_distance);
         for (size_t k = 0; k < near.size(); ++k) EXPECT_EQ(near[k].squared, by_distance[k].first);
+        // Along a line, now and then one that runs along an axis.
+        const Vector3 direction = n % 5 == 0 ? Vector3{0, 0, 1} : normalize(Vector3{u(random), u(random), u(random)});
+        const float reach = n % 3 == 0 ? 0.7f : infinity;
+        std::vector<std::uint32_t> passed, near_line;
+        tree.along(p, direction, reach, 0.1f, [&](std::uint32_t i, float t) {
+          EXPECT_EQ(t, dot(tree[i] - p, direction));
+          passed.push_back(order[i]);
+        });
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const float t = dot(points[i] - p, direction);
+          if (t > 0 && t < reach && length_squared(points[i] - p - t * direction) < square(0.1f)) near_line.push_back(i);
+        }
+        std::ranges::sort(passed);
+        EXPECT_EQ(passed, near_line);
       }
     }
 }

@@ -33,6 +33,49 @@ class PointTree {
     search(p, squared, [&](std::uint32_t i, float d2) { visit(i, d2); });
   }
 
+  /// Calls `visit(i, t)` for all points nearer than `radius` to the part of a line from its origin to the distance `reach`,
+  /// with t where the line passes the point; in a fixed order. `direction` is unit.
+  template <class Visit>
+  void along(const Point3& origin, const Vector3& direction, float reach, float radius, const Visit& visit) const {
+    struct Part {
+      std::uint32_t begin, end;
+      std::uint64_t node;
+      float from, to;  ///< of the line, as far as it can come near the node's points
+    };
+    std::array<Part, 64> stack;
+    stack[0] = {0, std::uint32_t(points_.size()), 0, -radius, reach + radius};
+    for (int waiting = 1; waiting > 0;) {
+      const Part at = stack[size_t(--waiting)];
+      if (at.end - at.begin <= leaf) {
+        for (std::uint32_t i = at.begin; i < at.end; ++i) {
+          const Vector3 to = points_[i] - origin;
+          const float t = dot(to, direction);
+          if (t > 0 && t < reach && length_squared(to - t * direction) < square(radius)) visit(i, t);
+        }
+        continue;
+      }
+      // The lower side: where the line is less than `radius` above the plane. The upper one likewise.
+      const Plane& plane = planes_[at.node];
+      const float o = origin[int(plane.axis)] - plane.at, d = direction[int(plane.axis)];
+      const float below = (radius - o) / d, above = (-radius - o) / d;
+      const std::uint32_t middle = at.begin + (at.end - at.begin) / 2;
+      Part lower{at.begin, middle, 2 * at.node + 1, at.from, at.to}, upper{middle, at.end, 2 * at.node + 2, at.from, at.to};
+      bool low = true, high = true;
+      if (d > 0) {
+        lower.to = std::min(lower.to, below);
+        upper.from = std::max(upper.from, above);
+      } else if (d < 0) {
+        lower.from = std::max(lower.from, below);
+        upper.to = std::min(upper.to, above);
+      } else {
+        low = o < radius;
+        high = o > -radius;
+      }
+      if (high && upper.from <= upper.to) stack[size_t(waiting++)] = upper;
+      if (low && lower.from <= lower.to) stack[size_t(waiting++)] = lower;
+    }
+  }
+
   /// A point and its squared distance.
   struct Near {
     float squared;
