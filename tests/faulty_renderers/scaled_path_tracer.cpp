@@ -1,5 +1,6 @@
 // A path tracer whose light is a little too much everywhere, or in one part of the picture.
 
+#include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
 
