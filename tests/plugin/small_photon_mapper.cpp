@@ -10,13 +10,14 @@
 #include <unordered_map>
 
 #include "etendue/render/renderer.h"
+#include "etendue/render/shrinking_bias.h"
 #include "etendue/transport/kept_walk.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/walk.h"
 
 using namespace etendue;
 
-class SmallPhotonMapper final : public Renderer {
+class SmallPhotonMapper final : public Renderer, public ShrinkingBias {
  public:
   int photons = 20000, max_depth = 16;
   float radius = 0.02f, alpha = 0.7f;
@@ -34,6 +35,12 @@ class SmallPhotonMapper final : public Renderer {
   Expectation expectation() const override { return Expectation::consistent; }
   std::uint32_t samples_per_step(std::uint32_t) const override { return 1; }
   Estimator estimator() const override { return Estimator::correlated; }
+  /// r_i / r_1, from r_{i+1}^2 = r_i^2 (i + alpha) / (i + 1).
+  double bias_width(std::uint32_t step) const override {
+    double area = 1;
+    for (std::uint32_t i = 1; i <= step; ++i) area *= (i - 1 + double(alpha)) / i;
+    return std::sqrt(area);
+  }
 
  private:
   std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
@@ -62,9 +69,7 @@ class PhotonProcess final : public RenderProcess {
   PhotonProcess(const SmallPhotonMapper& r, const RenderContext& c) : RenderProcess(r, c), settings_(r) {}
 
   void prepare_step(Schedule& schedule, const Step& step) override {
-    double shrunk = 1;
-    for (std::uint32_t i = 1; i <= step.number; ++i) shrunk *= (i - 1 + double(settings_.alpha)) / i;
-    radius_ = settings_.radius * context.scene.radius() * float(std::sqrt(shrunk));
+    radius_ = settings_.radius * context.scene.radius() * float(settings_.bias_width(step.number));
     const SampleKey key(context.seed, -1, -1, step.number);
     wavelengths_ = context.wavelengths.sample(key, NumberStream(*settings_.sampler, key).next());
 

@@ -73,6 +73,8 @@ std::string pair_text(const Collected& collected, const PairAgreement& pair) {
   const Layout& layout = collected.layout;
   std::string text = fmt::format("\n{} and {}: {}  ({})\n", collected.measured[pair.a].name, collected.measured[pair.b].name,
                                  name(pair.verdict), noticeable_text(pair));
+  if (const std::optional<PairConvergence> c = convergence_of(collected, pair))
+    text += fmt::format("  {}: {}\n", collected.measured[c->renderer].name, convergence_text(c->convergence));
   if (pair.verdict == Verdict::agrees) {
     const MeanTest* worst = nullptr;
     for (const LayerSummary& s : summarize(layout, pair))
@@ -119,6 +121,14 @@ nlohmann::ordered_json pair_json(const Collected& collected, const PairAgreement
                                  {"verdict", name(pair.verdict)},
                                  {"would_notice", pair.noticeable},
                                  {"by_length", pair.by_length}};
+  if (const std::optional<PairConvergence> c = convergence_of(collected, pair)) {
+    const Convergence& of = c->convergence;
+    json["convergence"] = {{"renderer", collected.measured[c->renderer].name},
+                           {"samples", of.samples},
+                           {"relative_bias_in_tiles", of.bias},
+                           {"standard_error", of.error}};
+    if (of.rate) json["convergence"]["rate"] = {{"value", of.rate->value}, {"standard_error", of.rate->error}};
+  }
   for (const LayerSummary& s : summarize(layout, pair)) {
     nlohmann::ordered_json layer = {{"name", layer_text(layout, s.layer)},
                                     {"verdict", name(s.verdict)},

@@ -139,24 +139,27 @@ void SceneAnalysis::curves(VariantResult& v, size_t variant) {
       curve.symmetric.push_back(symmetric_error(pixels, reference.mean));
     }
     marks = std::min(marks, run.marks.size());
-    v.samples += double(run.marks.back().samples) / double(runs_.runs);
-    v.seconds += run.marks.back().seconds / double(runs_.runs);
-    v.wall_seconds += run.wall_seconds / double(runs_.runs);
+    v.samples += double(run.marks.back().samples);
+    v.seconds += run.marks.back().seconds;
+    v.wall_seconds += run.wall_seconds;
     v.bad_samples += run.bad_samples;
     curves.push_back(std::move(curve));
   }
+  for (double* sum : {&v.samples, &v.seconds, &v.wall_seconds}) *sum /= double(runs_.runs);
   std::vector<double> samples, seconds;
   std::vector<std::vector<double>> errors(curves.size());
   for (size_t m = 0; m < marks; ++m) {
     CurvePoint point;
     std::vector<double> error, symmetric;
     for (size_t r = 0; r < curves.size(); ++r) {
-      point.samples += curves[r].samples[m] / double(curves.size());
-      point.seconds += curves[r].seconds[m] / double(curves.size());
+      point.samples += curves[r].samples[m];
+      point.seconds += curves[r].seconds[m];
       error.push_back(curves[r].error[m]);
       symmetric.push_back(curves[r].symmetric[m]);
       errors[r].push_back(error.back());
     }
+    point.samples /= double(curves.size());
+    point.seconds /= double(curves.size());
     point.error = mean_of(error);
     point.symmetric = mean_of(symmetric);
     samples.push_back(point.samples);
@@ -183,7 +186,7 @@ void SceneAnalysis::split_error(VariantResult& v, size_t variant, const Referenc
 }
 
 void SceneAnalysis::bias(VariantResult& v, size_t variant) const {
-  verify::Measured own{v.name, means_[variant]}, other{"the reference", reference_means_};
+  verify::Measured own{v.name, means_[variant], true, {}}, other{"the reference", reference_means_, true, {}};
   if (agreed_) {
     // The mean of the other members, run by run: as many independent pictures.
     const double rest = 1 - (agreed_->has(variant) ? agreed_->weight(variant) : 0);

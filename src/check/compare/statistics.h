@@ -7,21 +7,15 @@
 #include <span>
 #include <vector>
 
+#include "check/verify/estimate.h"
+
 namespace etendue::comparing {
 
-/// A number that was estimated from independent runs.
-struct Estimate {
-  double value = 0;
-  double error = 0;    ///< standard error; infinite: unknown
-  double freedom = 0;  ///< degrees of freedom of that error
-};
-
-/// The mean of independent numbers. One alone has no error that is known.
-Estimate mean_of(std::span<const double>);
-
-/// An estimate from all runs, with its standard error by the jackknife (Quenouille 1956, Tukey 1958): from the same estimate
-/// without each of the n runs in turn, (n - 1)/n sum (x_i - mean x)^2.
-Estimate jackknife(double of_all, std::span<const double> without_each);
+using verify::Estimate;
+using verify::exponent;
+using verify::exponent_of_mean;
+using verify::jackknife;
+using verify::mean_of;
 
 /// The interval that holds a positive quantity with a probability, by Student's t and symmetric on a logarithmic scale, where
 /// the standard error of the logarithm is error / value. Empty: nothing is known.
@@ -33,14 +27,6 @@ std::optional<Band> band(const Estimate&, double probability);
 /// What a curve through points (x rising, y) has at a place: a line between neighbours on logarithmic scales, on plain ones
 /// where a y is not positive. Empty outside of the points.
 std::optional<double> read_curve(std::span<const double> x, std::span<const double> y, double at);
-
-/// The exponent of y = c x^s by least squares of logarithms. Points that are not positive are left out; empty when fewer than
-/// two different x are left.
-std::optional<double> exponent(std::span<const double> x, std::span<const double> y);
-
-/// The exponent of the runs' mean y, errors[run][point] at x[point], with its error by the jackknife over the runs: the points
-/// of one run are not independent of each other, the runs are.
-std::optional<Estimate> exponent_of_mean(std::span<const double> x, const std::vector<std::vector<double>>& runs);
 
 // ---- who is better
 // -------------------------------------------------------------------------------------------------------------

@@ -56,6 +56,9 @@ constexpr double whole_share = 0.5, whole_parts_share = 0.25, tiles_share = 0.25
 struct Known {
   std::vector<Moments> moments;    // at layout.index
   std::vector<double> event_size;  // of each layer, in sums over pixels
+  const std::vector<double>& systematic;
+  /// What a mean's variance has beside that of chance.
+  double more_variance(size_t at) const { return systematic.empty() ? 0 : systematic[at] * systematic[at]; }
 };
 
 /// Skewness beyond what the passes of a normal distribution show in one of a hundred places. Its standard error is that of
@@ -68,7 +71,7 @@ bool significantly_skewed(const Moments& m) {
 }
 
 Known know(const Layout& layout, const Measured& measured) {
-  Known known;
+  Known known{{}, {}, measured.systematic};
   known.moments.reserve(layout.count());
   for (size_t layer = 0; layer < layout.layers.size(); ++layer)
     for (size_t place = 0; place < layout.places(); ++place) known.moments.push_back(moments(layout, measured, layer, place));
@@ -99,8 +102,9 @@ double missing_variance(const Layout& layout, const Known& known, size_t layer, 
   return std::max(missing, 0.0);
 }
 
-double welch_p(double difference, const Moments& a, const Moments& b, double variance_a, double variance_b) {
-  const double sa = variance_a / a.count, sb = variance_b / b.count, sum = sa + sb;
+/// `more` is known of the means' difference beside the passes' variances.
+double welch_p(double difference, const Moments& a, const Moments& b, double variance_a, double variance_b, double more) {
+  const double sa = variance_a / a.count + more / 2, sb = variance_b / b.count + more / 2, sum = sa + sb;
   if (difference <= 0) return 1;
   if (!(sum > 0)) return 0;
   const double freedom = sum * sum / (sa * sa / (a.count - 1) + sb * sb / (b.count - 1));
@@ -117,9 +121,11 @@ MeanTest test(const Layout& layout, const Known& known_a, const Known& known_b, 
   t.mean_b = b.mean;
   const double margin = relative_margin * std::max(std::abs(a.mean), std::abs(b.mean)) + floor;
   const double excess = a.mean - b.mean, difference = std::abs(excess) - margin;
-  t.plain_p = welch_p(difference, a, b, a.variance, b.variance);
+  const size_t at = layout.index(layer, place);
+  const double more = known_a.more_variance(at) + known_b.more_variance(at);
+  t.plain_p = welch_p(difference, a, b, a.variance, b.variance, more);
   t.p = welch_p(difference, a, b, a.variance + missing_variance(layout, known_a, layer, place, -excess),
-                b.variance + missing_variance(layout, known_b, layer, place, excess));
+                b.variance + missing_variance(layout, known_b, layer, place, excess), more);
   if (t.p > t.plain_p) t.doubt = Doubt::rare_events;
   if (t.p < 1 && (a.one_pass || b.one_pass)) {
     t.p = 1;
@@ -134,7 +140,9 @@ MeanTest test(const Layout& layout, const Known& known_a, const Known& known_b, 
 double noticeable(const Layout& layout, const Known& known_a, const Known& known_b, double p) {
   const Moments& a = known_a.moments[layout.index(0, layout.whole())];
   const Moments& b = known_b.moments[layout.index(0, layout.whole())];
-  const double sa = a.variance / a.count, sb = b.variance / b.count, sum = sa + sb;
+  const double more =
+      known_a.more_variance(layout.index(0, layout.whole())) + known_b.more_variance(layout.index(0, layout.whole()));
+  const double sa = a.variance / a.count + more / 2, sb = b.variance / b.count + more / 2, sum = sa + sb;
   const double mean = 0.5 * (a.mean + b.mean);
   if (!(mean > 0)) return HUGE_VAL;
   double difference = 0;

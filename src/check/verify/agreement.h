@@ -36,6 +36,9 @@ struct Measured {
   std::string name;
   std::vector<std::vector<double>> passes;  ///< of each pass layout.count() means, at layout.index(layer, place)
   bool tells_lengths = true;                ///< without, only all lengths together are compared
+  /// How far the passes' mean may be off for another reason than chance, as a standard error, at layout.index; empty: not at
+  /// all. Limits of consistent renderers are (limit.h).
+  std::vector<double> systematic;
 };
 
 enum class Verdict : std::uint8_t { agrees, undecided, disagrees };

@@ -6,6 +6,8 @@
 
 #include "describe/guard.h"
 #include "etendue/language/language.h"
+#include "etendue/render/shrinking_bias.h"
+#include "limit.h"
 
 namespace etendue::verify {
 namespace {
@@ -165,18 +167,59 @@ int default_tile(const ImageBuffer& image) {
 
 namespace {
 
-/// One more pass; false when it was interrupted.
-bool add_pass(Render& render, const Layout& layout, double factor, Measured& measured, RendererRun& run) {
-  if (render.run() != Ended::samples) return false;
-  const Image picture = render.film().develop();
-  measured.passes.push_back(means(layout, picture));
-  for (double& value : measured.passes.back()) value *= factor;
+/// Renders to so many samples of a pass that has begun, and what is seen there; empty when it was interrupted.
+std::optional<Image> picture_at(Render& render, std::uint32_t samples) {
+  render.edit(*render.job().renderer, "samples", Value(Number{double(samples)}));
+  if (render.run() != Ended::samples) return {};
+  return render.film().develop();
+}
+
+std::vector<double> tile_luminances(const Layout& layout, const std::vector<double>& means) {
+  return {means.begin(), means.begin() + std::ptrdiff_t(layout.tiles.size())};  // layer 0 is Y of all lengths
+}
+
+/// One more pass; false when it was interrupted. `systematic` sums up what limits leave out.
+bool add_pass(Render& render, const Layout& layout, double factor, const CollectOptions& options, const LimitOfPass* limit,
+              Measured& measured, RendererRun& run) {
+  std::vector<std::vector<double>> seen;
+  Image picture;
+  for (const std::uint32_t mark : limit ? limit->marks() : std::vector{std::uint32_t(options.samples)}) {
+    std::optional<Image> now = picture_at(render, mark);
+    if (!now) return false;
+    picture = std::move(*now);
+    seen.push_back(means(layout, picture));
+    for (double& value : seen.back()) value *= factor;
+  }
+  if (limit) {
+    std::vector<double> limits(layout.count());
+    measured.systematic.resize(layout.count());
+    for (size_t i = 0; i < limits.size(); ++i) {
+      std::vector<double> at_marks;
+      for (const auto& each : seen) at_marks.push_back(each[i]);
+      const double by_width = limit->limit_by_width(at_marks), by_square = limit->limit_by_square(at_marks);
+      limits[i] = 0.5 * (by_width + by_square);
+      measured.systematic[i] += 0.5 * (by_width - by_square);
+    }
+    measured.passes.push_back(std::move(limits));
+    auto& tiles = run.tiles_at_marks.emplace_back();
+    for (const auto& each : seen) tiles.push_back(tile_luminances(layout, each));
+  } else {
+    measured.passes.push_back(std::move(seen.back()));
+  }
   const size_t channels = picture.channels.size();
   for (size_t i = 0; i < run.picture.values.size(); ++i)
     run.picture.values[i] += factor * picture.values[i / 3 * channels + i % 3];
   run.bad_samples += render.film().bad_samples();
   run.samples += render.film().samples();
   return true;
+}
+
+/// For a renderer whose limit can be told from its steps.
+std::optional<LimitOfPass> limit_of(const Render& render, const Renderer& renderer, int samples) {
+  if (!tells_limit(renderer)) return {};
+  const auto& shrinking = dynamic_cast<const ShrinkingBias&>(renderer);
+  return LimitOfPass(std::uint32_t(samples), render.samples_per_step(),
+                     [&](std::uint32_t step) { return shrinking.bias_width(step); });
 }
 
 double share_with_length(const Layout& layout, const Measured& measured) {
@@ -197,6 +240,7 @@ bool measure(Render& render, size_t number, const Candidate& candidate, const Co
   render.edit(render.job(), "renderer", Value(Ref<Component>(renderer)));
   const int own_samples = renderer->samples;
   render.edit(*renderer, "samples", Value(Number{double(options.samples)}));
+  const std::optional<LimitOfPass> limit = limit_of(render, *renderer, options.samples);
   Measured measured;
   measured.name = candidate.name;
   RendererRun run;
@@ -213,12 +257,14 @@ bool measure(Render& render, size_t number, const Candidate& candidate, const Co
     // No two passes share random numbers, of whatever renderers.
     render.restart(seed + ((std::uint64_t(number) << 32) + pass) * 0x9e3779b97f4a7c15ull);
     going = (!options.go_on || options.go_on(number, pass)) &&
-            add_pass(render, all.layout, number == 0 ? options.inject : 1, measured, run);
+            add_pass(render, all.layout, number == 0 ? options.inject : 1, options, limit ? &*limit : nullptr, measured, run);
     run.seconds = now() - begun;
   }
   render.edit(*renderer, "samples", Value(Number{double(own_samples)}));
   if (!going) return false;
   for (double& value : run.picture.values) value /= double(measured.passes.size());
+  for (double& value : measured.systematic) value = std::abs(value) / double(measured.passes.size());
+  if (limit) run.marks = limit->marks(), run.limit_noise = limit->noise();
   run.length_share = share_with_length(all.layout, measured);
   measured.tells_lengths = run.length_share > 0;
   all.measured.push_back(std::move(measured));
@@ -227,6 +273,12 @@ bool measure(Render& render, size_t number, const Candidate& candidate, const Co
 }
 
 }  // namespace
+
+bool tells_limit(const Renderer& renderer) {
+  const auto* shrinking = dynamic_cast<const ShrinkingBias*>(&renderer);
+  return shrinking && renderer.expectation() == Expectation::consistent && !(renderer.map_filter > 0) &&
+         shrinking->bias_width(1) > 0 && shrinking->bias_width(1) < shrinking->bias_width(0);
+}
 
 Collected collect(Render& render, const std::vector<Candidate>& candidates, int tile, const CollectOptions& options) {
   const Ref<Renderer> own = render.job().renderer;

@@ -63,6 +63,11 @@ struct RendererRun {
   std::uint64_t samples = 0;  ///< over the whole picture, in all passes
   std::uint64_t bad_samples = 0;
   double length_share = 0;  ///< part of its light that it tells the length of
+  /// Of a consistent renderer whose limit was measured (limit.h): where its passes were looked at, the means of Y over the
+  /// tiles there, [pass][mark][tile], and how much more noise the limit has than the end of a pass. Empty of others.
+  std::vector<std::uint32_t> marks;
+  std::vector<std::vector<std::vector<double>>> tiles_at_marks;
+  double limit_noise = 1;
 };
 
 struct Collected {
@@ -78,6 +83,9 @@ void prepare_picture(Job&, int lengths);
 
 /// A side [pixels] of tiles that divides a picture into enough of them.
 int default_tile(const ImageBuffer&);
+
+/// Whether a renderer's limit can be told from its steps.
+bool tells_limit(const Renderer&);
 
 /// Runs all passes. Meanwhile the job has other renderers and seeds.
 Collected collect(Render&, const std::vector<Candidate>&, int tile, const CollectOptions&);

@@ -123,6 +123,8 @@ class Report {
       add("<tr><td>{}</td>{}<td>{}</td><td>{}</td><td>{}</td></tr>\n", layer_text(layout_, s.layer), test_cells(*s.whole),
           s.disagreeing_tiles, s.undecided_tiles, badge(s.verdict));
     add("</table></div>\n");
+    if (const std::optional<PairConvergence> c = convergence_of(collected_, pair))
+      add("<p>{}: {}.</p>\n", renderer(c->renderer), escaped(convergence_text(c->convergence)));
     maps(pair, layers);
     tests(pair, Verdict::disagrees, "What disagrees");
     tests(pair, Verdict::undecided, "What is undecided");

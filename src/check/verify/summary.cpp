@@ -71,11 +71,42 @@ MeanLight mean_light(const Layout& layout, const Measured& measured) {
   return {m.mean, m.mean > 0 ? m.error() / m.mean : 0};
 }
 
+std::optional<PairConvergence> convergence_of(const Collected& collected, const PairAgreement& pair) {
+  const bool a = !collected.runs[pair.a].marks.empty(), b = !collected.runs[pair.b].marks.empty();
+  if (a == b) return {};
+  const size_t consistent = a ? pair.a : pair.b, other = a ? pair.b : pair.a;
+  std::vector<std::vector<double>> truth;
+  for (const auto& pass : collected.measured[other].passes)
+    truth.emplace_back(pass.begin(), pass.begin() + std::ptrdiff_t(collected.layout.tiles.size()));
+  const RendererRun& run = collected.runs[consistent];
+  return PairConvergence{consistent, convergence(run.marks, run.tiles_at_marks, truth)};
+}
+
+std::string convergence_text(const Convergence& c) {
+  const auto seen = [&](size_t i) { return c.bias[i] > 0; };
+  size_t first = 0, last = c.bias.size();
+  while (first < c.bias.size() && !seen(first)) ++first;
+  if (first == c.bias.size())
+    return fmt::format("its bias is lost in noise: below {:.2g} % of the light in tiles", 100 * c.error.back());
+  while (!seen(last - 1)) --last;
+  std::string text = fmt::format("its bias in tiles is {:.2g} ± {:.1g} % of the light after {} samples", 100 * c.bias[first],
+                                 100 * c.error[first], c.samples[first]);
+  if (last - 1 > first)
+    text += fmt::format(", {:.2g} ± {:.1g} % after {}", 100 * c.bias[last - 1], 100 * c.error[last - 1], c.samples[last - 1]);
+  if (c.rate) text += fmt::format(", and falls as N^{:.2f} ± {:.2f}", -c.rate->value, c.rate->error);
+  return text;
+}
+
 std::string remark(const Measured& measured, const RendererRun& run, const Candidate& candidate) {
   std::string text;
   const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
   for (const std::string& lost : candidate.misses) add("misses " + lost);
-  if (const std::string bias = candidate.renderer->bias(); !bias.empty()) add("biased: " + bias);
+  if (!run.marks.empty())
+    add(fmt::format(
+        "what it goes to is compared, extrapolated from its steps, which has {:.1f} times the noise of a pass's end",
+        run.limit_noise));
+  else if (const std::string bias = candidate.renderer->bias(); !bias.empty())
+    add("biased: " + bias);
   if (!measured.tells_lengths)
     add("does not tell path lengths apart, so only all lengths together are compared");
   else if (std::abs(run.length_share - 1) > 1e-3)

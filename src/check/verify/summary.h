@@ -3,6 +3,7 @@
 
 #include "agreement.h"
 #include "collect.h"
+#include "limit.h"
 
 namespace etendue::verify {
 
@@ -32,6 +33,15 @@ struct MeanLight {
   double mean = 0, relative_error = 0;
 };
 MeanLight mean_light(const Layout&, const Measured&);
+
+/// How the bias of a pair's consistent renderer goes away, against the other's mean; empty when neither or both are such.
+struct PairConvergence {
+  size_t renderer = 0;  ///< which of all
+  Convergence convergence;
+};
+std::optional<PairConvergence> convergence_of(const Collected&, const PairAgreement&);
+/// In words, without a line's end: "its bias is 3.1 % of the light after 1 sample, … and falls as N^-0.33 ± 0.02".
+std::string convergence_text(const Convergence&);
 
 /// What should be known of a renderer's measurements; empty: nothing.
 std::string remark(const Measured&, const RendererRun&, const Candidate&);
