@@ -40,6 +40,7 @@ PhotonProcess::Photons PhotonProcess::make_photons(Schedule& schedule, const Ste
                     .kinds = request.kinds,
                     .targets = request.targets,
                     .fewest_vertices = request.fewest_vertices,
+                    .fewest_in_media = request.fewest_in_media,
                     .abort = schedule.abort};
   walks.kept = chance_to_keep(schedule, walks, request.most);
 

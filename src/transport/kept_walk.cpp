@@ -16,7 +16,7 @@ KeptVertex& add(const Growing& walk, float density, const LightFront& front, std
   return v;
 }
 
-struct KeptListener {
+struct KeptListener : NoListener {
   const Growing& walk;
   const LightFront& front;
   std::vector<KeptVertex>& kept;
@@ -39,7 +39,7 @@ void grow(Growing& walk, float density, int roulette_depth, std::vector<KeptVert
   const LightFront front(walk.scene);
   const Roulette roulette{roulette_depth};
   walk.keeps = walk.watched = true;
-  const KeptListener at{walk, front, kept, listener, density};
+  const KeptListener at{{}, walk, front, kept, listener, density};
   while (walk.length < walk.longest && walk.next_vertex(at)) {
     if (kept.size() % 64 == 0 && walk.sample.aborted()) return;
     if (walk.vertex.kind == Vertex::Kind::escape && walk.transport == Transport::importance) return;

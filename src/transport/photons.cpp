@@ -4,22 +4,29 @@
 
 namespace etendue {
 
-Spectrum scattered_from_photon(const Vertex& at, const Photon& photon, const Wavelengths& wavelengths, bool single) {
-  Spectrum scattered;
+Spectrum carried(const Photon& photon, const Carrying& to) {
+  if (!to.single) return photon.throughput;
+  const int lane = std::max(to.lane, 0);
+  Spectrum one;
+  one.set(0, photon.throughput[lane]);
+  if (photon.single) one *= lane == 0 ? to.branches / float(spectrum_size) : 0;
+  return one;
+}
+
+Spectrum scattered_from_photon(const Vertex& at, const Photon& photon, const Carrying& to) {
+  const Spectrum light = carried(photon, to);
   if (at.in_medium()) {
     if (!photon.in_medium) return {};
-    const Spectrum s = at.medium.coefficients(at.point.position, at.point.time, wavelengths).scattering;
+    const Spectrum s = at.medium.coefficients(at.point.position, at.point.time, to.wavelengths).scattering;
     const float phase = at.medium.phase(at.point.position, at.point.time, at.out, photon.out);
-    for (int i = 0; i < spectrum_size; ++i) scattered.set(i, s[i] > 0 ? phase * photon.throughput[i] / s[i] : 0);
-  } else {
-    // The cosine of the light's direction is in the density of photons already.
-    const float cosine = std::abs(dot(at.point.normal, photon.out));
-    if (photon.in_medium || !at.scatter || !(cosine > 0)) return {};
-    scattered = at.scatter->evaluate(at.out, photon.out, Transport::radiance, at.lobes) * photon.throughput / cosine;
+    Spectrum scattered;
+    for (int i = 0; i < spectrum_size; ++i) scattered.set(i, s[i] > 0 ? phase * light[i] / s[i] : 0);
+    return scattered;
   }
-  // Both walks have made up for the wavelengths they dropped: once is enough.
-  if (photon.single && single) scattered /= float(spectrum_size);
-  return scattered;
+  // The cosine of the light's direction is in the density of photons already.
+  const float cosine = std::abs(dot(at.point.normal, photon.out));
+  if (photon.in_medium || !at.scatter || !(cosine > 0)) return {};
+  return at.scatter->evaluate(at.out, photon.out, Transport::radiance, at.lobes) * light / cosine;
 }
 
 bool parted(const Scene& scene, const Point3& a, const Vector3& normal_a, float time, const Point3& b, const Vector3& normal_b,
@@ -95,7 +102,9 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
       const bool caustic = i > 1 && specular;
       specular = specular && v.specular;
       const bool wanted = kinds == PhotonKinds::all || caustic == (kinds == PhotonKinds::caustics);
-      if (!wanted || !v.connectable() || int(i) < fewest_vertices || (kept < 1 && double(chances.next()) >= kept)) continue;
+      if (!wanted || !v.connectable() || int(i) < (v.in_medium() ? fewest_in_media : fewest_vertices) ||
+          (kept < 1 && double(chances.next()) >= kept))
+        continue;
       Photon& p = photons.emplace_back();
       p.position = v.point.position;
       p.out = v.out;

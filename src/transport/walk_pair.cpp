@@ -141,7 +141,7 @@ std::optional<FoundLight> WalkPair::connect_to_lens(int s) const {
 std::optional<FoundLight> WalkPair::merge(const Photon& photon, int t) const {
   const KeptVertex& z = camera_vertex(t);
   const double merging = z.in_medium() ? weights_.merging.medium : weights_.merging.surface;
-  const Spectrum scattered = scattered_from_photon(z, photon, sample_.wavelengths, z.single);
+  const Spectrum scattered = scattered_from_photon(z, photon, {sample_.wavelengths, z.single});
   if (scattered.black()) return {};
   FoundLight found{int(photon.vertices), t, true, z.throughput * scattered / float(merging)};
   if (weights_.weighted) {

@@ -27,7 +27,7 @@ class PhotonProcess : public RenderProcess {
     WalkLimits limits = {};
     PhotonKinds kinds = PhotonKinds::all;
     const EmissionTargets* targets = nullptr;  ///< see PhotonWalks
-    int fewest_vertices = 1;
+    int fewest_vertices = 1, fewest_in_media = 1;
     double radius = 0;                    ///< of the first step [m]
     double shrinking = 1;                 ///< a: see photons.h
     const Heuristic* weighted = nullptr;  ///< how photons are weighted against connections; null: they are not
@@ -44,6 +44,16 @@ class PhotonProcess : public RenderProcess {
       const auto density = float(v.in_medium() ? merging.medium : merging.surface);
       map.within(v.point.position, radius(v), [&](const Photon& p) {
         if (p.in_medium == v.in_medium() && !parted(scene, v, p, radius(v))) visit(p, density);
+      });
+    }
+    /// Calls `visit(photon, t, n pi r^2)` for those in media within the radius of a ray's first `reach` [m] from which nothing
+    /// parts them, with the distance t along the ray.
+    template <class Visit>
+    void along(const Scene& scene, const Ray& ray, float reach, const Visit& visit) const {
+      map.tree().along(ray.origin, ray.direction, reach, surface_radius, [&](std::uint32_t i, float t) {
+        const Photon& p = map[i];
+        if (p.in_medium && !parted(scene, ray(t), {}, ray.time, p.position, {}, surface_radius))
+          visit(p, t, float(merging.surface));
       });
     }
   };

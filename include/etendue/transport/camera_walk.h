@@ -61,7 +61,7 @@ class CameraWalk : public Walk<clear> {
     const auto [blocked, found] = scene.any_and_nearest(clear && awaits_ ? &direct_.shadow : nullptr, ray, this->hit);
     settle(!blocked);
     goes_on_ = false;
-    if (!this->come_to_vertex(found, Listener<Weight>{*this, weight})) return false;
+    if (!this->come_to_vertex(found, Listener<Weight>{{}, *this, weight})) return false;
     if (vertex.in_medium()) {
       sample.observe.medium(vertex.point.position, placed(throughput));
     } else if (vertex.on_surface()) {
@@ -137,7 +137,9 @@ class CameraWalk : public Walk<clear> {
   }
 
   /// Adds light that somebody else gathered at the last vertex, whose way from the luminaire has so many segments: photons.
-  void add_light(int segments_before, const Spectrum& light) { add(length + segments_before, throughput * light); }
+  void add_light(int segments_before, const Spectrum& light) { add(length + segments_before, placed(throughput * light)); }
+  /// The place among the path's wavelengths of the only one that a branch follows; -1: it follows no single one.
+  int lane() const { return lane_; }
 
   /// Whether the walk is to be divided at its last vertex.
   [[gnu::always_inline]] bool divides(const Division& division) const {
@@ -271,13 +273,16 @@ class CameraWalk : public Walk<clear> {
   }
 
   template <class Weight>
-  struct Listener {
+  struct Listener : NoListener {
     CameraWalk& walk;
     const Weight& weight;
     void emitted(const Spectrum& light) const { walk.add(walk.length, walk.placed(light)); }
     void crossed_luminaire() const {
       walk.sample.observe.surface(walk.vertex.point, walk.placed(walk.throughput));
       walk.add_luminaire(weight);
+    }
+    void through(const Medium& medium, float reach) const {
+      if constexpr (requires { weight.through(medium, reach); }) weight.through(medium, reach);
     }
   };
 

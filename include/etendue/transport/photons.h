@@ -33,10 +33,19 @@ struct Photon {
   Vector3 surface_normal() const { return Vector3{float(normal[0]), float(normal[1]), float(normal[2])} / 32767.0f; }
 };
 
+/// What a walk carries that photons are to light: which wavelengths they have in common.
+struct Carrying {
+  const Wavelengths& wavelengths;
+  bool single = false;  ///< the hero alone, which made up for the others
+  int lane = -1;        ///< of the step's wavelengths that one; -1: the first
+  float branches = 1;   ///< of how many such walks, one for each of so many wavelengths, this is one
+};
+/// alpha_p as such a walk sees it: both have made up for the wavelengths they dropped, and once is enough.
+Spectrum carried(const Photon&, const Carrying&);
+
 /// What of a photon's light goes on from a vertex near it: f alpha [W/(sr nm)] on a surface; in a medium phase alpha / s_s
 /// [W m/(sr nm)], since the throughput of the walk that came there holds s_s, too. To be divided by n pi r^2 or n 4/3 pi r^3.
-/// `wavelengths` are those of that walk, and `single` says whether it came with the hero alone.
-Spectrum scattered_from_photon(const Vertex& at, const Photon&, const Wavelengths& wavelengths, bool single);
+Spectrum scattered_from_photon(const Vertex& at, const Photon&, const Carrying&);
 
 /// A surface's normal on the side of a direction.
 inline Vector3 on_side(const Vector3& normal, const Vector3& direction) {
@@ -94,6 +103,7 @@ struct PhotonWalks {
   PhotonKinds kinds = PhotonKinds::all;
   const EmissionTargets* targets = nullptr;  ///< light goes towards these alone
   int fewest_vertices = 1;                   ///< before a photon: 2 leaves out those straight from luminaires
+  int fewest_in_media = 1;                   ///< the same in media
   const StrategyWeights* against = nullptr;  ///< photons have weights against these other strategies; null: none
   double kept = 1;  ///< the chance of a photon to be kept; with fewer photons n counts that part of the walks
   const std::atomic<bool>* abort = nullptr;

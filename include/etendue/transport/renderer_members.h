@@ -30,6 +30,20 @@ Description<R>& describe_heuristic(Description<R>& d, Conditions... when) {
                                    choices("balance", "power"), when...);
 }
 
+/// `int`s: see Division.
+template <auto both_ways, auto wavelengths, class R>
+Description<R>& describe_division(Description<R>& d) {
+  return d
+      .template member<both_ways>("split_depth", "1",
+                                  "how often a path from the camera that has met nothing else is both reflected and refracted; "
+                                  "then one of the two is chosen",
+                                  range(0, 8))
+      .template member<wavelengths>(
+          "split_wavelengths", "1",
+          "how many of a path's wavelengths are followed, each by itself, where refraction disperses them; 1: the hero alone",
+          range(1, spectrum_size));
+}
+
 /// What max_depth says of renderers that keep a walk as a whole, and how long such walks may be [segments]. A vertex takes
 /// about a kilobyte with what lies around it and how it scatters, so a walk as long as this takes 100 MB for each thread.
 inline constexpr int longest_kept_walk = 100000;

@@ -25,6 +25,8 @@ struct NoListener {
   void emitted(const Spectrum&) const {}
   /// A luminaire that the walk passes straight through is the vertex, for a moment.
   void crossed_luminaire() const {}
+  /// Of a walk that media only weaken: it goes through one of them, along its ray from the origin to this distance [m].
+  void through(const Medium&, float) const {}
 };
 
 // Its functions are inlined where they are called, once in each algorithm, so that its state stays in registers: measured, a
@@ -97,12 +99,18 @@ class Walk {
       if (tracks_)
         if (const Medium medium = medium_in(media)) {
           const float reach = found ? hit.distance : infinity;
-          const FreeFlight flight = sample_free_flight(medium, ray, reach, throughput, sample.wavelengths, numbers);
-          if (!flight.emitted.black()) listener.emitted(throughput * flight.emitted);
-          throughput *= flight.weight;
-          if (throughput.black()) return false;
-          if (keeps) edge *= likely_transmittance(medium, ray, flight.distance, sample.wavelengths);
-          if (flight.scattered) return scattered_in(medium, ray(flight.distance));
+          if (only_weakened) {
+            listener.through(medium, reach);
+            throughput *= transmittance(medium, ray, reach, sample.wavelengths, numbers);
+            if (throughput.black()) return false;
+          } else {
+            const FreeFlight flight = sample_free_flight(medium, ray, reach, throughput, sample.wavelengths, numbers);
+            if (!flight.emitted.black()) listener.emitted(throughput * flight.emitted);
+            throughput *= flight.weight;
+            if (throughput.black()) return false;
+            if (keeps) edge *= likely_transmittance(medium, ray, flight.distance, sample.wavelengths);
+            if (flight.scattered) return scattered_in(medium, ray(flight.distance));
+          }
         }
       vertex.out = -ray.direction;
       if (!found) {
@@ -207,6 +215,8 @@ class Walk {
   bool keeps = false;
   /// Whether light is gathered at vertices.
   bool gathers = false;
+  /// Whether media only weaken it, and it scatters at surfaces alone: someone gathers along the way what media scatter.
+  bool only_weakened = false;
   /// Whether someone wants to know of the last segment's end although it does not shine.
   bool watched = false;
 
@@ -226,6 +236,7 @@ class Walk {
         branches(w.branches),
         keeps(w.keeps),
         gathers(w.gathers),
+        only_weakened(w.only_weakened),
         watched(w.watched),
         begun(w.begun),
         eta_squared_(w.eta_squared_),

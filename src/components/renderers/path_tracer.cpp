@@ -37,16 +37,8 @@ class PathTracer final : public Renderer {
     describe_heuristic<&PathTracer::heuristic>(d, when("next_event"));
     d.member<&PathTracer::next_event>("next_event", "",
                                       "whether luminaires are sampled; without, paths must meet them by chance");
-    d.group("Smooth glass")
-        .member<&PathTracer::split_depth>("split_depth", "1",
-                                          "how often a path from the camera that has met nothing else is both reflected and "
-                                          "refracted; then one of the two is "
-                                          "chosen",
-                                          range(0, 8))
-        .member<&PathTracer::split_wavelengths>(
-            "split_wavelengths", "1",
-            "how many of a path's wavelengths are followed, each by itself, where refraction disperses them; 1: the hero alone",
-            range(1, spectrum_size));
+    d.group("Smooth glass");
+    describe_division<&PathTracer::split_depth, &PathTracer::split_wavelengths>(d);
   }
 
   PathClasses finds() const override {

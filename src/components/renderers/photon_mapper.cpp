@@ -159,7 +159,7 @@ class PhotonMapperProcess final : public PhotonProcess {
       const bool wanted = kinds == PhotonKinds::all || (p.vertices > 1 && p.caustic == (kinds == PhotonKinds::caustics));
       if (!wanted || each.squared == infinity || walk.length + int(p.vertices) > settings_.max_depth) continue;
       if (p.in_medium != v.in_medium() || parted(context.scene, v, p, radius)) continue;
-      walk.add_light(int(p.vertices), scattered_from_photon(v, p, w, w.single()) / (float(photons.walks) * place));
+      walk.add_light(int(p.vertices), scattered_from_photon(v, p, {w, w.single()}) / (float(photons.walks) * place));
     }
   }
 

@@ -4,8 +4,12 @@
 // A walk from the camera goes through mirrors and glass to the first vertex x that scatters smoothly. There, with T its
 // throughput,
 //     L = T [ L_e(x) + direct(x) + sum_p f(x, w, w_p) alpha_p / (n pi r^2) ],
-// the sum being over photons p within r of x, of n walks from luminaires; in media f is the phase function and pi r^2 becomes
-// 4/3 pi r^3 (transport/photons.h). Each step has new photons and a smaller r, so the mean over steps goes to the truth.
+// the sum being over photons p within r of x, of n walks from luminaires (transport/photons.h). What media scatter towards the
+// camera is gathered all along the way, from photons within r of the ray, a beam of it (Jarosz, Zwicker & Jensen 2008, "The
+// beam radiance estimate for volumetric photon mapping"),
+//     L = T sum_p T(t_p) phase(x_p, w, w_p) alpha_p / (n pi r^2),         T(t) = what the medium lets through as far as t,
+// or else the walk is scattered in media as well, and x may lie there: f is the phase function then, and pi r^2 becomes 4/3 pi
+// r^3. Each step has new photons and a smaller r, so the mean over steps goes to the truth.
 //
 // Photons of caustics, light that mirrors and glass alone threw on, come from walks of their own that begin towards such
 // objects (transport/emission_targets.h); the others leave those out.
@@ -28,6 +32,8 @@ class ProgressivePhotonMapper final : public Renderer {
   bool next_event = true;
   std::int64_t photon_walks = 0, most_photons = 50'000'000;
   float radius = 4, alpha = 0.67f;
+  bool beams = true;
+  int split_depth = 0, split_wavelengths = 3;
 
   static void describe(Description<ProgressivePhotonMapper>& d) {
     d.summary("Photons shared by all pixels within a radius that shrinks: for caustics, also in mirrors and under water.",
@@ -41,6 +47,10 @@ class ProgressivePhotonMapper final : public Renderer {
     d.group("Photons");
     describe_photons<&ProgressivePhotonMapper::photon_walks, &ProgressivePhotonMapper::most_photons>(d);
     describe_shrinking_radius<&ProgressivePhotonMapper::radius, &ProgressivePhotonMapper::alpha>(d);
+    d.member<&ProgressivePhotonMapper::beams>(
+        "beams", "", "whether light in media is gathered all along a ray; without, at places where media scatter it by chance");
+    d.group("Smooth glass");
+    describe_division<&ProgressivePhotonMapper::split_depth, &ProgressivePhotonMapper::split_wavelengths>(d);
   }
 
   PathClasses finds() const override { return all_paths & ~(subsurface_light | emitting_media); }
@@ -63,6 +73,7 @@ class ProgressivePhotonProcess final : public PhotonProcess {
                     .most = std::uint64_t(settings_.most_photons),
                     .limits = {settings_.max_depth - 1, settings_.roulette_depth},
                     .fewest_vertices = settings_.next_event ? 2 : 1,
+                    .fewest_in_media = settings_.next_event && !settings_.beams ? 2 : 1,
                     .radius = first_radius_,
                     .shrinking = double(settings_.alpha)};
     caustics_ = {};
@@ -78,32 +89,76 @@ class ProgressivePhotonProcess final : public PhotonProcess {
 
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     CameraWalk walk(context.scene, sample, ray, settings_.max_depth);
-    // Of a luminaire that the walk meets, against having sampled it.
-    const auto met = [&](const SurfacePoint& luminaire) {
-      if (walk.specular) return 1.0f;
-      return heuristic_weight(
-          settings_.heuristic, walk.direction_density,
-          direct_light_density(*settings_.light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire));
-    };
-    while (walk.next_vertex(met) && walk.specular && !walk.at_end()) {
-      if (walk.vertex.scatters_smoothly()) gather(walk);
-      const NumberStream::Bounce u = walk.next_bounce();
-      if (settings_.next_event) walk.add_direct(*settings_.light_sampler, u, settings_.heuristic);
-      if (walk.scatter(u) && !settings_.next_event && !walk.specular) walk.end();
-    }
-    return walk.radiance;
+    walk.only_weakened = settings_.beams;
+    return follow(walk);
   }
 
  private:
   template <class Walk>
+  Spectrum follow(Walk& walk) const {
+    const Division division{settings_.split_depth, settings_.split_wavelengths};
+    const Met<Walk> met{*this, walk};
+    while (walk.next_vertex(met) && walk.specular && !walk.at_end()) {
+      if (walk.vertex.scatters_smoothly()) gather(walk);
+      const NumberStream::Bounce u = walk.next_bounce();
+      if (settings_.next_event) walk.add_direct(*settings_.light_sampler, u, settings_.heuristic);
+      if (walk.divides(division))
+        walk.divide(division, u, [&](auto& branch) { return follow(branch); });
+      else if (walk.scatter(u) && !settings_.next_event && !walk.specular)
+        walk.end();
+    }
+    return walk.radiance;
+  }
+
+  /// What a walk meets on its way.
+  template <class Walk>
+  struct Met {
+    const ProgressivePhotonProcess& self;
+    Walk& walk;
+
+    /// The weight of a luminaire, against having sampled it.
+    float operator()(const SurfacePoint& luminaire) const {
+      if (walk.specular) return 1;
+      const LightSampler& lights = *self.settings_.light_sampler;
+      return heuristic_weight(self.settings_.heuristic, walk.direction_density,
+                              direct_light_density(lights, walk.from, walk.from_normal, walk.ray.direction, luminaire));
+    }
+    /// A medium, for so far. What it sends to a smooth vertex photons have brought there.
+    void through(const Medium& medium, float reach) const {
+      if (walk.specular) self.gather_along(walk, medium, reach);
+    }
+  };
+
+  template <class Walk>
+  static Carrying carrying(const Walk& walk) {
+    const Wavelengths& w = walk.sample.wavelengths;
+    return {w, w.single(), walk.lane(), walk.branches};
+  }
+
+  template <class Walk>
   void gather(Walk& walk) const {
+    const Carrying to = carrying(walk);
     const auto add = [&](const Photon& p, float density) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
-      const Wavelengths& w = walk.sample.wavelengths;
-      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, w, w.single()) / density);
+      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, to) / density);
     };
     photons_.near(context.scene, walk.vertex, add);
     caustics_.near(context.scene, walk.vertex, add);
+  }
+
+  template <class Walk>
+  void gather_along(Walk& walk, const Medium& medium, float reach) const {
+    const Carrying to = carrying(walk);
+    NumberStream numbers = walk.numbers.fork("beam", std::uint32_t(walk.length));
+    const Ray ray = walk.ray;
+    const auto add = [&](const Photon& p, float t, float density) {
+      if (walk.length + int(p.vertices) > settings_.max_depth) return;
+      const float phase = medium.phase(ray(t), ray.time, -ray.direction, p.out);
+      walk.add_light(int(p.vertices),
+                     transmittance(medium, ray, t, to.wavelengths, numbers) * carried(p, to) * (phase / density));
+    };
+    photons_.along(context.scene, ray, reach, add);
+    caustics_.along(context.scene, ray, reach, add);
   }
 
   const ProgressivePhotonMapper& settings_;
