@@ -104,6 +104,9 @@ class Scatter {
   bool has(Lobes any) const { return (lobes_ & any) != 0; }
   /// Whether `sample` looks at its `choice`; parts that never do may say so, which saves drawing a number.
   bool has_choice() const { return has_choice_ || normals_ == Normals::folded; }
+  /// Specular lobes that send every wavelength of the path its own way, wherever light comes from: asked for one of them alone,
+  /// `sample` answers for the hero. Where only some of a lobe's directions are dispersive, as a grating's, none is named.
+  Lobes dispersed() const { return dispersed_; }
   /// |cos| of the angle between a direction and the shading normal.
   float cosine(const Vector3& v) const { return std::abs(dot(frame_.n, v)); }
   const Frame& frame() const { return frame_; }
@@ -156,6 +159,7 @@ class Scatter {
   enum class Normals : std::uint8_t { same, folded, clipped } normals_;
   bool has_choice_ = true;
   bool has_captives_ = false;
+  Lobes dispersed_ = no_lobes;
   /// False of a model whose f depends on which direction is `out`. Then local_evaluate has where light leaves to as `out`, for
   /// importance too; local_sample and local_density still have where the path came from.
   bool reciprocal_ = true;

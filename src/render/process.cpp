@@ -107,15 +107,15 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   s.film = {float(area.x0) + within.x * float(area.width()), float(area.y0) + within.y * float(area.height())};
   const Point2 lens = camera.has_lens() ? numbers.next_pair() : (numbers.skip(2), Point2{});
   const bool still = !(camera.shutter_close > camera.shutter_open);
-  const float time = still ? (numbers.skip(), camera.shutter_open) : camera.shutter_time(numbers.next());
+  const float at = still ? (numbers.skip(), camera.shutter_open) : time(numbers.next());
   s.wavelengths = wavelengths(key, numbers.next());
   CameraRay from;
   PathRecord* const record = request.observe.record;
-  if (!camera.sample_ray(s.film, lens, time, s.wavelengths, from)) {
+  if (!camera.sample_ray(s.film, lens, at, s.wavelengths, from)) {
     // Held back. What the algorithm brings elsewhere by paths from luminaires does not go this way, and comes all the same, as
     // features do.
     if (!renderer.splats() && !request.observe.features && !record) return s;
-    from.ray = camera.ray(s.film, lens, time);
+    from.ray = camera.ray(s.film, lens, at);
     from.weight = {};
   }
   from.ray.width *= renderer.map_filter;

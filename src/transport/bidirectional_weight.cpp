@@ -4,69 +4,98 @@ namespace etendue {
 
 namespace {
 
-/// The sum over all strategies of (p_j / p_s)^beta, with L_0 in p_1 for merging, and what merging at the connection has of it.
-struct Sum {
-  double all = 0, merged_here = 0;
-};
-/// `merges`: the strategy at hand merges at vertex s, so the light walk went on there, and not by a connection.
-Sum strategies(const ConnectedPath& path, Heuristic heuristic, bool merges) {
-  const int s = path.s, t = path.t, last = s + t - 1;
-  // Vertex i of the whole path, its densities, and whether it can stand at a connection: those at this one can.
-  const auto vertex = [&](int i) -> const KeptVertex& { return i < s ? path.light[i] : path.camera[last - i]; };
-  const auto connectable = [&](int i) { return i == 0 || (i == s - 1 && !merges) || i == s || !vertex(i).specular; };
-  const auto from_light = [&](int i) -> double {
-    if (i == 0) return path.begun;
-    if (i < s) return path.light[i].forward;
-    if (i == s) return path.camera_last_from_light;
-    return i == s + 1 ? path.camera_before_from_light : path.camera[last - i].reverse;
-  };
-  const auto from_camera = [&](int i) -> double {
-    if (i >= s) return path.camera[last - i].forward;
-    if (i == s - 1) return path.light_last_from_camera;
-    return i == s - 2 ? path.light_before_from_camera : path.light[i].reverse;
-  };
-  // p_{j+1} / p_j with L_0 in p_1 as in the others, and what p_1 is to be multiplied by for that.
-  const auto step = [&](int j) { return from_light(j) / from_camera(j); };
-  const auto first = [&](int j) { return j == 1 ? double(path.direct) / path.begun : 1.0; };
-  const auto possible = [&](int j) {
-    if (j == 0) return path.luminaire_can_be_met;
+/// A path as the strategies see it. `merges`: the strategy at hand merges at vertex s, so the light walk went on there, and not
+/// by a connection.
+class Strategies {
+ public:
+  Strategies(const ConnectedPath& p, Heuristic h, bool merges) : path_(p), heuristic_(h), merges_(merges) {}
+
+  double raised(double ratio) const { return heuristic_ == Heuristic::balance ? ratio : ratio * ratio; }
+  /// What p_1 is multiplied by since D_0 stands for L_0.
+  double first(int j) const { return j == 1 ? double(path_.direct) / path_.begun : 1.0; }
+
+  /// The sum of (p_j / p_s)^beta over strategies with more vertices from the luminaire than s, connecting or merging, where
+  /// `ratio` stands for p_s.
+  double after(double ratio) const {
+    double sum = 0;
+    const int last = path_.s + path_.t - 1;
+    for (int j = path_.s; j < last; ++j) {
+      ratio *= from_light(j) / from_camera(j);
+      if (!(ratio > 0)) break;
+      if (possible(j + 1)) sum += raised(ratio * first(j + 1));
+      sum += merged(ratio, j + 1);
+    }
+    return sum;
+  }
+  /// The same of those with fewer.
+  double before(double ratio) const {
+    double sum = 0;
+    for (int j = path_.s - 1; j >= 0; --j) {
+      ratio *= from_camera(j) / from_light(j);
+      if (!(ratio > 0) || !std::isfinite(ratio)) break;
+      if (possible(j)) sum += raised(ratio * first(j));
+      sum += merged(ratio, j);
+    }
+    return sum;
+  }
+  /// Of merging at vertex i, where `ratio` stands for p_i.
+  double merged(double ratio, int i) const {
+    const int last = path_.s + path_.t - 1;
+    if (!(path_.merging.surface > 0) || i <= 0 || i >= last || !connectable(i)) return 0;
+    const KeptVertex& v = vertex(i);
+    const double merging = v.in_medium() ? path_.merging.medium : v.on_surface() ? path_.merging.surface : 0;
+    return raised(ratio * merging * from_light(i));
+  }
+  bool possible(int j) const {
+    const int last = path_.s + path_.t - 1;
+    if (j == 0) return path_.luminaire_can_be_met;
     if (j == last && last == 1) return false;  // a luminaire seen by the lens is met, never connected
     return connectable(j - 1) && connectable(j);
-  };
-  const auto raised = [&](double ratio) { return heuristic == Heuristic::balance ? ratio : ratio * ratio; };
-
-  const auto mergeable = [&](int i) {
-    return path.merging > 0 && i > 0 && i < last && vertex(i).on_surface() && connectable(i);
-  };
-  const auto merged = [&](double ratio, int i) { return mergeable(i) ? raised(ratio * path.merging * from_light(i)) : 0; };
-
-  double sum = possible(s) || !merges ? 1 : 0, ratio = 1 / first(s);
-  const double here = merged(ratio, s);
-  for (int j = s; j < last; ++j) {
-    ratio *= step(j);
-    if (!(ratio > 0)) break;
-    if (possible(j + 1)) sum += raised(ratio * first(j + 1));
-    sum += merged(ratio, j + 1);
   }
-  ratio = 1 / first(s);
-  for (int j = s - 1; j >= 0; --j) {
-    ratio /= step(j);
-    if (!(ratio > 0) || !std::isfinite(ratio)) break;
-    if (possible(j)) sum += raised(ratio * first(j));
-    sum += merged(ratio, j);
+
+ private:
+  // Vertex i of the whole path, its densities, and whether it can stand at a connection: those at this one can.
+  const KeptVertex& vertex(int i) const { return i < path_.s ? path_.light[i] : path_.camera[path_.s + path_.t - 1 - i]; }
+  bool connectable(int i) const { return i == 0 || (i == path_.s - 1 && !merges_) || i == path_.s || !vertex(i).specular; }
+  double from_light(int i) const {
+    if (i == 0) return path_.begun;
+    if (i < path_.s) return path_.light[i].forward;
+    if (i == path_.s) return path_.camera_last_from_light;
+    return i == path_.s + 1 ? path_.camera_before_from_light : vertex(i).reverse;
   }
-  return {sum + here, here};
-}
+  double from_camera(int i) const {
+    if (i >= path_.s) return vertex(i).forward;
+    if (i == path_.s - 1) return path_.light_last_from_camera;
+    return i == path_.s - 2 && !merges_ ? path_.light_before_from_camera : path_.light[i].reverse;
+  }
+
+  const ConnectedPath& path_;
+  const Heuristic heuristic_;
+  const bool merges_;
+};
 
 }  // namespace
 
 float bidirectional_weight(const ConnectedPath& path, Heuristic heuristic) {
-  return float(1 / strategies(path, heuristic, false).all);
+  const Strategies strategies(path, heuristic, false);
+  const double ratio = 1 / strategies.first(path.s);
+  return float(1 / (1 + strategies.merged(ratio, path.s) + strategies.after(ratio) + strategies.before(ratio)));
 }
 
-float merging_weight(const ConnectedPath& path, Heuristic heuristic) {
-  const Sum sum = strategies(path, heuristic, true);
-  return float(sum.merged_here / sum.all);
+PhotonWeight photon_weight(const ConnectedPath& path, float forward, Heuristic heuristic) {
+  const Strategies strategies(path, heuristic, true);
+  PhotonWeight w;
+  w.forward = forward;
+  w.connecting = path.s == 1 || !path.light[path.s - 1].specular ? float(strategies.raised(strategies.first(path.s))) : 0;
+  w.others = strategies.before(1);
+  return w;
+}
+
+float merging_weight(const ConnectedPath& path, const PhotonWeight& photon, float back, Heuristic heuristic) {
+  const Strategies strategies(path, heuristic, true);
+  const double here = strategies.merged(1, path.s);
+  if (!(here > 0)) return 0;
+  return float(here / (photon.connecting + here + strategies.after(1) + photon.others * strategies.raised(back)));
 }
 
 }  // namespace etendue

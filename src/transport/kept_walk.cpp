@@ -1,5 +1,6 @@
 #include "etendue/transport/kept_walk.h"
 
+#include "etendue/transport/emission_targets.h"
 #include "etendue/transport/roulette.h"
 #include "etendue/transport/walk.h"
 
@@ -103,9 +104,12 @@ void walk_from_camera(const RenderContext& context, const Ray& ray, const WalkLi
 }
 
 bool walk_from_luminaire(const Scene& scene, const LightSampler& lights, float time, const WalkLimits& limits,
-                         SampleContext& sample, std::vector<KeptVertex>& kept, EmittedLight& light) {
+                         SampleContext& sample, std::vector<KeptVertex>& kept, EmittedLight& light,
+                         const EmissionTargets* targets) {
   kept.clear();
-  if (!sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light)) return false;
+  if (targets ? !targets->sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light)
+              : !sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light))
+    return false;
   KeptVertex& first = kept.emplace_back();
   first.kind = Vertex::Kind::luminaire;
   first.infinite = light.infinite;

@@ -25,24 +25,6 @@ bool begin_before_all(const Scene& scene, const Point3& p, const Vector3& outwar
   return false;
 }
 
-bool from_infinity(const Scene& scene, const SceneObject& luminaire, const Wavelengths& w, float time, Point2 position,
-                   Point2 direction, EmittedLight& light) {
-  const LightFront front(scene);
-  const SurfaceSample s = luminaire.sample_visible(front.centre(), direction, time);
-  if (!(s.density > 0)) return false;
-  const Frame frame(Normal3(-s.direction));
-  const Point2 across = front.sample(position);
-  light.infinite = true;
-  light.point = s.point;
-  light.ray.direction = -s.direction;
-  light.ray.origin = front.centre() + scene.radius() * s.direction + across.x * frame.s + across.y * frame.t;
-  light.direction = s.density;
-  light.position = front.density(light.ray.origin, s.direction);
-  if (scene.unbounded() && !begin_before_all(scene, light.ray.origin, s.direction, time, light.ray.origin)) return false;
-  light.radiance = luminaire.emission->radiance(s.point, light.ray.direction, w);
-  return true;
-}
-
 }  // namespace
 
 Point2 LightFront::sample(Point2 u) const {
@@ -60,36 +42,67 @@ Point2 LightFront::sample(Point2 u) const {
   return {r * cosine, r * sine};
 }
 
-bool sample_emitted_light(const Scene& scene, const LightSampler& lights, const Wavelengths& w, float time,
-                          NumberStream& numbers, EmittedLight& light) {
-  const float which = numbers.next();
-  const Point2 position = numbers.next_pair(), direction = numbers.next_pair();
+bool begin_at_infinity(const Scene& scene, const Point3& through, const SurfaceSample& s, const Wavelengths& w,
+                       EmittedLight& light) {
+  light.infinite = true;
+  light.point = s.point;
+  light.ray.direction = -s.direction;
+  light.ray.origin = through + (scene.radius() - dot(through - scene.centre(), s.direction)) * s.direction;
+  if (scene.unbounded() && !begin_before_all(scene, light.ray.origin, s.direction, light.ray.time, light.ray.origin))
+    return false;
+  light.radiance = s.point.object->emission->radiance(s.point, light.ray.direction, w);
+  return true;
+}
+
+void begin_at_point(const SurfaceSample& s, const Vector3& direction, const Wavelengths& w, EmittedLight& light) {
+  light.point = s.point;
+  light.radiance = s.point.object->emission->radiance(s.point, direction, w);
+  if (s.point.normal == Normal3{}) {
+    light.ray.origin = s.point.position;
+    light.ray.direction = direction;
+  } else {
+    light.radiance *= std::abs(dot(s.point.normal, direction));
+    const float time = light.ray.time;
+    s.point.leave(direction, light.ray);
+    light.ray.time = time;
+  }
+}
+
+bool choose_luminaire(const LightSampler& lights, float which, float time, EmittedLight& light) {
   const LightChoice choice = lights.choose(which);
   if (!choice.luminaire || !(choice.probability > 0)) return false;
-  const SceneObject& luminaire = *choice.luminaire;
+  light.luminaire = choice.luminaire;
   light.choice = choice.probability;
   light.infinite = false;
   light.ray = {};
   light.ray.time = time;
+  return true;
+}
+
+bool sample_emitted_light(const Scene& scene, const LightSampler& lights, const Wavelengths& w, float time,
+                          NumberStream& numbers, EmittedLight& light) {
+  const float which = numbers.next();
+  const Point2 position = numbers.next_pair(), direction = numbers.next_pair();
+  if (!choose_luminaire(lights, which, time, light)) return false;
+  const SceneObject& luminaire = *light.luminaire;
   if (luminaire.infinite()) {
-    if (!from_infinity(scene, luminaire, w, time, position, direction, light)) return false;
+    const LightFront front(scene);
+    const SurfaceSample s = luminaire.sample_visible(front.centre(), direction, time);
+    if (!(s.density > 0)) return false;
+    const Frame frame(Normal3(-s.direction));
+    const Point2 across = front.sample(position);
+    const Point3 through = front.centre() + across.x * frame.s + across.y * frame.t;
+    light.direction = s.density;
+    light.position = front.density(through, s.direction);
+    if (!begin_at_infinity(scene, through, s, w, light)) return false;
   } else {
     const SurfaceSample s = luminaire.sample_area(position, time);
     if (!(s.density > 0)) return false;
     const DirectionSample d = luminaire.emission->sample(s.point, direction);
     if (!(d.density > 0)) return false;
-    light.point = s.point;
     light.position = s.density;
     light.direction = d.density;
-    light.radiance = luminaire.emission->radiance(s.point, d.direction, w);
-    if (s.point.normal == Normal3{}) {
-      light.ray.origin = s.point.position;
-      light.ray.direction = d.direction;
-    } else {
-      light.radiance *= std::abs(dot(s.point.normal, d.direction));
-      s.point.leave(d.direction, light.ray);
-      light.ray.time = time;
-    }
+    begin_at_point(s, d.direction, w, light);
   }
   return !light.radiance.black();
 }

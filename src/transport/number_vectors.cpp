@@ -26,55 +26,79 @@ Point2 RecordedNumbers::pair(SampleKey key, std::uint32_t dimension) const {
   return {number(key, dimension), number(key, dimension + 1)};
 }
 
-void MutatedNumbers::begin(bool large) {
-  ++iteration_;
+void MutatedNumbers::begin(bool large, double variance) {
+  time_before_ = time_;
+  time_ += variance;
   large_ = large;
   touched_.clear();
 }
 
 void MutatedNumbers::accept() {
-  if (large_) last_large_ = iteration_;
+  if (large_) last_large_ = time_;
   touched_.clear();
 }
 
 void MutatedNumbers::reject() {
   for (const auto& [walk, dimension] : touched_) {
-    Coordinate& c = walks_[walk][dimension];
+    Coordinate& c = (*walk)[dimension];
     c.value = c.before;
     c.changed = c.changed_before;
   }
   touched_.clear();
-  --iteration_;
+  time_ = time_before_;
 }
 
 float MutatedNumbers::draw() const {
   return to_unit_float(std::uint32_t(mix_bits(seed_ + ++drawn_ * 0x9e3779b97f4a7c15ull) >> 32));
 }
 
-float MutatedNumbers::number(SampleKey key, std::uint32_t dimension) const {
-  std::vector<Coordinate>& walk = walks_[key.walk];
-  if (walk.size() <= dimension) walk.resize(size_t(dimension) + 1);
+Point2 MutatedNumbers::normal_pair() const {  // Box & Muller 1958
+  const float radius = std::sqrt(-2 * std::log(1 - draw())), angle = 2 * pi * draw();
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+MutatedNumbers::Walk& MutatedNumbers::walk(std::uint64_t name) const {
+  if (!last_ || name != last_name_) {
+    last_ = &walks_[name];
+    last_name_ = name;
+  }
+  return *last_;
+}
+
+template <class Normal>
+float MutatedNumbers::proposed(Walk& walk, std::uint32_t dimension, const Normal& normal) const {
   Coordinate& c = walk[dimension];
-  if (c.changed == iteration_) return c.value;
+  if (c.changed == time_) return c.value;
   c.before = c.value;
   c.changed_before = c.changed;
-  touched_.emplace_back(key.walk, dimension);
-  // Since the last large step it stands as that would have drawn it. A coordinate that was never asked for is such a one.
-  if (c.changed < last_large_) {
-    c.value = draw();
-    c.changed = last_large_;
-  }
+  touched_.emplace_back(&walk, dimension);
   if (large_) {
     c.value = draw();
   } else {
-    // So many normal deviates add up to one (Box & Muller 1958).
-    const auto steps = double(iteration_ - c.changed);
-    const double radius = std::sqrt(-2 * std::log(1 - double(draw())) * steps) * double(deviation_);
-    const double moved = double(c.value) + radius * std::cos(2 * M_PI * double(draw()));
-    c.value = std::min(float(moved - std::floor(moved)), one_minus_epsilon);
+    // Since the last large step it stands as that would have drawn it. A coordinate that was never asked for is such a one.
+    if (c.changed < last_large_) {
+      c.value = draw();
+      c.changed = last_large_;
+    }
+    const float moved = c.value + float(std::sqrt(time_ - c.changed)) * normal();
+    c.value = std::min(moved - std::floor(moved), one_minus_epsilon);
   }
-  c.changed = iteration_;
+  c.changed = time_;
   return c.value;
+}
+
+float MutatedNumbers::number(SampleKey key, std::uint32_t dimension) const {
+  Walk& all = walk(key.walk);
+  if (all.size() <= dimension) all.resize(size_t(dimension) + 1);
+  return proposed(all, dimension, [&] { return normal_pair().x; });
+}
+
+Point2 MutatedNumbers::pair(SampleKey key, std::uint32_t dimension) const {
+  Walk& all = walk(key.walk);
+  if (all.size() <= dimension + 1) all.resize(size_t(dimension) + 2);
+  const Point2 normal = large_ ? Point2{} : normal_pair();
+  const float x = proposed(all, dimension, [&] { return normal.x; });
+  return {x, proposed(all, dimension + 1, [&] { return normal.y; })};
 }
 
 namespace {
@@ -96,7 +120,7 @@ void take(std::span<const std::byte>& from, T& value) {
 
 void MutatedNumbers::save(std::vector<std::byte>& to) const {
   append(to, seed_);
-  append(to, iteration_);
+  append(to, time_);
   append(to, last_large_);
   append(to, drawn_);
   std::vector<std::uint64_t> names;
@@ -104,7 +128,7 @@ void MutatedNumbers::save(std::vector<std::byte>& to) const {
   std::ranges::sort(names);
   append(to, std::uint64_t(names.size()));
   for (const std::uint64_t name : names) {
-    const std::vector<Coordinate>& walk = walks_.at(name);
+    const Walk& walk = walks_.at(name);
     append(to, name);
     append(to, std::uint64_t(walk.size()));
     for (const Coordinate& c : walk) {
@@ -115,30 +139,32 @@ void MutatedNumbers::save(std::vector<std::byte>& to) const {
 }
 
 void MutatedNumbers::load(std::span<const std::byte>& from) {
-  MutatedNumbers read(0, deviation_);
-  take(from, read.seed_);
-  take(from, read.iteration_);
-  take(from, read.last_large_);
-  take(from, read.drawn_);
-  std::uint64_t walks = 0, size = 0, name = 0;
-  take(from, walks);
-  for (; walks > 0; --walks) {
+  std::uint64_t seed = 0, drawn = 0, count = 0, size = 0, name = 0;
+  double time = 0, last_large = 0;
+  take(from, seed);
+  take(from, time);
+  take(from, last_large);
+  take(from, drawn);
+  take(from, count);
+  std::unordered_map<std::uint64_t, Walk> walks;
+  for (; count > 0; --count) {
     take(from, name);
     take(from, size);
     if (size > from.size()) throw Error("the state of a chain ends too early");
-    std::vector<Coordinate>& walk = read.walks_[name];
+    Walk& walk = walks[name];
     walk.resize(size_t(size));
     for (Coordinate& c : walk) {
       take(from, c.value);
       take(from, c.changed);
     }
   }
-  *this = std::move(read);
-}
-
-Point2 MutatedNumbers::pair(SampleKey key, std::uint32_t dimension) const {
-  const float x = number(key, dimension);
-  return {x, number(key, dimension + 1)};
+  seed_ = seed;
+  time_ = time_before_ = time;
+  last_large_ = last_large;
+  drawn_ = drawn;
+  walks_ = std::move(walks);
+  last_ = nullptr;
+  touched_.clear();
 }
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// Ten faults of the kind that give plausible pictures, one at a time in renderers made of the same parts as the program's
+// Faults of the kind that give plausible pictures, one at a time in renderers made of the same parts as the program's
 // (faulty_renderers): `verify` must find each, and nothing when none is on.
 
 #include <gtest/gtest.h>
@@ -64,7 +64,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"lens_importance", "cornell_box", "FaultyLightTracer", "BidirectionalPathTracer", 1024},
                       Case{"phase_density", "fog_with_spot", "FaultyPathTracer", "BidirectionalPathTracer", 256},
                       Case{"transmittance_squared", "fog_with_spot", "FaultyPathTracer", "BidirectionalPathTracer", 128},
-                      Case{"skipped_length", "cornell_box", "FaultyPathTracer", "PathTracer", 256}),
+                      Case{"skipped_length", "cornell_box", "FaultyPathTracer", "PathTracer", 256},
+                      Case{"acceptance_inverted", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
+                      Case{"no_expected_values", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
+                      Case{"large_steps_twice", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
+                      Case{"direct_light_twice", "cornell_box", "FaultyMetropolis", "PathTracer", 256}),
     [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace

@@ -115,12 +115,11 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
   EXPECT_GE(kills, 2);
   EXPECT_EQ(run("cmp " + f + "/undisturbed.npy " + f + "/killed.npy", &output), 0) << output;
   // What holds a path tracer inside finds what that finds.
-  EXPECT_EQ(
-      run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
-              "/build/libprimary_sample_metropolis.so --renderers 'PathTracer,PrimarySampleMetropolis { inner: PathTracer "
-              "{}, bootstrap: 1024 }' --samples 256 --size 32x32 --quiet",
-          &output),
-      0)
+  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
+                    "/build/libsmall_metropolis.so --renderers 'PathTracer,SmallMetropolis { inner: PathTracer "
+                    "{}, bootstrap: 1024 }' --samples 256 --size 32x32 --quiet",
+                &output),
+            0)
       << output;
 }
 
@@ -157,7 +156,7 @@ TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
   check(ETENDUE_SOURCE_DIR "/tests/plugin/minnaert.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-textured-shader.md", 70);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/student_tracer.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 60);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/small_photon_mapper.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 190);
-  check(ETENDUE_SOURCE_DIR "/tests/plugin/primary_sample_metropolis.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 160);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/small_metropolis.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 160);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/drive_a_render.cpp", ETENDUE_SOURCE_DIR "/docs/drive-a-render.md", 70);
 }
 

@@ -17,6 +17,10 @@ enum class Fault : std::uint8_t {
   phase_density,          ///< phase functions sampled as they are, weighted as if uniform
   transmittance_squared,  ///< on the way to luminaires
   skipped_length,         ///< no paths of exactly four segments
+  acceptance_inverted,    ///< of chains: accepted with I(u) / I(v)
+  no_expected_values,     ///< states are not added again when a proposal is rejected
+  large_steps_twice,      ///< large steps count as independent samples, beside all that chains find
+  direct_light_twice,     ///< chains carry what is sampled apart
 };
 
 template <auto member, class R>
@@ -24,7 +28,8 @@ void describe_fault(Description<R>& d) {
   d.template member<member>(
       "fault", "", "what is wrong",
       choices("none", "wrong_mis_weight", "no_squared_index", "lost_cosine", "wrong_measure", "roulette_undivided",
-              "luminaire_twice", "lens_importance", "phase_density", "transmittance_squared", "skipped_length"));
+              "luminaire_twice", "lens_importance", "phase_density", "transmittance_squared", "skipped_length",
+              "acceptance_inverted", "no_expected_values", "large_steps_twice", "direct_light_twice"));
 }
 
 }  // namespace etendue

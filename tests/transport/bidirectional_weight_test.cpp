@@ -52,7 +52,8 @@ struct MadeUp {
     if (!merge && s > 0) light.back().specular = !light.back().specular;
     camera.back().specular = !camera.back().specular;
     for (std::vector<KeptVertex>* walk : {&light, &camera})
-      for (size_t k = 0; k < 2 && k < walk->size(); ++k) (*walk)[walk->size() - 1 - k].reverse = -1;
+      for (size_t k = 0; k < 2 && k < walk->size(); ++k)
+        if (!merge || walk == &camera || k == 0) (*walk)[walk->size() - 1 - k].reverse = -1;
     const auto at = [](const std::vector<float>& list, int i) {
       return i >= 0 && size_t(i) < list.size() ? list[size_t(i)] : 0;
     };
@@ -67,8 +68,16 @@ struct MadeUp {
                        direct,
                        from_light[0],
                        true,
-                       merging};
-    return merge ? merging_weight(path, heuristic) : bidirectional_weight(path, heuristic);
+                       {merging, 0}};
+    if (!merge) return bidirectional_weight(path, heuristic);
+    // A photon knows its density back to where it came from for each unit of density of the direction: here of `back`.
+    const float back = 0.3f;
+    path.light_last_from_camera /= back;
+    path.light_before_from_camera = -1;
+    const PhotonWeight photon = photon_weight(path, path.camera_last_from_light, heuristic);
+    path.light = nullptr;
+    path.light_last_from_camera = path.direct = path.begun = -1;
+    return merging_weight(path, photon, back, heuristic);
   }
   KeptVertex vertex(int i, float forward, float reverse) const {
     KeptVertex v;

@@ -160,6 +160,14 @@ class Wavelengths {
     return factor;
   }
   bool single() const { return single_; }
+  /// The i-th as the hero, and alone, for a branch of the path that follows it. The hero takes the other's place.
+  Wavelengths alone(int i) const {
+    Wavelengths one = *this;
+    one.place(0, lambda_[i], density_[i]);
+    one.place(i, lambda_[0], density_[0]);
+    one.single_ = true;
+    return one;
+  }
 
   /// Position in tables of one entry a nanometre from 360 nm: entry i and the fraction towards i + 1.
   int table_index(int i) const { return index_[i]; }

@@ -73,6 +73,9 @@ class RenderProcess {
   /// of a step the same.
   virtual Wavelengths wavelengths(SampleKey key, float u) const { return context.wavelengths.sample(key, u); }
 
+  /// When a path is [s], by default whenever the shutter is open. The same holds here: light that paths share is of one moment.
+  virtual float time(float u) const { return context.camera.shutter_time(u); }
+
   /// A path as a function of numbers: where on the film, within an area of it, through which point of the lens, when, with
   /// which wavelengths, and then all that `radiance` draws. Whoever gives other numbers gets another path of this algorithm: a
   /// Metropolis sampler may hold any of them. The arena is empty afterwards.

@@ -15,10 +15,15 @@
 //     }
 //     return walk.radiance;
 //
+// Where perfectly smooth glass is met, a walk may be divided into branches (`divide`), each a walk of its own.
+//
 // Light of add_direct waits for its shadow ray, which is asked together with the next segment: next_vertex must be called once
 // more (after `end`, too) before `radiance` is whole.
 
+#include <limits>
+
 #include "etendue/transport/direct_light.h"
+#include "etendue/transport/division.h"
 #include "etendue/transport/visibility.h"
 #include "etendue/transport/walk.h"
 
@@ -100,6 +105,7 @@ class CameraWalk : public Walk<clear> {
                                         sample.wavelengths, way, sample.arena);
       if (direct_.light.black()) return;
     }
+    direct_.light = placed(direct_.light);
     awaits_ = true;
     direct_length_ = length + 1;
   }
@@ -123,19 +129,150 @@ class CameraWalk : public Walk<clear> {
     }
     if (vertex.on_surface() && !vertex.moved && enters_body(vertex.point, next))
       return moved_ = goes_on_ = this->leave_body(next);
+    if (whole_ > 0) [[unlikely]]
+      come_together(next);
     this->leave(next);
+    if (!this->specular) bends_ = std::numeric_limits<int>::max();
     return goes_on_ = true;
+  }
+
+  /// Adds light that somebody else gathered at the last vertex, whose way from the luminaire has so many segments: photons.
+  void add_light(int segments_before, const Spectrum& light) { add(length + segments_before, throughput * light); }
+
+  /// Whether the walk is to be divided at its last vertex.
+  [[gnu::always_inline]] bool divides(const Division& division) const {
+    if (!vertex.on_surface() || !vertex.scatter || vertex.moved) return false;
+    const Lobes ways = ways_on();
+    if (ways == no_lobes || (ways & ~both_ways)) return false;
+    return (vertex.scatter->dispersed() && division.wavelengths > 1) || bends_both_ways(division);
+  }
+
+  /// Goes on from such a vertex. Light that is refracted is followed by branches where it is one part of several:
+  /// `follow(branch)` returns what a walk gathers. Reflected light is the walk's own way.
+  template <class Follow>
+  void divide(const Division& division, const NumberStream::Bounce& u, const Follow& follow) {
+    const Scatter& scatter = *vertex.scatter;
+    Lobes ways = ways_on();
+    float choice = u.lobe_choice;
+    NumberStream refracted = numbers;
+    if (bends_both_ways(division)) {
+      ++bends_;
+      if (!(whole_ > 0)) whole_ = this->mean_left();
+      refracted = numbers.fork("refracted", std::uint32_t(length));
+    } else if (ways == both_ways) {
+      ways = choose_way(scatter, choice);
+    }
+    const auto sampled = [&](Lobe lobe) {
+      return ways & lobe ? scatter.sample(vertex.out, choice, u.direction, Transport::radiance, lobe) : std::nullopt;
+    };
+    std::optional<ScatterSample> own = sampled(specular_reflection);
+    if (const int n = ways & scatter.dispersed() ? division.wavelengths : 1; n > 1)
+      for (int i = 0; i < n; ++i) follow_wavelength(i * spectrum_size / n, n, choice, u.direction, refracted, follow);
+    else if (own)
+      follow_refracted(sampled(specular_transmission), refracted, follow);
+    else
+      own = sampled(specular_transmission);
+    if (own)
+      go_on(*own);
+    else
+      end();
   }
 
   /// Lets it end after all.
   void end() { goes_on_ = moved_ = false; }
 
  private:
+  static constexpr Lobes both_ways = specular_reflection | specular_transmission;
+
+  CameraWalk(const CameraWalk& walk, SampleContext& own)
+      : Base(walk, own),
+        bends_(walk.bends_),
+        whole_(walk.whole_),
+        lane_(walk.lane_),
+        memory_(own.arena.mark()),
+        one_luminaire_(walk.one_luminaire_) {}
+
+  Lobes ways_on() const { return Lobes(vertex.scatter->lobes() & vertex.lobes); }
+  bool bends_both_ways(const Division& division) const { return bends_ < division.both_ways && ways_on() == both_ways; }
+
+  /// One of both ways, with the probability of what the walk's wavelengths together carry there: the hero may have nothing
+  /// left, or be reflected as a whole where others are refracted. `choice` becomes what is left of it.
+  Lobes choose_way(const Scatter& scatter, float& choice) {
+    const float reflected = (throughput * scatter.albedo(vertex.out, specular_reflection)).average(),
+                refracted = (throughput * scatter.albedo(vertex.out, specular_transmission)).average();
+    constexpr float least = 1.0f / 64;  // albedos may be estimates
+    const float sum = reflected + refracted, p = sum > 0 ? clamp(reflected / sum, least, 1 - least) : 0.5f;
+    const bool reflects = choice < p;
+    choice = std::min(reflects ? choice / p : (choice - p) / (1 - p), one_minus_epsilon);
+    throughput /= reflects ? p : 1 - p;
+    return reflects ? specular_reflection : specular_transmission;
+  }
+
+  /// The context of a branch, which has its own numbers and wavelengths.
+  SampleContext context_of(Wavelengths& wavelengths, const NumberStream& branch_numbers) const {
+    SampleContext own = sample;
+    return {wavelengths, branch_numbers, own.arena, own.observe, own.splats, own.abort, own.records};
+  }
+
+  template <class Follow>
+  void follow_refracted(const std::optional<ScatterSample>& next, const NumberStream& refracted, const Follow& follow) {
+    if (!next) return;
+    const ArenaScope memory(sample.arena);
+    Wavelengths wavelengths = sample.wavelengths;
+    SampleContext own = context_of(wavelengths, refracted);
+    CameraWalk branch(*this, own);
+    follow_from_here(branch, *next, follow);
+  }
+
+  template <class Follow>
+  void follow_wavelength(int lane, int n, float choice, Point2 u, const NumberStream& refracted, const Follow& follow) {
+    if (!(throughput[lane] > 0)) return;
+    const ArenaScope memory(sample.arena);
+    Wavelengths wavelengths = sample.wavelengths.alone(lane);
+    SampleContext own = context_of(wavelengths, refracted);
+    CameraWalk branch(*this, own);
+    branch.throughput = Spectrum();
+    branch.throughput.set(0, throughput[lane] * float(spectrum_size) / float(n));
+    branch.branches = float(n);
+    branch.lane_ = lane;
+    const Scatter* scatter = scattering_at(vertex.point, vertex.out, wavelengths, sample.arena);
+    if (!scatter) return;
+    if (const auto next = scatter->sample(vertex.out, choice, u, Transport::radiance, specular_transmission))
+      follow_from_here(branch, *next, follow);
+  }
+
+  template <class Follow>
+  void follow_from_here(CameraWalk& branch, const ScatterSample& next, const Follow& follow) {
+    if (branch.go_on(next)) radiance += follow(branch);
+    sample.observe.surface(vertex.point, throughput);  // what follows is told from here on
+  }
+
+  /// Of what a walk had where it was first sent both ways, its branches go on together, in the mean, as one where they have
+  /// been scattered without a mirror: each with the probability of its part, once the light that they meet next, which is half
+  /// of all direct light there (multiple importance sampling), has been taken.
+  void come_together(const ScatterSample& next) {
+    if (!this->specular) {
+      this->due = part_;
+      whole_ = 0;
+    } else if (!next.specular()) {
+      part_ = std::min(1.0f, this->mean_left() / whole_);
+    }
+  }
+
+  /// The light of a branch of one wavelength in the place that has on the path.
+  [[gnu::always_inline]] Spectrum placed(const Spectrum& light) const {
+    if (lane_ < 0) [[likely]]
+      return light;
+    Spectrum all;
+    all.set(lane_, light[0]);
+    return all;
+  }
+
   template <class Weight>
   struct Listener {
     CameraWalk& walk;
     const Weight& weight;
-    void emitted(const Spectrum& light) const { walk.add(walk.length, light); }
+    void emitted(const Spectrum& light) const { walk.add(walk.length, walk.placed(light)); }
     void crossed_luminaire() const {
       walk.sample.observe.surface(walk.vertex.point, walk.throughput);
       walk.add_luminaire(weight);
@@ -150,7 +287,7 @@ class CameraWalk : public Walk<clear> {
   template <class Weight>
   void add_luminaire(const Weight& weight) {
     const Spectrum light =
-        throughput * vertex.point.object->emission->radiance(vertex.point, -ray.direction, sample.wavelengths);
+        placed(throughput * vertex.point.object->emission->radiance(vertex.point, -ray.direction, sample.wavelengths));
     if (light.black()) return;
     const float w = weight(vertex.point);
     add(length, light * w);
@@ -167,6 +304,9 @@ class CameraWalk : public Walk<clear> {
 
   bool goes_on_ = true, moved_ = false, awaits_ = false;
   int direct_length_ = 0;
+  int bends_ = 0;               ///< how often it was sent both ways; as often as can be: it met something else
+  float whole_ = 0, part_ = 1;  ///< see come_together
+  int lane_ = -1;               ///< the place of a branch's only wavelength among the path's; -1: it has all
   DirectLight direct_;
   const Arena::Mark memory_;
   const bool one_luminaire_;

@@ -53,6 +53,7 @@ struct WalkListener {
   ~WalkListener() = default;
 };
 
+class EmissionTargets;
 template <bool clear>
 class Walk;
 
@@ -67,9 +68,9 @@ void walk_from_camera(const RenderContext&, const Ray&, const WalkLimits&, Sampl
                       WalkListener&);
 
 /// A walk that begins at a luminaire, chosen by power. False: no light leaves there, and the walk is empty. The context's
-/// wavelengths and numbers are the walk's.
+/// wavelengths and numbers are the walk's. `targets`, if any: it goes towards one of them.
 bool walk_from_luminaire(const Scene&, const LightSampler&, float time, const WalkLimits&, SampleContext&,
-                         std::vector<KeptVertex>& walk, EmittedLight&);
+                         std::vector<KeptVertex>& walk, EmittedLight&, const EmissionTargets* targets = nullptr);
 
 /// The density of a vertex b that was chosen from a by a direction of solid-angle density `density`; `direction` is unit
 /// from a to b, `chance` that of getting along the edge.

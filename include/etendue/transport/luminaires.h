@@ -9,6 +9,7 @@ namespace etendue {
 
 /// Light that leaves a luminaire along a ray, with the densities it was chosen by.
 struct EmittedLight {
+  const SceneObject* luminaire = nullptr;
   SurfacePoint point;   ///< on the luminaire; of one at infinity: far outside the scene
   Ray ray;              ///< carries the light into the scene
   Spectrum radiance;    ///< that leaves along the ray, times the cosine at the luminaire
@@ -50,6 +51,14 @@ class LightFront {
   bool endless_;
   float within_;
 };
+
+/// The steps of which `sample_emitted_light` consists, for other ways to choose places and directions.
+/// Chooses a luminaire by power. False: there is none.
+bool choose_luminaire(const LightSampler&, float which, float time, EmittedLight&);
+/// Light of a sampled point at infinity that passes through a point of the scene. False: it never begins.
+bool begin_at_infinity(const Scene&, const Point3& through, const SurfaceSample&, const Wavelengths&, EmittedLight&);
+/// Light of a sampled point that leaves in a direction.
+void begin_at_point(const SurfaceSample&, const Vector3& direction, const Wavelengths&, EmittedLight&);
 
 /// Chooses a luminaire by power, a point on it and a direction; for one at infinity a direction, and a place across it as
 /// LightFront has it. False: nothing leaves there.

@@ -34,11 +34,13 @@ class RecordedNumbers final : public NumberSource {
 /// time: asking draws. SampleKey::sample does not count, so that one key serves the whole chain.
 class MutatedNumbers final : public NumberSource {
  public:
-  /// `deviation`: of a small step.
-  explicit MutatedNumbers(std::uint64_t seed, float deviation = 0.01f) : seed_(seed), deviation_(deviation) {}
+  explicit MutatedNumbers(std::uint64_t seed) : seed_(seed) {}
+  MutatedNumbers(const MutatedNumbers&) = delete;  // it points into itself
+  MutatedNumbers& operator=(const MutatedNumbers&) = delete;
 
-  void large_step() { begin(true); }
-  void small_step() { begin(false); }
+  void large_step() { begin(true, 1); }
+  /// `deviation`: the standard deviation of each number. It may differ from step to step, but must not depend on the state.
+  void small_step(float deviation = 0.01f) { begin(false, double(deviation) * double(deviation)); }
   void accept();
   void reject();
 
@@ -51,20 +53,29 @@ class MutatedNumbers final : public NumberSource {
   void load(std::span<const std::byte>& from);
 
  private:
+  /// Time is counted in the variance of the small steps so far, so that numbers left out know how far they are to be moved.
   struct Coordinate {
     float value = 0, before = 0;
-    std::uint64_t changed = 0, changed_before = 0;  ///< iterations; 0: never
+    double changed = 0, changed_before = 0;  ///< when; 0: never
   };
-  void begin(bool large);
+  using Walk = std::vector<Coordinate>;
+  void begin(bool large, double variance);
   float draw() const;
+  Walk& walk(std::uint64_t name) const;
+  /// Two normal deviates of variance 1.
+  Point2 normal_pair() const;
+  /// The coordinate as the proposal has it, of which `normal` is used where it is moved.
+  template <class Normal>
+  float proposed(Walk&, std::uint32_t dimension, const Normal& normal) const;
 
   std::uint64_t seed_;
-  float deviation_;
-  std::uint64_t iteration_ = 1, last_large_ = 1;  ///< the first state is drawn as a whole
+  double time_ = 1, time_before_ = 1, last_large_ = 1;  ///< the first state is drawn as a whole
   bool large_ = true;
   mutable std::uint64_t drawn_ = 0;
-  mutable std::unordered_map<std::uint64_t, std::vector<Coordinate>> walks_;
-  mutable std::vector<std::pair<std::uint64_t, std::uint32_t>> touched_;  ///< in this iteration
+  mutable std::unordered_map<std::uint64_t, Walk> walks_;
+  mutable std::uint64_t last_name_ = 0;  ///< of the walk that was asked for last
+  mutable Walk* last_ = nullptr;
+  mutable std::vector<std::pair<Walk*, std::uint32_t>> touched_;  ///< by this proposal
 };
 
 }  // namespace etendue

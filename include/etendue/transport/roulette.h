@@ -2,11 +2,13 @@
 // Russian roulette (Arvo & Kirk 1990, "Particle transport and image synthesis").
 
 #include <algorithm>
+#include <utility>
 
 namespace etendue {
 
 /// Ends walks that carry little, and lets others carry more: one that survives with probability q is divided by q, so what all
-/// walks carry together has the same mean. q is what is left of what the walk began with (Walk::left).
+/// walks carry together has the same mean. q is what is left of what the walk began with (Walk::left). What a branch of a
+/// divided walk is due (Walk::due) comes to that.
 struct Roulette {
   int depth = 5;  ///< segments before it may end a walk
 
@@ -17,6 +19,11 @@ struct Roulette {
       const float survival = std::min(1.0f, walk.left());
       if (walk.numbers.next() >= survival) return false;
       walk.throughput /= survival;
+    }
+    if (walk.due < 1) [[unlikely]] {
+      const float part = std::exchange(walk.due, 1.0f);
+      if (walk.numbers.next() >= part) return false;
+      walk.throughput /= part;
     }
     return !walk.throughput.black();
   }

@@ -69,9 +69,14 @@ class Walk {
   float crossed = 0;  ///< distance to the last boundary passed straight on [m], of the last segment
   Hit hit;            ///< of the last surface
 
-  /// What is left of what it began with, without the change of radiance by refraction, which comes back.
+  /// A branch that follows one wavelength: among how many of them the walk was divided. Each carries so much less.
+  float branches = 1;
+  /// Of a branch (CameraWalk::divide): the probability by which Roulette has yet to let it go on; 1: none.
+  float due = 1;
+
+  /// What is left of what it began with, without the change of radiance by refraction, which comes back, and by division.
   float left() const {
-    if (transport == Transport::radiance) return throughput.maximum() * eta_squared_;
+    if (transport == Transport::radiance) return throughput.maximum() * eta_squared_ * branches;
     float most = 0;
     for (int i = 0; i < spectrum_size; ++i)
       if (begun[i] > 0) most = std::max(most, throughput[i] / begun[i]);
@@ -204,6 +209,31 @@ class Walk {
   bool gathers = false;
   /// Whether someone wants to know of the last segment's end although it does not shine.
   bool watched = false;
+
+ protected:
+  /// A branch that begins at the last vertex of another walk.
+  Walk(const Walk& w, SampleContext& own)
+      : scene(w.scene),
+        sample(own),
+        numbers(own.numbers),
+        ray(w.ray),
+        throughput(w.throughput),
+        media(w.media),
+        longest(w.longest),
+        transport(w.transport),
+        vertex(w.vertex),
+        length(w.length),
+        branches(w.branches),
+        keeps(w.keeps),
+        gathers(w.gathers),
+        watched(w.watched),
+        begun(w.begun),
+        eta_squared_(w.eta_squared_),
+        tracks_(w.tracks_),
+        null_surfaces_(w.null_surfaces_) {}
+
+  /// `left` in the mean over wavelengths.
+  float mean_left() const { return throughput.average() * eta_squared_ * branches; }
 
  private:
   bool scattered_in(const Medium& medium, const Point3& at) {

@@ -7,6 +7,9 @@
 // specular lobe can meet luminaires in the second way only and takes that in full (Kajiya 1986; Veach 1997, section 9).
 // Russian roulette ends walks with a probability that keeps their expectation.
 //
+// At perfectly smooth glass the integral over directions is a sum of two, and with dispersion one for each wavelength: there a
+// walk is divided, and its branches are walks of their own (transport/camera_walk.h, Division).
+//
 // In a medium the phase function takes the place of f |cos|. Weights compare the densities of directions alone, which is the
 // same comparison whichever strategy made the path, so they add up to one.
 
@@ -22,6 +25,7 @@ class PathTracer final : public Renderer {
   int roulette_depth = 5;
   Heuristic heuristic = Heuristic::power;
   bool next_event = true;
+  int split_depth = 0, split_wavelengths = 3;
 
  public:
   static void describe(Description<PathTracer>& d) {
@@ -33,6 +37,16 @@ class PathTracer final : public Renderer {
     describe_heuristic<&PathTracer::heuristic>(d, when("next_event"));
     d.member<&PathTracer::next_event>("next_event", "",
                                       "whether luminaires are sampled; without, paths must meet them by chance");
+    d.group("Smooth glass")
+        .member<&PathTracer::split_depth>("split_depth", "1",
+                                          "how often a path from the camera that has met nothing else is both reflected and "
+                                          "refracted; then one of the two is "
+                                          "chosen",
+                                          range(0, 8))
+        .member<&PathTracer::split_wavelengths>(
+            "split_wavelengths", "1",
+            "how many of a path's wavelengths are followed, each by itself, where refraction disperses them; 1: the hero alone",
+            range(1, spectrum_size));
   }
 
   PathClasses finds() const override {
@@ -48,8 +62,14 @@ class PathTracer final : public Renderer {
 
  private:
   template <class Walk>
+  [[gnu::noinline]] Spectrum follow_branch(Walk& branch) const {
+    return follow(branch);
+  }
+
+  template <class Walk>
   [[gnu::always_inline]] Spectrum follow(Walk&& walk) const {
     const Roulette roulette{roulette_depth};
+    const Division division{split_depth, split_wavelengths};
     // Of light that the walk meets, against having sampled it.
     const auto met = [&](const SurfacePoint& luminaire) {
       if (walk.specular || !next_event) return 1.0f;
@@ -59,7 +79,10 @@ class PathTracer final : public Renderer {
     while (walk.next_vertex(met) && !walk.at_end()) {
       const NumberStream::Bounce u = walk.next_bounce();
       if (next_event) walk.add_direct(*light_sampler, u, heuristic);
-      if (walk.scatter(u) && !roulette.survives(walk)) walk.end();
+      if (walk.divides(division))
+        walk.divide(division, u, [&](auto& branch) { return follow_branch(branch); });
+      else if (walk.scatter(u) && !roulette.survives(walk))
+        walk.end();
     }
     return walk.radiance;
   }

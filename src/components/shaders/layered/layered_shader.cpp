@@ -73,7 +73,7 @@ class LayeredShader final : public Shader {
     const LayerStack* stacks[2][spectrum_size];
     const int count = disperses_ && !w.single() ? spectrum_size : 1;
     for (int i = 0; i < count; ++i) {
-      const Wavelengths own = i == 0 ? w : alone(w, i);
+      const Wavelengths own = i == 0 ? w : w.alone(i);
       stacks[0][i] = stack(p, own, arena);
       stacks[1][i] = mirrored_ ? stack(behind, own, arena) : stacks[0][i];
     }
@@ -146,15 +146,6 @@ class LayeredShader final : public Shader {
       if (s && s->dispersive) return true;
     }
     return false;
-  }
-
-  /// The i-th wavelength as the only one that counts.
-  static Wavelengths alone(const Wavelengths& w, int i) {
-    Wavelengths only = w;
-    only.place(0, w[i], w.density(i));
-    only.place(i, w[0], w.density(0));
-    only.drop_secondary();
-    return only;
   }
 
   const LayerStack* stack(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {

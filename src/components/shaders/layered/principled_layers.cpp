@@ -61,6 +61,7 @@ PrincipledScatter::PrincipledScatter(const SurfacePoint& p, const Frame& frame, 
       colored_(disperses_ || layers.film > 0 || layers.reflect_eta.minimum() != layers.reflect_eta.maximum()),
       choosing_(disperses_ && !layers.single ? spectrum_size : 1) {
   if (!smooth_) prepare_multiple();
+  if (smooth_ && disperses_ && !layers.single) dispersed_ = specular_transmission;
   matt_mean_ = matt_normalizer();
 }
 

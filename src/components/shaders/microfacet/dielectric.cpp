@@ -21,6 +21,7 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
   DielectricScatter(const SurfacePoint& p, Spectrum eta, bool varies, bool dispersive)
       : ScatterModel(p, specular_reflection | specular_transmission), eta_(eta), varies_(varies), dispersive_(dispersive) {
     has_captives_ = true;
+    if (dispersive) dispersed_ = specular_transmission;
   }
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }

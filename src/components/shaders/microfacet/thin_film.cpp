@@ -27,7 +27,9 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
 
   ThinFilmScatter(const SurfacePoint& p, const Layers& layers)
       : ScatterModel(p, Lobes(specular_reflection | (layers.through ? Lobes(specular_transmission) : no_lobes))),
-        layers_(layers) {}
+        layers_(layers) {
+    if (layers.dispersive && layers.through) dispersed_ = specular_transmission;
+  }
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }

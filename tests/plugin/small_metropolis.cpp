@@ -11,19 +11,18 @@
 
 using namespace etendue;
 
-class PrimarySampleMetropolis final : public Renderer {
+class SmallMetropolis final : public Renderer {
  public:
   Ref<Renderer> inner;
   int chains = 256, bootstrap = 64;
   float large_steps = 0.3f;
 
-  static void describe(Description<PrimarySampleMetropolis>& d) {
+  static void describe(Description<SmallMetropolis>& d) {
     d.summary("Metropolis light transport in primary sample space, around another renderer.", "Kelemen et al. 2002")
-        .member<&PrimarySampleMetropolis::inner>("inner", "", "the renderer whose paths are mutated", required)
-        .member<&PrimarySampleMetropolis::chains>("chains", "1", "Markov chains of each step", range(1, 65536))
-        .member<&PrimarySampleMetropolis::bootstrap>("bootstrap", "1", "paths a chain's first is chosen among", range(1, 65536))
-        .member<&PrimarySampleMetropolis::large_steps>("large_steps", "1", "part of proposals that are wholly new",
-                                                       range(0.01, 1));
+        .member<&SmallMetropolis::inner>("inner", "", "the renderer whose paths are mutated", required)
+        .member<&SmallMetropolis::chains>("chains", "1", "Markov chains of each step", range(1, 65536))
+        .member<&SmallMetropolis::bootstrap>("bootstrap", "1", "paths a chain's first is chosen among", range(1, 65536))
+        .member<&SmallMetropolis::large_steps>("large_steps", "1", "part of proposals that are wholly new", range(0.01, 1));
   }
   PathClasses finds() const override { return inner ? inner->finds() : no_paths; }
   Expectation expectation() const override { return inner ? inner->expectation() : Expectation::unbiased; }
@@ -34,7 +33,7 @@ class PrimarySampleMetropolis final : public Renderer {
 };
 
 class MetropolisProcess final : public RenderProcess {
-  const PrimarySampleMetropolis& settings_;
+  const SmallMetropolis& settings_;
   const std::unique_ptr<RenderProcess> inner_;
 
   /// F(u): what one path brings, each part with its place on the film, and I(u).
@@ -107,7 +106,7 @@ class MetropolisProcess final : public RenderProcess {
   }
 
  public:
-  MetropolisProcess(const PrimarySampleMetropolis& r, const RenderContext& c)
+  MetropolisProcess(const SmallMetropolis& r, const RenderContext& c)
       : RenderProcess(r, c), settings_(r), inner_(r.inner->start(c)) {
     if (!c.image.crop.empty()) r.fail({}, "renders whole pictures, no crops");
     const SampleKey one(1, 2, 3, 4), other(5, 6, 7, 8);
@@ -133,8 +132,8 @@ class MetropolisProcess final : public RenderProcess {
   }
 };
 
-std::unique_ptr<RenderProcess> PrimarySampleMetropolis::begin(const RenderContext& context) const {
+std::unique_ptr<RenderProcess> SmallMetropolis::begin(const RenderContext& context) const {
   return std::make_unique<MetropolisProcess>(*this, context);
 }
 
-static const Register<PrimarySampleMetropolis> registered;
+static const Register<SmallMetropolis> registered;

@@ -1,0 +1,87 @@
+#pragma once
+// PhotonProcess: what algorithms share whose camera paths use photons. Each step has photons of its own, which all its paths
+// share, and so all its paths have the same wavelengths and are of the same moment.
+
+#include "etendue/render/renderer.h"
+#include "etendue/transport/photons.h"
+
+namespace etendue {
+
+class PhotonProcess : public RenderProcess {
+ public:
+  using RenderProcess::RenderProcess;
+
+  // Once there are photons; without, paths share nothing.
+  Wavelengths wavelengths(SampleKey key, float u) const override {
+    return shares_ ? wavelengths_ : RenderProcess::wavelengths(key, u);
+  }
+  float time(float u) const override { return shares_ ? time_ : RenderProcess::time(u); }
+
+ protected:
+  /// Chooses the wavelengths and the moment of a step.
+  void share(const Step&);
+
+  struct Request {
+    std::uint64_t walks = 0;  ///< from luminaires; 0: one for each pixel
+    std::uint64_t most = 0;   ///< photons; where there would be more, each is kept with a chance
+    WalkLimits limits = {};
+    PhotonKinds kinds = PhotonKinds::all;
+    const EmissionTargets* targets = nullptr;  ///< see PhotonWalks
+    int fewest_vertices = 1;
+    double radius = 0;                    ///< of the first step [m]
+    double shrinking = 1;                 ///< a: see photons.h
+    const Heuristic* weighted = nullptr;  ///< how photons are weighted against connections; null: they are not
+  };
+  struct Photons {
+    PhotonMap map;
+    double walks = 0;                             ///< n, as far as their photons were kept
+    float surface_radius = 0, medium_radius = 0;  ///< [m]
+    Merging merging;                              ///< n pi r^2 and n 4/3 pi r^3
+    float radius(const Vertex& v) const { return v.in_medium() ? medium_radius : surface_radius; }
+    /// Calls `visit(photon, n pi r^2 or n 4/3 pi r^3)` for those within the radius of a vertex from which nothing parts them.
+    template <class Visit>
+    void near(const Scene& scene, const Vertex& v, const Visit& visit) const {
+      const auto density = float(v.in_medium() ? merging.medium : merging.surface);
+      map.within(v.point.position, radius(v), [&](const Photon& p) {
+        if (p.in_medium == v.in_medium() && !parted(scene, v, p, radius(v))) visit(p, density);
+      });
+    }
+  };
+  /// Makes photons of a step, after `share`. Requests of one step that differ in kinds have different numbers.
+  Photons make_photons(Schedule&, const Step&, const Request&) const;
+
+ private:
+  bool shares_ = false;
+  Wavelengths wavelengths_;
+  float time_ = 0;
+};
+
+/// `std::int64_t`s: how many walks and photons there are.
+template <auto walks, auto most, class R>
+Description<R>& describe_photons(Description<R>& d) {
+  return d
+      .template member<walks>("photon_walks", "1", "walks from luminaires in each step; 0: one for each pixel", range(0, 4e9),
+                              soft(0, 1e7))
+      .template member<most>("most_photons", "1",
+                             "about so many photons are kept in each step, which takes up to 200 bytes for each while the map "
+                             "is built; where there would be more, each is kept with a chance",
+                             range(1, 4e9), soft(1e5, 1e8), logarithmic);
+}
+
+/// `float`s: the radius of the first step, and how it shrinks.
+template <auto radius, auto shrinking, class R>
+Description<R>& describe_shrinking_radius(Description<R>& d) {
+  return d
+      .template member<radius>(
+          "radius", "1",
+          "of the first step, within which photons count, in widths of a pixel where it is first seen (the "
+          "median over the picture)",
+          more_than(0), soft(0.5, 30), logarithmic)
+      .template member<shrinking>(
+          "alpha", "1",
+          "how slowly the radius shrinks: pi r^2 falls as the number of the step to the power alpha - 1, "
+          "so that more of it leaves more blur and less noise",
+          range(0.01, 1));
+}
+
+}  // namespace etendue

@@ -1,0 +1,54 @@
+#pragma once
+// Where photons near a point came from, as a guide to where light is (Jensen 1995, "Importance driven path tracing using the
+// photon map"): of cones of opening W around the directions of the nearest photons one is taken in proportion to what its
+// photon carries,
+//     p(w) = sum_k P_k [w in cone k] / W   [1/sr].
+
+#include <array>
+
+#include "etendue/core/warp.h"
+#include "etendue/transport/photons.h"
+
+namespace etendue {
+
+class PhotonDirections {
+ public:
+  /// Of photons within `radius` that came to the side of the surface on which the walk came to x.
+  PhotonDirections(const PhotonMap& map, const Vertex& x, float radius) {
+    std::vector<PointTree::Near>& near = PointTree::near_on_this_thread();
+    map.tree().nearest(x.point.position, radius, most, near);
+    const Vector3 normal = on_side(Vector3(x.point.normal), x.out);
+    for (const PointTree::Near& each : near) {
+      const Photon& p = map[each.index];
+      if (p.in_medium || !(dot(normal, p.out) > 0)) continue;
+      photons_[count_] = &p;
+      sum_ += carried_[count_] = std::max(p.throughput.average(), 0.0f);
+      ++count_;
+    }
+  }
+  bool empty() const { return !(sum_ > 0); }
+
+  Vector3 sample(float choice, Point2 u) const {
+    float rest = choice * sum_;
+    size_t k = 0;
+    while (k + 1 < count_ && rest >= carried_[k]) rest -= carried_[k++];
+    return Frame(Normal3(photons_[k]->out)).to_world(warp::cone(u, opening));
+  }
+  /// [1/sr]
+  float density(const Vector3& direction) const {
+    float met = 0;
+    for (size_t k = 0; k < count_; ++k)
+      if (dot(direction, photons_[k]->out) >= 1 - opening) met += carried_[k];
+    return met / sum_ * warp::cone_density(opening);
+  }
+
+ private:
+  static constexpr size_t most = 24;
+  static constexpr float opening = 0.06f;  // 1 - cosine of a cone's half angle: 20 degrees
+  std::array<const Photon*, most> photons_;
+  std::array<float, most> carried_;
+  size_t count_ = 0;
+  float sum_ = 0;
+};
+
+}  // namespace etendue

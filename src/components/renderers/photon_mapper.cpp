@@ -1,0 +1,227 @@
+// Photon mapping with final gathering (Jensen 1996, "Global illumination using photon maps"; Jensen 2001, "Realistic image
+// synthesis using photon mapping").
+//
+// Light at the first vertex x of a walk from the camera that scatters smoothly is divided by the way it came from a luminaire:
+//     straight        sampled, and met, as in path tracing;
+//     by mirrors and glass alone (caustics)    the k photons of the caustic map nearest to x;
+//     from another smooth vertex y             the walk goes on from x and finds y, where all light is that of the k photons of
+//                     the global map nearest to y. Where y is too near to x for photons to tell it apart, y takes the place of
+//                     x.
+// The light of k photons within the distance r_k of the farthest is
+//     L = sum_p f alpha_p / (n pi r_k^2),        in media sum_p phase alpha_p / (n 4/3 pi r_k^3)
+// without the farthest itself (transport/photons.h). Directions from x are chosen by the shader, or towards where photons near
+// x came from (Jensen 1995, "Importance driven path tracing using the photon map"): of cones of opening W around the directions
+// of the K nearest one is taken in proportion to what its photon carries, so that with a share q
+// In media no light is gathered: photons at the vertex bring all that was scattered before.
+
+#include "etendue/render/photon_process.h"
+#include "etendue/transport/camera_walk.h"
+#include "etendue/transport/irradiance_points.h"
+#include "etendue/transport/photon_directions.h"
+#include "etendue/transport/renderer_members.h"
+
+namespace etendue {
+
+class PhotonMapper final : public Renderer {
+ public:
+  int max_depth = 64;
+  int roulette_depth = 5;
+  Heuristic heuristic = Heuristic::power;
+  std::int64_t photon_walks = 0, caustic_walks = 0, most_photons = 50'000'000;
+  int samples_per_map = 16, nearest = 60, nearest_caustic = 40;
+  float farthest = 30, farthest_caustic = 6;
+  bool final_gather = true, irradiance = false;
+  float importance = 0.5f;
+
+  static void describe(Description<PhotonMapper>& d) {
+    d.summary(
+        "Photon maps, one for caustics and one for all other light, which is gathered from the first surface: quick and "
+        "smooth, and blurred a little.",
+        "Jensen 1996; Jensen 2001");
+    d.group("Paths");
+    describe_max_depth<&PhotonMapper::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    describe_roulette_depth<&PhotonMapper::roulette_depth>(d);
+    describe_heuristic<&PhotonMapper::heuristic>(d);
+    d.group("Photons");
+    describe_photons<&PhotonMapper::photon_walks, &PhotonMapper::most_photons>(d);
+    d.member<&PhotonMapper::caustic_walks>("caustic_walks", "1",
+                                           "walks of each step towards mirrors and glass; 0: one for each pixel", range(0, 4e9),
+                                           soft(0, 1e7))
+        .member<&PhotonMapper::samples_per_map>("samples_per_map", "1",
+                                                "samples of each pixel in a step, after which there are new photons",
+                                                range(1, 65536), soft(1, 256), logarithmic)
+        .member<&PhotonMapper::nearest>("nearest", "1", "photons of an estimate of the global map", range(2, 1e6),
+                                        soft(10, 500), logarithmic)
+        .member<&PhotonMapper::farthest>(
+            "farthest", "1",
+            "how far they may be, in widths of a pixel where it is first seen (the median over the "
+            "picture)",
+            more_than(0), soft(1, 100), logarithmic)
+        .member<&PhotonMapper::nearest_caustic>("nearest_caustic", "1", "photons of an estimate of the caustic map",
+                                                range(2, 1e6), soft(10, 500), logarithmic)
+        .member<&PhotonMapper::farthest_caustic>("farthest_caustic", "1", "how far they may be, in the same widths",
+                                                 more_than(0), soft(1, 100), logarithmic);
+    d.group("Final gathering")
+        .member<&PhotonMapper::final_gather>(
+            "final_gather", "",
+            "whether the walk goes on from the first smooth surface; without, the global map is seen directly")
+        .member<&PhotonMapper::importance>("importance", "1",
+                                           "share of gathering directions that are chosen by where photons came from",
+                                           range(0, 0.95), when("final_gather"))
+        .member<&PhotonMapper::irradiance>(
+            "irradiance", "",
+            "whether irradiance is found beforehand at every fourth photon, so that gathering looks at one in place of many; "
+            "surfaces are taken for matt there (Christensen 1999)",
+            when("final_gather"));
+  }
+
+  PathClasses finds() const override { return all_paths & ~(subsurface_light | emitting_media); }
+  Expectation expectation() const override { return Expectation::biased; }
+  Estimator estimator() const override { return Estimator::correlated; }
+  std::uint32_t samples_per_step(std::uint32_t) const override { return std::uint32_t(samples_per_map); }
+
+ private:
+  std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
+};
+
+class PhotonMapperProcess final : public PhotonProcess {
+ public:
+  PhotonMapperProcess(const PhotonMapper& r, const RenderContext& c)
+      : PhotonProcess(r, c), settings_(r), pixel_(seen_pixel_width(c)), targets_(c.scene) {}
+
+  void prepare_step(Schedule& schedule, const Step& step) override {
+    share(step);
+    Request request{.walks = std::uint64_t(settings_.photon_walks),
+                    .most = std::uint64_t(settings_.most_photons),
+                    .limits = {settings_.max_depth - 1, settings_.roulette_depth}};
+    global_ = caustics_ = {};
+    global_ = make_photons(schedule, step, request);
+    request.walks = std::uint64_t(settings_.caustic_walks);
+    request.kinds = PhotonKinds::caustics;
+    if (targets_.useful()) request.targets = &targets_;
+    caustics_ = make_photons(schedule, step, request);
+    if (settings_.irradiance && settings_.final_gather)
+      irradiance_.find(context.scene, global_.map,
+                       {size_t(settings_.nearest), settings_.farthest * pixel_, global_.walks, time(0)});
+  }
+
+  Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
+    CameraWalk walk(context.scene, sample, ray, settings_.max_depth);
+    enum class Seeks : std::uint8_t {
+      all,         // mirrors and glass alone were passed: whatever shines
+      gathered,    // a smooth surface was left: luminaires straight ahead, and what other smooth surfaces send
+      luminaires,  // those straight ahead: photons brought the rest
+    } seeks = Seeks::all;
+    const auto met = [&](const SurfacePoint& luminaire) {
+      if (walk.specular) return seeks == Seeks::all ? 1.0f : 0.0f;
+      return heuristic_weight(
+          settings_.heuristic, walk.direction_density,
+          direct_light_density(*settings_.light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire));
+    };
+    while (walk.next_vertex(met) && seeks != Seeks::luminaires && !walk.at_end()) {
+      const Vertex& v = walk.vertex;
+      const bool smooth = v.scatters_smoothly(), brought = v.in_medium() || !settings_.final_gather;
+      if (smooth && seeks == Seeks::gathered && !brought && is_far(walk)) {
+        add_all(walk);
+        walk.end();
+        continue;
+      }
+      if (smooth) add_photons(walk, caustics_, settings_.nearest_caustic, settings_.farthest_caustic, PhotonKinds::caustics);
+      if (smooth && brought) add_photons(walk, global_, settings_.nearest, settings_.farthest, PhotonKinds::no_caustics);
+      if (!go_on(walk, smooth && !brought)) walk.end();
+      if (!walk.specular) seeks = brought ? Seeks::luminaires : Seeks::gathered;
+    }
+    return walk.radiance;
+  }
+
+ private:
+  /// Whether photons can tell the last vertex from the one before, from which light is gathered.
+  template <class Walk>
+  bool is_far(const Walk& walk) const {
+    return length_squared(walk.vertex.point.position - walk.from) > square(settings_.farthest * pixel_);
+  }
+
+  /// Light of the nearest photons: of caustics, of what was scattered otherwise, or of all that came here.
+  template <class Walk>
+  void add_photons(Walk& walk, const Photons& photons, int nearest, float farthest, PhotonKinds kinds) const {
+    const Vertex& v = walk.vertex;
+    const Wavelengths& w = walk.sample.wavelengths;
+    std::vector<PointTree::Near>& near = PointTree::near_on_this_thread();
+    float radius = farthest * pixel_;
+    photons.map.tree().nearest(v.point.position, radius, size_t(nearest), near);
+    if (near.size() == size_t(nearest)) {
+      radius = std::sqrt(near.front().squared);
+      near.front().squared = infinity;  // the farthest says how large the disc is, and lies on its edge
+    }
+    const float place = v.in_medium() ? 4 * pi / 3 * radius * radius * radius : pi * square(radius);
+    for (const PointTree::Near& each : near) {
+      const Photon& p = photons.map[each.index];
+      const bool wanted = kinds == PhotonKinds::all || (p.vertices > 1 && p.caustic == (kinds == PhotonKinds::caustics));
+      if (!wanted || each.squared == infinity || walk.length + int(p.vertices) > settings_.max_depth) continue;
+      if (p.in_medium != v.in_medium() || parted(context.scene, v, p, radius)) continue;
+      walk.add_light(int(p.vertices), scattered_from_photon(v, p, w, w.single()) / (float(photons.walks) * place));
+    }
+  }
+
+  /// All light of a surface that is seen while gathering.
+  template <class Walk>
+  void add_all(Walk& walk) const {
+    const Vertex& v = walk.vertex;
+    const Spectrum* irradiance = settings_.irradiance ? irradiance_.at(v) : nullptr;
+    if (!irradiance) return add_photons(walk, global_, settings_.nearest, settings_.farthest, PhotonKinds::all);
+    // As if all came along the normal, which is the same for a matt surface.
+    const Vector3 normal = on_side(Vector3(v.point.normal), v.out);
+    walk.add_light(1, v.scatter->evaluate(v.out, normal, Transport::radiance, v.lobes) * *irradiance);
+  }
+
+  /// Adds light straight from luminaires and chooses where the walk goes on, towards where photons came from if `guided`.
+  template <class Walk>
+  bool go_on(Walk& walk, bool guided) const {
+    const Vertex& v = walk.vertex;
+    const NumberStream::Bounce u = walk.next_bounce();
+    const LightSampler& lights = *settings_.light_sampler;
+    const float q = settings_.importance;
+    std::optional<PhotonDirections> photons;
+    if (guided && q > 0) photons.emplace(global_.map, v, settings_.farthest * pixel_);
+    if (!photons || photons->empty()) {
+      walk.add_direct(lights, u, settings_.heuristic);
+      return walk.scatter(u);
+    }
+    const auto mixture = [&](const Vector3& in) {
+      ScatterValue f = ScatteringOf{v}(in);
+      f.density = (1 - q) * f.density + q * photons->density(in);
+      return f;
+    };
+    walk.add_direct(lights, u, settings_.heuristic, mixture);
+    NumberStream guide = walk.numbers.fork("photon", std::uint32_t(walk.length));
+    if (guide.next() < q) {
+      const Vector3 to = photons->sample(guide.next(), u.direction);
+      const auto next = scattered_towards(v, to, mixture(to).density, Transport::radiance);
+      return next && walk.go_on(*next);
+    }
+    std::optional<ScatterSample> next = walk.sample_direction(u.lobe_choice, u.direction);
+    if (!next) return false;
+    if (next->specular()) {
+      next->weight /= 1 - q;
+    } else {
+      const float density = mixture(next->direction).density;
+      next->weight *= next->density / density;
+      next->density = density;
+    }
+    return walk.go_on(*next);
+  }
+
+  const PhotonMapper& settings_;
+  const float pixel_;  // [m]
+  const EmissionTargets targets_;
+  Photons global_, caustics_;
+  IrradiancePoints irradiance_;
+};
+
+std::unique_ptr<RenderProcess> PhotonMapper::begin(const RenderContext& context) const {
+  return std::make_unique<PhotonMapperProcess>(*this, context);
+}
+
+static const Register<PhotonMapper> registered;
+
+}  // namespace etendue

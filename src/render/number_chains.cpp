@@ -1,0 +1,137 @@
+#include "etendue/render/number_chains.h"
+
+#include <array>
+
+#include "etendue/transport/number_vectors.h"
+
+namespace etendue {
+namespace {
+
+/// Independent paths, by what they bring to the parts of the film.
+struct Pool {
+  std::vector<Contribution::Brightness> parts;
+  std::vector<size_t> ends;  ///< of the parts of each path
+
+  std::span<const Contribution::Brightness> path(size_t i) const {
+    const size_t begin = i > 0 ? ends[i - 1] : 0;
+    return std::span(parts).subspan(begin, ends[i] - begin);
+  }
+  std::vector<double> light() const {
+    std::vector<double> sums(FilmWeights::cells);
+    for (const Contribution::Brightness& part : parts) sums[part.cell] += double(part.luminance);
+    return sums;
+  }
+  ChainStarts starts(const FilmWeights& v) const {
+    std::vector<ChainStarts::Path> paths(ends.size());
+    for (size_t i = 0; i < paths.size(); ++i)
+      paths[i] = {i, Contribution::brightness(path(i), v), path(i).empty() ? 0 : FilmWeights::order(path(i)[0].cell)};
+    return ChainStarts(std::move(paths));
+  }
+};
+
+class NumberChains {
+ public:
+  NumberChains(const ChainSettings& settings, const PathFunction& path, std::uint64_t seed, const std::atomic<bool>* abort)
+      : settings_(settings), path_(path), seed_(seed), abort_(abort) {}
+
+  /// The numbers of a path of a pool are those that its seed gives at first.
+  std::uint64_t path_seed(std::uint64_t pool, std::uint64_t path) const {
+    return mix_bits(seed_ ^ mix_bits(0x9e3779b97f4a7c15ull * (2 * path + pool + 1)));
+  }
+
+  Pool pool(Schedule& schedule, std::uint64_t which, std::uint64_t count) const {
+    using Parts = std::vector<Contribution::Brightness>;
+    constexpr std::uint64_t item_size = 256;
+    Pool pool;
+    for (const Parts& parts : schedule.collect<Parts>((count + item_size - 1) / item_size,
+                                                      [&](std::uint64_t item, std::vector<Parts>& paths, Arena& arena) {
+                                                        Contribution f;
+                                                        const std::uint64_t end = std::min(count, (item + 1) * item_size);
+                                                        for (std::uint64_t i = item * item_size; i < end && !aborted(); ++i) {
+                                                          path_.evaluate(MutatedNumbers(path_seed(which, i)), arena, abort_, f);
+                                                          paths.push_back(f.luminances);
+                                                        }
+                                                      })) {
+      pool.parts.insert(pool.parts.end(), parts.begin(), parts.end());
+      pool.ends.push_back(pool.parts.size());
+    }
+    return pool;
+  }
+
+  /// A chain of so many states that begins with the numbers of a seed.
+  void run(std::uint64_t first, std::uint64_t own_seed, std::uint64_t states, const StateWeights& weights, const FilmWeights& v,
+           ImageTile& tile, Arena& arena) const {
+    ChoiceNumbers choices(own_seed);
+    MutatedNumbers numbers(first);
+    Contribution current, proposed;
+    path_.evaluate(numbers, arena, abort_, current);
+    numbers.accept();
+    double I = current.brightness(v), waiting = 0;  // what the current state counts for that is not added yet
+    for (std::uint64_t i = 0; i < states && !aborted(); ++i) {
+      const bool large = choices.next() < double(settings_.large_steps);
+      if (large)
+        numbers.large_step();
+      else
+        numbers.small_step(settings_.deviation);
+      path_.evaluate(numbers, arena, abort_, proposed);
+      proposed.report_bad(tile);
+      const double J = proposed.brightness(v), accept = I > 0 ? std::min(1.0, J / I) : 1;
+      waiting += weights.factor(false, 1 - accept, I);
+      const double now = weights.factor(large, accept, J);
+      if (choices.next() < accept) {
+        numbers.accept();
+        current.add_to(tile, waiting);
+        std::swap(current, proposed);
+        I = J;
+        waiting = now;
+      } else {
+        numbers.reject();
+        proposed.add_to(tile, now);
+      }
+    }
+    current.add_to(tile, waiting);
+  }
+
+ private:
+  const ChainSettings& settings_;
+  const PathFunction& path_;
+  const std::uint64_t seed_;
+  const std::atomic<bool>* const abort_;
+  bool aborted() const { return abort_ && abort_->load(std::memory_order_relaxed); }
+};
+
+}  // namespace
+
+void mutate_numbers(Schedule& schedule, const ImageBuffer& image, const ChainSettings& settings, const PathFunction& path,
+                    std::uint64_t seed, std::uint64_t mutations, bool count_paths) {
+  const NumberChains chains(settings, path, seed, schedule.abort);
+  // Half of the chains begin with paths of one pool, the other half with those of another. Either takes what only weighs, v and
+  // b, from the other's pool, so that it depends on nothing it weighs.
+  const auto paths = std::uint64_t(std::max(1.0, double(mutations) * double(settings.bootstrap) / 2));
+  const std::array<Pool, 2> pools{chains.pool(schedule, 0, paths), chains.pool(schedule, 1, paths)};
+  if (schedule.aborted()) return;
+  struct Half {
+    FilmWeights v;
+    ChainStarts starts;
+    StateWeights weights;
+  };
+  const auto half = [&](const Pool& own, const Pool& other) {
+    FilmWeights v = settings.even_errors ? FilmWeights(other.light()) : FilmWeights();
+    ChainStarts starts = own.starts(v);
+    const StateWeights weights{starts.mean(), other.starts(v).mean(), double(settings.large_steps)};
+    return Half{std::move(v), std::move(starts), weights};
+  };
+  const std::array<Half, 2> halves{half(pools[0], pools[1]), half(pools[1], pools[0])};
+  const auto count = std::uint64_t(settings.chains);
+  schedule.film(count, [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
+    tile.begin(image, {});  // splats alone
+    const std::uint64_t which = item % 2, states = mutations / count + (item < mutations % count);
+    const auto& [v, starts, weights] = halves[which];
+    if (count_paths)
+      for (std::uint64_t i = 0; i < states; ++i) tile.count_path();
+    const std::uint64_t first = starts.begin(item / 2, (count + 1 - which) / 2, ChoiceNumbers(seed + which).next());
+    chains.run(chains.path_seed(which, first), mix_bits(seed + item), states, weights, v, tile, arena);
+  });
+}
+
+}  // namespace etendue

@@ -1,0 +1,60 @@
+#include "etendue/render/photon_process.h"
+
+#include <algorithm>
+
+namespace etendue {
+namespace {
+
+/// The chance of a photon to be kept, so that about `most` are. When walks cannot make as many, all are; else as many as some
+/// walks of other numbers made tell.
+double chance_to_keep(Schedule& schedule, const PhotonWalks& walks, std::uint64_t most) {
+  if (double(walks.walks) * walks.limits.longest <= double(most)) return 1;
+  PhotonWalks some = walks;
+  some.walks = std::min<std::uint64_t>(walks.walks, 1 << 14);
+  some.step = ~walks.step;
+  const size_t made = schedule.collect<Photon>(some.items(), some).size();
+  const double expected = double(made) * double(walks.walks) / double(some.walks);
+  return std::min(1.0, double(most) / std::max(expected, 1.0));
+}
+
+}  // namespace
+
+void PhotonProcess::share(const Step& step) {
+  const SampleKey key(context.seed, -1, -1, step.number);
+  NumberStream numbers(*renderer.sampler, key);
+  shares_ = true;
+  wavelengths_ = context.wavelengths.sample(key, numbers.next());
+  time_ = context.camera.shutter_time(numbers.next());
+}
+
+PhotonProcess::Photons PhotonProcess::make_photons(Schedule& schedule, const Step& step, const Request& request) const {
+  const ImageBuffer& image = context.image;
+  PhotonWalks walks{.context = context,
+                    .lights = *renderer.light_sampler,
+                    .numbers = *renderer.sampler,
+                    .step = step.number,
+                    .wavelengths = wavelengths_,
+                    .time = time_,
+                    .walks = request.walks > 0 ? request.walks : std::uint64_t(image.width) * std::uint64_t(image.height),
+                    .limits = request.limits,
+                    .kinds = request.kinds,
+                    .targets = request.targets,
+                    .fewest_vertices = request.fewest_vertices,
+                    .abort = schedule.abort};
+  walks.kept = chance_to_keep(schedule, walks, request.most);
+
+  Photons photons;
+  photons.walks = double(walks.walks) * walks.kept;
+  const double shrunk = shrunk_area(step.number, request.shrinking);
+  const double r = request.radius * std::sqrt(shrunk), in_medium = request.radius * std::cbrt(shrunk);
+  photons.surface_radius = float(r);
+  photons.medium_radius = float(in_medium);
+  photons.merging = {photons.walks * double(pi) * r * r,
+                     photons.walks * 4 / 3 * double(pi) * in_medium * in_medium * in_medium};
+  const StrategyWeights against{request.weighted ? *request.weighted : Heuristic::power, true, photons.merging};
+  if (request.weighted) walks.against = &against;
+  photons.map.build(schedule.collect<Photon>(walks.items(), walks));
+  return photons;
+}
+
+}  // namespace etendue

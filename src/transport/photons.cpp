@@ -1,0 +1,139 @@
+#include "etendue/transport/photons.h"
+
+#include <algorithm>
+
+namespace etendue {
+
+Spectrum scattered_from_photon(const Vertex& at, const Photon& photon, const Wavelengths& wavelengths, bool single) {
+  Spectrum scattered;
+  if (at.in_medium()) {
+    if (!photon.in_medium) return {};
+    const Spectrum s = at.medium.coefficients(at.point.position, at.point.time, wavelengths).scattering;
+    const float phase = at.medium.phase(at.point.position, at.point.time, at.out, photon.out);
+    for (int i = 0; i < spectrum_size; ++i) scattered.set(i, s[i] > 0 ? phase * photon.throughput[i] / s[i] : 0);
+  } else {
+    // The cosine of the light's direction is in the density of photons already.
+    const float cosine = std::abs(dot(at.point.normal, photon.out));
+    if (photon.in_medium || !at.scatter || !(cosine > 0)) return {};
+    scattered = at.scatter->evaluate(at.out, photon.out, Transport::radiance, at.lobes) * photon.throughput / cosine;
+  }
+  // Both walks have made up for the wavelengths they dropped: once is enough.
+  if (photon.single && single) scattered /= float(spectrum_size);
+  return scattered;
+}
+
+bool parted(const Scene& scene, const Point3& a, const Vector3& normal_a, float time, const Point3& b, const Vector3& normal_b,
+            float radius) {
+  const float lift = 0.1f * radius;
+  const Point3 from = a + lift * normal_a;
+  const Vector3 between = b + lift * normal_b - from;
+  Ray ray;
+  ray.maximum = length(between);
+  if (!(ray.maximum > 0)) return false;
+  ray.origin = from;
+  ray.direction = between / ray.maximum;
+  ray.time = time;
+  return scene.any(ray);
+}
+
+void PhotonMap::build(std::vector<Photon>&& photons) {
+  photons_ = std::move(photons);
+  std::vector<Point3> places(photons_.size());
+  for (size_t i = 0; i < photons_.size(); ++i) places[i] = photons_[i].position;
+  std::vector<std::uint32_t> order = tree_.build(places);
+  // Put into that order where they lie, cycle by cycle, so that no second list of them is needed.
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    if (order[i] == i) continue;
+    const Photon first = photons_[i];
+    std::uint32_t to = i;
+    for (std::uint32_t from = order[to]; from != i; from = order[to]) {
+      photons_[to] = photons_[from];
+      order[to] = to;
+      to = from;
+    }
+    photons_[to] = first;
+    order[to] = to;
+  }
+}
+
+namespace {
+
+/// What the weight of merging with vertex i of a light walk needs.
+PhotonWeight weight_of(const std::vector<KeptVertex>& walk, size_t i, float direct, const StrategyWeights& against,
+                       const LightFront& front) {
+  const KeptVertex &photon = walk[i], &luminaire = walk[0];
+  ConnectedPath path;
+  path.light = walk.data();
+  path.s = int(i);
+  path.t = 2;  // at least: what merges is no end of the path
+  path.light_last_from_camera = vertex_density(1, photon, walk[i - 1], photon.out, photon.chance, front);
+  path.direct = direct;
+  path.begun = luminaire.forward;
+  path.luminaire_can_be_met = !luminaire.point.object->delta();
+  path.merging = against.merging;
+  return photon_weight(path, photon.forward, against.heuristic);
+}
+
+}  // namespace
+
+void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, Arena& arena) const {
+  std::vector<KeptVertex> walk;
+  EmittedLight light;
+  const LightFront front(context.scene);
+  for (std::uint64_t n = item * item_size; n < std::min(walks, (item + 1) * item_size); ++n) {
+    const ArenaScope memory(arena);
+    Wavelengths w = wavelengths;
+    NumberStream walk_numbers(numbers, SampleKey(context.seed, -2 - int(kinds), int(step), std::uint32_t(n)));
+    NumberStream chances = walk_numbers.fork("kept");
+    SampleContext sample{w, walk_numbers, arena, {}, nullptr, abort};
+    if (!walk_from_luminaire(context.scene, lights, time, limits, sample, walk, light, targets)) continue;
+    if (sample.aborted()) return;
+    const float direct = walk.size() > 1 && against ? sampled_density(lights, walk[1], walk[0], walk[1].out) : 0;
+    bool specular = true;  // all the way from the luminaire
+    for (size_t i = 1; i < walk.size(); ++i) {
+      const KeptVertex& v = walk[i];
+      const bool caustic = i > 1 && specular;
+      specular = specular && v.specular;
+      const bool wanted = kinds == PhotonKinds::all || caustic == (kinds == PhotonKinds::caustics);
+      if (!wanted || !v.connectable() || int(i) < fewest_vertices || (kept < 1 && double(chances.next()) >= kept)) continue;
+      Photon& p = photons.emplace_back();
+      p.position = v.point.position;
+      p.out = v.out;
+      for (int axis = 0; axis < 3; ++axis) p.normal[size_t(axis)] = std::int16_t(32767 * v.point.normal[axis]);
+      p.throughput = v.throughput;
+      p.vertices = std::uint32_t(i);
+      p.single = v.single;
+      p.in_medium = v.in_medium();
+      p.caustic = caustic;
+      if (against) p.weight = weight_of(walk, i, direct, *against, front);
+    }
+  }
+}
+
+float seen_pixel_width(const RenderContext& context) {
+  constexpr int across = 32;
+  const float width = float(context.image.width), height = float(context.image.height);
+  const float time = context.camera.shutter_open;
+  std::vector<float> widths;
+  for (int row = 0; row < across; ++row)
+    for (int column = 0; column < across; ++column) {
+      const Point2 film{(float(column) + 0.5f) / across * width, (float(row) + 0.5f) / across * height};
+      const Point2 middle{0.5f, 0.5f};
+      const Ray ray = context.camera.ray(film, middle, time);
+      const Ray next = context.camera.ray({film.x + (film.x > width / 2 ? -1.0f : 1.0f), film.y}, middle, time);
+      Hit hit;
+      if (context.scene.nearest(ray, hit)) widths.push_back(length(next(hit.distance) - ray(hit.distance)));
+    }
+  std::erase_if(widths, [](float w) { return !(w > 0) || !std::isfinite(w); });
+  if (widths.empty()) return context.scene.radius() / 500;
+  std::ranges::nth_element(widths, widths.begin() + std::ptrdiff_t(widths.size() / 2));
+  return widths[widths.size() / 2];
+}
+
+double shrunk_area(std::uint32_t number, double a) {
+  double area = 1;
+  for (std::uint32_t k = 1; k <= number; ++k) area *= (k + a) / (k + 1);
+  return area;
+}
+
+}  // namespace etendue

@@ -1,0 +1,185 @@
+#include "etendue/transport/walk_pair.h"
+
+#include "etendue/transport/photons.h"
+
+namespace etendue {
+namespace {
+
+bool can_be_met(const KeptVertex& luminaire) { return !luminaire.point.object->delta(); }
+
+std::vector<KeptVertex>& kept_on_this_thread(int which) {
+  static thread_local std::vector<KeptVertex> walks[2];
+  walks[which].clear();
+  return walks[which];
+}
+
+}  // namespace
+
+WalkPair::WalkPair(const RenderContext& context, const LightSampler& lights, SampleContext& sample,
+                   const StrategyWeights& weights)
+    : context_(context),
+      lights_(lights),
+      sample_(sample),
+      weights_(weights),
+      camera_(kept_on_this_thread(0)),
+      light_(kept_on_this_thread(1)),
+      light_wavelengths_(sample.wavelengths),
+      front_(context.scene) {}
+
+void WalkPair::from_camera(const Ray& ray, const WalkLimits& limits, LightListener& listener) {
+  struct Growing final : WalkListener {
+    const WalkPair& walks;
+    LightListener& listener;
+    Growing(const WalkPair& w, LightListener& l) : walks(w), listener(l) {}
+    void emitted(int length, const Spectrum& light) override { listener.found({0, length + 1, false, light}); }
+    void crossed_luminaire() override { walks.meet(walks.camera_vertices(), listener); }
+  } growing(*this, listener);
+  walk_from_camera(context_, ray, limits, sample_, camera_, growing);
+}
+
+void WalkPair::from_luminaire(float time, const WalkLimits& limits) {
+  SampleContext light{light_wavelengths_, sample_.numbers.fork("light"), sample_.arena, {}, nullptr, sample_.abort};
+  EmittedLight emitted;
+  walk_from_luminaire(context_.scene, lights_, time, limits, light, light_, emitted);
+  if (light_.size() > 1) direct_ = sampled_density(lights_, light_[1], light_[0], light_[1].out);
+}
+
+bool WalkPair::by_mirrors(int t) const {
+  for (int i = 2; i < t; ++i)
+    if (!camera_vertex(i).specular) return false;
+  return true;
+}
+
+void WalkPair::meet(int t, LightListener& listener) const {
+  const KeptVertex& z = camera_vertex(t);
+  if (z.kind == Vertex::Kind::escape) {
+    SurfacePoint point;
+    Ray ray;
+    ray.origin = camera_vertex(t - 1).point.position;
+    ray.direction = -z.out;
+    ray.time = camera_[0].point.time;
+    for (const SceneObject* far : context_.scene.infinite_luminaires()) {
+      far->surface_point(ray, {}, point);
+      meet_at(z, point, t, listener);
+    }
+  } else if (z.on_surface() && z.point.object->luminaire()) {
+    meet_at(z, z.point, t, listener);
+  }
+}
+
+void WalkPair::meet_at(const KeptVertex& z, const SurfacePoint& point, int t, LightListener& listener) const {
+  FoundLight found{0, t, false, z.throughput * point.object->emission->radiance(point, z.out, sample_.wavelengths)};
+  if (found.light.black()) return;
+  if (t > 2 && weights_.weighted) {
+    const KeptVertex& x1 = camera_vertex(t - 1);
+    KeptVertex x0 = z;
+    x0.point = point;
+    ConnectedPath path{nullptr, 0, camera_.data(), t, 0, 0, 0, 0, 0, 0, true, weights_.merging};
+    path.begun = path.camera_last_from_light = begun_density(lights_, x1, x0, -z.out);
+    path.direct = sampled_density(lights_, x1, x0, -z.out);
+    path.camera_before_from_light =
+        vertex_density(x0.infinite ? 1 : point.object->emission->density(point, z.out), x0, x1, z.out, z.chance, front_);
+    if (path.begun > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
+  }
+  listener.found(found);
+}
+
+std::optional<FoundLight> WalkPair::sample_luminaire(int t) const {
+  const KeptVertex& z = camera_vertex(t);
+  NumberStream numbers = sample_.numbers.fork("luminaire", std::uint32_t(t));
+  const auto c = connect_to_luminaire(context_.scene, lights_, z, sample_.wavelengths, numbers, sample_.arena);
+  if (!c) return {};
+  FoundLight found{1, t, false, c->light};
+  if (weights_.weighted) {
+    const KeptVertex& x0 = c->luminaire;
+    ConnectedPath path{&x0, 1, camera_.data(), t, 0, 0, 0, 0, 0, 0, !c->delta, weights_.merging};
+    path.begun = begun_density(lights_, z, x0, c->direction);
+    path.direct = sampled_density(lights_, z, x0, c->direction);
+    path.light_last_from_camera = vertex_density(c->density_at_z, z, x0, c->direction, c->chance, front_);
+    path.camera_last_from_light = vertex_density(c->density_at_luminaire, x0, z, -c->direction, c->chance, front_);
+    path.camera_before_from_light = before_from(camera_, t, c->direction, Transport::importance);
+    if (path.begun > 0 && path.direct > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
+  }
+  return found;
+}
+
+std::optional<FoundLight> WalkPair::connect(int s, int t) const {
+  const KeptVertex &y = light_vertex(s), &z = camera_vertex(t);
+  NumberStream numbers = sample_.numbers.fork("connection", std::uint32_t(s * 0x10000 + t));
+  const auto c = etendue::connect(context_.scene, y, z, sample_.wavelengths, numbers, sample_.arena);
+  if (!c) return {};
+  FoundLight found{s, t, false, c->light};
+  if (weights_.weighted) {
+    ConnectedPath path{light_.data(),   s, camera_.data(), t, 0, 0, 0, 0, direct_, light_[0].forward, can_be_met(light_[0]),
+                       weights_.merging};
+    path.light_last_from_camera = vertex_density(c->density_at_z, z, y, c->direction, c->chance, front_);
+    path.light_before_from_camera = before_from(light_, s, -c->direction, Transport::radiance);
+    path.camera_last_from_light = vertex_density(c->density_at_y, y, z, -c->direction, c->chance, front_);
+    path.camera_before_from_light = before_from(camera_, t, c->direction, Transport::importance);
+    found.weight = bidirectional_weight(path, weights_.heuristic);
+  }
+  return found;
+}
+
+std::optional<FoundLight> WalkPair::connect_to_lens(int s) const {
+  const KeptVertex& y = light_vertex(s);
+  NumberStream numbers = sample_.numbers.fork("lens", std::uint32_t(s));
+  const auto c = etendue::connect_to_lens(context_, y, light_wavelengths_, numbers, sample_.arena);
+  if (!c) return {};
+  FoundLight found{s, 1, false, c->light, 1, c->lens.film};
+  if (weights_.weighted) {
+    const Vector3& direction = c->lens.direction;
+    ConnectedPath path{light_.data(),   s, &c->camera, 1, 0, 0, 0, 0, direct_, light_[0].forward, can_be_met(light_[0]),
+                       weights_.merging};
+    path.light_last_from_camera = vertex_density(c->density_at_lens, c->camera, y, -direction, c->chance, front_);
+    path.light_before_from_camera = before_from(light_, s, direction, Transport::radiance);
+    found.weight = bidirectional_weight(path, weights_.heuristic);
+  }
+  return found;
+}
+
+std::optional<FoundLight> WalkPair::merge(const Photon& photon, int t) const {
+  const KeptVertex& z = camera_vertex(t);
+  const double merging = z.in_medium() ? weights_.merging.medium : weights_.merging.surface;
+  const Spectrum scattered = scattered_from_photon(z, photon, sample_.wavelengths, z.single);
+  if (scattered.black()) return {};
+  FoundLight found{int(photon.vertices), t, true, z.throughput * scattered / float(merging)};
+  if (weights_.weighted) {
+    ConnectedPath path{nullptr, int(photon.vertices), camera_.data(), t, 0, 0, photon.weight.forward, 0, 0, 0,
+                       true,    weights_.merging};
+    path.camera_before_from_light = before_from(camera_, t, photon.out, Transport::importance);
+    const float back = scattering_density(z, z.out, photon.out, Transport::radiance);
+    found.weight = merging_weight(path, photon.weight, back, weights_.heuristic);
+  }
+  return found;
+}
+
+float WalkPair::before_from(const std::vector<KeptVertex>& walk, int count, const Vector3& from, Transport transport) const {
+  if (count < 2) return 0;
+  const KeptVertex &last = walk[size_t(count - 1)], &before = walk[size_t(count - 2)];
+  return vertex_density(scattering_density(last, from, last.out, transport), last, before, last.out, last.chance, front_);
+}
+
+void WalkPair::record() const {
+  PathRecord* record = sample_.observe.record;
+  if (!record) return;
+  record_walk(record->vertices, std::span<const KeptVertex>(camera_).subspan(1));
+  record_walk(record->light_vertices, light_);
+}
+
+void add_found(SampleContext& sample, const Wavelengths& of_light, const FoundLight& found, Spectrum& radiance) {
+  const Spectrum light = found.light * found.weight;
+  const bool splat = found.t == 1;
+  if (splat) {
+    sample.splat(found.film, light, of_light, found.length());
+  } else {
+    radiance += light;
+    sample.observe.light(found.length(), light);
+  }
+  if (PathRecord* record = sample.observe.record) [[unlikely]]
+    record->contribute({std::to_string(found.s) + " from the luminaire, " + std::to_string(found.t) + " from the camera" +
+                            (found.merged ? ", merged" : ""),
+                        found.length(), found.weight, light, found.film, splat});
+}
+
+}  // namespace etendue

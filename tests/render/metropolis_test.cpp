@@ -1,0 +1,117 @@
+// Metropolis renderers: that brightness is right as a whole and by path length, of crops too, and is the same to the bit for
+// any number of threads; what chains begin with; what is refused.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "etendue/transport/metropolis.h"
+#include "support/checkpoint_test_support.h"
+
+namespace etendue::checkpoint_test {
+namespace {
+
+// Radiance 1 leaves the inside of a sphere everywhere, and half of it is reflected each time: by paths of n segments comes
+// 1 / 2^(n-1), 2 in all. Of walks that must meet the light and that roulette ends after each segment with probability 1/2, one
+// brings as many as it has segments: states differ, and chains must weigh them.
+std::string furnace_text(const std::string& renderer, const std::string& image) {
+  return fmt::format(R"(Job {{ renderer: {}
+    camera: PerspectiveCamera {{ from: [0.3, 0.1, 0.2], to: [0, 0, 1], fov: 90 }}
+    image: ImageBuffer {{ width: 8, height: 8, filter: BoxFilter {{}}, {} }}
+    scene: BruteForceScene {{ objects: [
+      Sphere {{ shader: Lambertian {{ color: 0.5 }}, emission: DiffuseEmission {{ radiance: 1, sides: back }} }} ] }} }})",
+                     renderer, image);
+}
+const std::string roulette = "PathTracer { next_event: false, roulette_depth: 1, max_depth: 60 }";
+
+/// Means over the pixels of each Y channel.
+std::map<std::string, double> means(const Image& image) {
+  std::map<std::string, double> means;
+  for (size_t c = 0; c < image.channels.size(); ++c) {
+    double& sum = means[image.channels[c]];
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) sum += image.at(x, y, c) / (double(image.width) * image.height);
+  }
+  return means;
+}
+
+// Ten seeds. Brightness is measured by 10^6 walks in all, whose values have the relative standard deviation 0.7: an error of
+// 0.3 % is beyond four standard errors.
+class MetropolisMeans : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(MetropolisMeans, AreRight) {
+  const std::string renderer = fmt::format("{}", fmt::format(fmt::runtime(GetParam()), fmt::arg("inner", roulette)));
+  std::map<std::string, double> mean;
+  Render render(job_of(furnace_text(renderer, "path_lengths: 4"), 2048), two_threads);
+  for (int seed = 0; seed < 10; ++seed) {
+    test::render_again(render, std::uint64_t(seed));
+    EXPECT_EQ(render.film().bad_samples(), 0u);
+    for (const auto& [channel, value] : means(render.picture())) mean[channel] += value / 10;
+  }
+  EXPECT_NEAR(mean["Y"], 2, 0.003 * 2);
+  EXPECT_NEAR(mean["length_1.Y"], 1, 0.005);
+  EXPECT_NEAR(mean["length_2.Y"], 0.5, 0.005);
+  EXPECT_NEAR(mean["length_3.Y"], 0.25, 0.005);
+  EXPECT_NEAR(mean["length_4.Y"], 0.25, 0.005);  // and all longer ones
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Metropolis, MetropolisMeans,
+    ::testing::Values("PrimarySampleMetropolis {{ inner: {inner}, direct: false, bootstrap: 1 }}",
+                      "PrimarySampleMetropolis {{ inner: {inner}, bootstrap: 1, even_errors: false, large_steps: 0.05 }}"),
+    [](const auto& each) { return fmt::format("case_{}", each.index); });
+
+TEST(Metropolis, CropsAreAsBrightAsTheWholePicture) {
+  for (const char* direct : {"true", "false"}) {
+    const std::string renderer = fmt::format("PrimarySampleMetropolis {{ inner: {}, direct: {} }}", roulette, direct);
+    const auto render = rendered(job_of(furnace_text(renderer, "crop: [2, 1, 6, 3]"), 16384), two_threads);
+    EXPECT_NEAR(means(render->picture())["Y"], 2, 0.05);
+  }
+  // Paths from luminaires fall outside of a crop, too.
+  const std::string renderer = "PrimarySampleMetropolis { inner: LightTracer { max_depth: 2 }, direct: false, bootstrap: 1 }";
+  const std::string plane = R"(Job {{ renderer: {}
+    camera: PerspectiveCamera {{ from: [0, 0, 2], to: [0, 0, 0], fov: 40 }}
+    image: ImageBuffer {{ width: 8, height: 8, filter: BoxFilter {{}}, {} }}
+    scene: BruteForceScene {{ objects: [
+      Rectangle {{ corner: [-1, -1, 0], edge_u: [2, 0, 0], edge_v: [0, 2, 0], shader: Lambertian {{ color: 0.5 }} }}
+      Distant {{ direction: [0, 0, -1], emission: DiffuseEmission {{ radiance: 3.14159265 }} }} ] }} }})";
+  for (const char* crop : {"", "crop: [2, 1, 6, 3]"}) {
+    const auto render = rendered(job_of(fmt::format(fmt::runtime(plane), renderer, crop), 16384), two_threads);
+    EXPECT_NEAR(means(render->picture())["Y"], 0.5, 0.03) << crop;
+  }
+}
+
+TEST(Metropolis, TheSameBitsForAnyNumberOfThreads) {
+  const auto bits = [&](int threads) {
+    return film(*rendered(job_of(ball_text("PrimarySampleMetropolis {}"), 2000), {.threads = threads}));
+  };
+  EXPECT_TRUE(bits(1) == bits(3));
+}
+
+// Each path begins its share of the chains, whatever the number of chains.
+TEST(ChainStarts, AreInProportionToBrightness) {
+  const ChainStarts starts({{7, 1, 0}, {8, 0, 1}, {9, 2, 2}, {10, 5, 1}});
+  EXPECT_EQ(starts.mean(), 2);
+  std::map<std::uint64_t, double> begun;
+  const int repeats = 1000, chains = 3;
+  for (int i = 0; i < repeats; ++i)
+    for (std::uint64_t chain = 0; chain < chains; ++chain) begun[starts.begin(chain, chains, (i + 0.5) / repeats)] += 1;
+  EXPECT_EQ(begun.size(), 3u);
+  EXPECT_NEAR(begun[7] / (repeats * chains), 1 / 8.0, 1e-3);
+  EXPECT_NEAR(begun[9] / (repeats * chains), 2 / 8.0, 1e-3);
+  EXPECT_NEAR(begun[10] / (repeats * chains), 5 / 8.0, 1e-3);
+}
+
+TEST(Metropolis, RefusesWhatItCannotMutate) {
+  const auto refused = [](const std::string& renderer, const std::string& more = "") {
+    return complaint([&] { rendered(job_of(ball_text(renderer, "width: 2", "0.5", more), 16), two_threads); });
+  };
+  EXPECT_TRUE(
+      has(refused("PrimarySampleMetropolis {}", "wavelengths: GridWavelengths {}\n"), "GridWavelengths cannot be mutated"));
+  EXPECT_TRUE(has(refused("PrimarySampleMetropolis { inner: PrimarySampleMetropolis {} }"), "no paths that could be mutated"));
+  EXPECT_EQ(refused("PrimarySampleMetropolis {}"), "");
+}
+
+}  // namespace
+}  // namespace etendue::checkpoint_test
