@@ -24,7 +24,7 @@ TEST(Replay, json_tells_where_all_light_of_a_pixel_comes_from) {
   ASSERT_EQ(json["paths"].size(), 64u);
 
   double shares = 0, sum = 0, before = std::numeric_limits<double>::infinity();
-  int lit = 0, several = 0, single = 0;
+  int lit = 0, several = 0, dispersed = 0;
   std::set<int> samples;
   for (const auto& path : json["paths"]) {
     const double luminance = path["luminance"];
@@ -58,14 +58,18 @@ TEST(Replay, json_tells_where_all_light_of_a_pixel_comes_from) {
     EXPECT_NEAR(of_contributions, luminance, 1e-5 * (1 + luminance));
     lit += luminance > 0;
     several += path["contributions"].size() > 1;
-    single += path["single"].get<bool>();
+    EXPECT_FALSE(path["single"].get<bool>()) << "the light of each wavelength that was followed is in its place";
+    bool parted = false;
+    for (const auto& v : path["vertices"])
+      parted |= v.contains("note") && v["note"].get<std::string>().starts_with("dispersion");
+    dispersed += parted;
   }
   EXPECT_NEAR(shares, 1, 1e-9);
   EXPECT_EQ(samples.size(), 64u) << "each sample once";
   EXPECT_NEAR(sum / 64, json["luminance"].get<double>(), 1e-9 * sum);
   EXPECT_GT(lit, 32);
   EXPECT_GT(several, 8);
-  EXPECT_GT(single, 8);
+  EXPECT_GT(dispersed, 8);
 }
 
 TEST(Replay, a_pixel_is_what_the_picture_has_there) {

@@ -53,7 +53,7 @@ class CameraWalk : public Walk<clear> {
       settle(awaits_ && !(clear && scene.any(direct_.shadow)));
       if (!moved_) return false;
       moved_ = goes_on_ = false;  // it came to the vertex through a body
-      sample.observe.surface(vertex.point, throughput);
+      sample.observe.surface(vertex.point, placed(throughput));
       return true;
     }
     if ((length & 31) == 31 && sample.aborted()) return false;
@@ -63,9 +63,9 @@ class CameraWalk : public Walk<clear> {
     goes_on_ = false;
     if (!this->come_to_vertex(found, Listener<Weight>{*this, weight})) return false;
     if (vertex.in_medium()) {
-      sample.observe.medium(vertex.point.position, throughput);
+      sample.observe.medium(vertex.point.position, placed(throughput));
     } else if (vertex.on_surface()) {
-      sample.observe.surface(vertex.point, throughput);
+      sample.observe.surface(vertex.point, placed(throughput));
       if (length == 1)
         sample.observe.first_surface(scene, vertex.point, this->hit, vertex.scatter, vertex.out, sample.wavelengths,
                                      this->crossed);
@@ -73,7 +73,7 @@ class CameraWalk : public Walk<clear> {
     } else {
       for (const SceneObject* far : scene.infinite_luminaires()) {
         far->surface_point(ray, this->hit, vertex.point);
-        sample.observe.escape(*far, ray, throughput);
+        sample.observe.escape(*far, ray, placed(throughput));
         add_luminaire(weight);
       }
       return false;
@@ -210,8 +210,8 @@ class CameraWalk : public Walk<clear> {
 
   /// The context of a branch, which has its own numbers and wavelengths.
   SampleContext context_of(Wavelengths& wavelengths, const NumberStream& branch_numbers) const {
-    SampleContext own = sample;
-    return {wavelengths, branch_numbers, own.arena, own.observe, own.splats, own.abort, own.records};
+    const SampleContext& s = sample;
+    return {wavelengths, branch_numbers, s.arena, s.observe, s.splats, s.abort, s.records};
   }
 
   template <class Follow>
@@ -237,14 +237,16 @@ class CameraWalk : public Walk<clear> {
     branch.lane_ = lane;
     const Scatter* scatter = scattering_at(vertex.point, vertex.out, wavelengths, sample.arena);
     if (!scatter) return;
-    if (const auto next = scatter->sample(vertex.out, choice, u, Transport::radiance, specular_transmission))
-      follow_from_here(branch, *next, follow);
+    std::optional<ScatterSample> next = scatter->sample(vertex.out, choice, u, Transport::radiance, specular_transmission);
+    if (!next) return;
+    next->dispersive = true;  // for who looks on: the branch has nothing left to drop
+    follow_from_here(branch, *next, follow);
   }
 
   template <class Follow>
   void follow_from_here(CameraWalk& branch, const ScatterSample& next, const Follow& follow) {
     if (branch.go_on(next)) radiance += follow(branch);
-    sample.observe.surface(vertex.point, throughput);  // what follows is told from here on
+    sample.observe.surface(vertex.point, placed(throughput));  // what follows is told from here on
   }
 
   /// Of what a walk had where it was first sent both ways, its branches go on together, in the mean, as one where they have
@@ -274,7 +276,7 @@ class CameraWalk : public Walk<clear> {
     const Weight& weight;
     void emitted(const Spectrum& light) const { walk.add(walk.length, walk.placed(light)); }
     void crossed_luminaire() const {
-      walk.sample.observe.surface(walk.vertex.point, walk.throughput);
+      walk.sample.observe.surface(walk.vertex.point, walk.placed(walk.throughput));
       walk.add_luminaire(weight);
     }
   };

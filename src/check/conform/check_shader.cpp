@@ -145,6 +145,9 @@ void check_dispersion(Trial& trial, const Shader& shader, const BoundShader& bou
   single.drop_secondary();
   Arena arena;
   const Scatter* alone = shader.bind(bound.point(), single, arena);
+  const bool named = bound.scatter()->dispersed() & specular_transmission;
+  trial.expect(!alone || alone->dispersed() == no_lobes, "of one wavelength no lobe is named as dispersed",
+               [&] { return fmt::format("lobes {}", alone->dispersed()); });
   for (int i = 0; i < 100; ++i) {
     const Vector3 out = trial.direction();
     const Point2 u = trial.pair();
@@ -153,6 +156,9 @@ void check_dispersion(Trial& trial, const Shader& shader, const BoundShader& bou
     const bool by_index = s && (std::abs(s->eta - index[0]) < 1e-4f || std::abs(s->eta * index[0] - 1) < 1e-4f);
     if (by_index && s->eta != 1 && index.minimum() != index.maximum())
       trial.expect(s->dispersive, "refraction by an index that varies is marked as dispersive",
+                   [&] { return "out " + bound.name(out); });
+    if (s && named)
+      trial.expect(s->dispersive, "whatever a lobe gives that is named as dispersed is dispersive",
                    [&] { return "out " + bound.name(out); });
     const auto t = alone ? alone->sample(out, trial.uniform(), u) : std::nullopt;
     trial.expect(!t || !t->dispersive, "a path of one wavelength has nothing to drop",
