@@ -104,7 +104,7 @@ TEST_F(CompareProgram, the_same_number_of_samples_gives_half_the_error_for_half_
 TEST_F(CompareProgram, tables_and_page_tell_the_same) {
   const std::string other = folder.write("other <scene>.etd", scene_text("0.3 m"));
   ASSERT_EQ(compare({other, "--renderers", "PathTracer,PathTracer{next_event: false}", "--variant", "a, \"b\" <i>: seed=7",
-                     "--samples", "8", "--runs", "4", "--json", "r.json", "--csv", "r.csv", "--report", "r.html", "--inset",
+                     "--samples", "64", "--runs", "4", "--json", "r.json", "--csv", "r.csv", "--report", "r.html", "--inset",
                      "2,3,8,8"}),
             0)
       << err;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "check/verify/summary.h"
 
@@ -163,13 +164,29 @@ std::optional<Estimate> mean_error(const std::vector<double>& errors) {
   return mean_of(errors);
 }
 
+namespace {
+
+/// Where a bias was found: "the whole picture", "3 of 108 tiles".
+std::string places_text(const Bias& bias) {
+  std::set<size_t> places, differing;
+  for (const verify::MeanTest& t : bias.test.tests) {
+    places.insert(t.place);
+    if (t.verdict == verify::Verdict::disagrees) differing.insert(t.place);
+  }
+  const size_t whole = *places.rbegin();  // tiles come before it
+  if (differing.contains(whole)) return "the whole picture";
+  return fmt::format("{} of {} tiles", differing.size(), whole);
+}
+
+}  // namespace
+
 std::string bias_text(const VariantResult& v) {
   if (!v.bias.known) return "unknown: it alone is the reference";
   const std::string mean = fmt::format("{:+.2f} ± {:.2f} % of the light", 100 * v.bias.relative, 100 * v.bias.error);
   switch (v.bias.test.verdict) {
     case verify::Verdict::agrees: return "none found, " + mean;
     case verify::Verdict::undecided: return "undecided, " + mean;
-    case verify::Verdict::disagrees: return "FOUND, " + mean;
+    case verify::Verdict::disagrees: return fmt::format("FOUND in {}, {}", places_text(v.bias), mean);
   }
   return {};
 }
@@ -180,8 +197,9 @@ std::vector<std::string> remarks(const SceneResult& scene, const VariantResult& 
   if (!v.says.empty()) list.push_back("says of itself: " + v.says);
   if (v.bias.found() && v.in_reference)
     list.push_back(
-        "is biased against the other variants, though all of them should have the same mean: one of them is wrong. See etendue "
-        "verify");
+        "differs from the other variants though all of them should have the same mean: one of them is wrong, or has not met "
+        "rare, "
+        "bright paths; more runs tell, and so does etendue verify");
   if (v.bad_samples > 0)
     list.push_back(fmt::format("{} samples were not finite and non-negative and count as black", v.bad_samples));
   if (v.at_time.empty())

@@ -19,12 +19,13 @@
 // luminaires alone: all else that comes to x is photons.
 
 #include "etendue/render/photon_process.h"
+#include "etendue/render/shrinking_bias.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
 
 namespace etendue {
 
-class ProgressivePhotonMapper final : public Renderer {
+class ProgressivePhotonMapper final : public Renderer, public ShrinkingBias {
  public:
   int max_depth = 64;
   int roulette_depth = 5;
@@ -55,6 +56,7 @@ class ProgressivePhotonMapper final : public Renderer {
 
   PathClasses finds() const override { return all_paths & ~(subsurface_light | emitting_media); }
   Expectation expectation() const override { return Expectation::consistent; }
+  double bias_width(std::uint32_t step) const override { return std::sqrt(shrunk_area(step, double(alpha))); }
   Estimator estimator() const override { return Estimator::correlated; }
   std::uint32_t samples_per_step(std::uint32_t) const override { return 1; }
 

@@ -14,12 +14,13 @@
 // The n walks of a step have numbers of their own: they are independent of those that samples connect to.
 
 #include "etendue/render/photon_process.h"
+#include "etendue/render/shrinking_bias.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/walk_pair.h"
 
 namespace etendue {
 
-class VertexConnectionMerging final : public Renderer {
+class VertexConnectionMerging final : public Renderer, public ShrinkingBias {
  public:
   int max_depth = 64;
   int roulette_depth = 5;
@@ -55,6 +56,7 @@ class VertexConnectionMerging final : public Renderer {
     return connecting || merging ? all_paths & ~lost : no_paths;
   }
   Expectation expectation() const override { return merging ? Expectation::consistent : Expectation::unbiased; }
+  double bias_width(std::uint32_t step) const override { return merging ? std::sqrt(shrunk_area(step, double(alpha))) : 0; }
   Estimator estimator() const override { return merging ? Estimator::correlated : Estimator::independent; }
   std::uint32_t samples_per_step(std::uint32_t usual) const override { return merging ? 1 : usual; }
 
