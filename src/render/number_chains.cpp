@@ -29,51 +29,53 @@ struct Pool {
   }
 };
 
-class NumberChains {
+/// The seed of a path of a pool.
+std::uint64_t path_seed(std::uint64_t seed, std::uint64_t pool, std::uint64_t path) {
+  return mix_bits(seed ^ mix_bits(0x9e3779b97f4a7c15ull * (2 * path + pool + 1)));
+}
+
+Pool make_pool(Schedule& schedule, const Chains& chains, std::uint64_t seed, std::uint64_t which, std::uint64_t count) {
+  using Parts = std::vector<Contribution::Brightness>;
+  constexpr std::uint64_t item_size = 256;
+  Pool pool;
+  for (const Parts& parts : schedule.collect<Parts>(
+           (count + item_size - 1) / item_size, [&](std::uint64_t item, std::vector<Parts>& paths, Arena& arena) {
+             Contribution f;
+             const std::uint64_t end = std::min(count, (item + 1) * item_size);
+             for (std::uint64_t i = item * item_size; i < end && !schedule.aborted(); ++i) {
+               chains.draw(path_seed(seed, which, i), arena, schedule.abort, f);
+               paths.push_back(f.luminances);
+             }
+           })) {
+    pool.parts.insert(pool.parts.end(), parts.begin(), parts.end());
+    pool.ends.push_back(pool.parts.size());
+  }
+  return pool;
+}
+
+class NumberChains final : public Chains {
  public:
-  NumberChains(const ChainSettings& settings, const PathFunction& path, std::uint64_t seed, const std::atomic<bool>* abort)
-      : settings_(settings), path_(path), seed_(seed), abort_(abort) {}
+  NumberChains(const ChainSettings& settings, const PathFunction& path) : settings_(settings), path_(path) {}
 
-  /// The numbers of a path of a pool are those that its seed gives at first.
-  std::uint64_t path_seed(std::uint64_t pool, std::uint64_t path) const {
-    return mix_bits(seed_ ^ mix_bits(0x9e3779b97f4a7c15ull * (2 * path + pool + 1)));
+  void draw(std::uint64_t seed, Arena& arena, const std::atomic<bool>* abort, Contribution& f) const override {
+    path_.evaluate(MutatedNumbers(seed), arena, abort, f);
   }
 
-  Pool pool(Schedule& schedule, std::uint64_t which, std::uint64_t count) const {
-    using Parts = std::vector<Contribution::Brightness>;
-    constexpr std::uint64_t item_size = 256;
-    Pool pool;
-    for (const Parts& parts : schedule.collect<Parts>((count + item_size - 1) / item_size,
-                                                      [&](std::uint64_t item, std::vector<Parts>& paths, Arena& arena) {
-                                                        Contribution f;
-                                                        const std::uint64_t end = std::min(count, (item + 1) * item_size);
-                                                        for (std::uint64_t i = item * item_size; i < end && !aborted(); ++i) {
-                                                          path_.evaluate(MutatedNumbers(path_seed(which, i)), arena, abort_, f);
-                                                          paths.push_back(f.luminances);
-                                                        }
-                                                      })) {
-      pool.parts.insert(pool.parts.end(), parts.begin(), parts.end());
-      pool.ends.push_back(pool.parts.size());
-    }
-    return pool;
-  }
-
-  /// A chain of so many states that begins with the numbers of a seed.
   void run(std::uint64_t first, std::uint64_t own_seed, std::uint64_t states, const StateWeights& weights, const FilmWeights& v,
-           ImageTile& tile, Arena& arena) const {
+           ImageTile& tile, Arena& arena, const std::atomic<bool>* abort) const override {
     ChoiceNumbers choices(own_seed);
     MutatedNumbers numbers(first);
     Contribution current, proposed;
-    path_.evaluate(numbers, arena, abort_, current);
+    path_.evaluate(numbers, arena, abort, current);
     numbers.accept();
     double I = current.brightness(v), waiting = 0;  // what the current state counts for that is not added yet
-    for (std::uint64_t i = 0; i < states && !aborted(); ++i) {
+    for (std::uint64_t i = 0; i < states && !(abort && abort->load(std::memory_order_relaxed)); ++i) {
       const bool large = choices.next() < double(settings_.large_steps);
       if (large)
         numbers.large_step();
       else
         numbers.small_step(settings_.deviation);
-      path_.evaluate(numbers, arena, abort_, proposed);
+      path_.evaluate(numbers, arena, abort, proposed);
       proposed.report_bad(tile);
       const double J = proposed.brightness(v), accept = I > 0 ? std::min(1.0, J / I) : 1;
       waiting += weights.factor(false, 1 - accept, I);
@@ -95,20 +97,22 @@ class NumberChains {
  private:
   const ChainSettings& settings_;
   const PathFunction& path_;
-  const std::uint64_t seed_;
-  const std::atomic<bool>* const abort_;
-  bool aborted() const { return abort_ && abort_->load(std::memory_order_relaxed); }
 };
 
 }  // namespace
 
 void mutate_numbers(Schedule& schedule, const ImageBuffer& image, const ChainSettings& settings, const PathFunction& path,
-                    std::uint64_t seed, std::uint64_t mutations, bool count_paths) {
-  const NumberChains chains(settings, path, seed, schedule.abort);
+                    std::uint64_t seed, std::uint64_t paths, bool count_paths) {
+  run_chains(schedule, image, settings, NumberChains(settings, path), seed, paths, count_paths);
+}
+
+void run_chains(Schedule& schedule, const ImageBuffer& image, const ChainSettings& settings, const Chains& chains,
+                std::uint64_t seed, std::uint64_t paths, bool count_paths) {
+  const std::uint64_t mutations = paths * std::uint64_t(settings.mutations);
   // Half of the chains begin with paths of one pool, the other half with those of another. Either takes what only weighs, v and
   // b, from the other's pool, so that it depends on nothing it weighs.
-  const auto paths = std::uint64_t(std::max(1.0, double(mutations) * double(settings.bootstrap) / 2));
-  const std::array<Pool, 2> pools{chains.pool(schedule, 0, paths), chains.pool(schedule, 1, paths)};
+  const auto pool = std::uint64_t(std::max(1.0, double(mutations) * double(settings.bootstrap) / 2));
+  const std::array<Pool, 2> pools{make_pool(schedule, chains, seed, 0, pool), make_pool(schedule, chains, seed, 1, pool)};
   if (schedule.aborted()) return;
   struct Half {
     FilmWeights v;
@@ -118,7 +122,7 @@ void mutate_numbers(Schedule& schedule, const ImageBuffer& image, const ChainSet
   const auto half = [&](const Pool& own, const Pool& other) {
     FilmWeights v = settings.even_errors ? FilmWeights(other.light()) : FilmWeights();
     ChainStarts starts = own.starts(v);
-    const StateWeights weights{starts.mean(), other.starts(v).mean(), double(settings.large_steps)};
+    const StateWeights weights{starts.mean(), other.starts(v).mean(), double(settings.large_steps), 1.0 / settings.mutations};
     return Half{std::move(v), std::move(starts), weights};
   };
   const std::array<Half, 2> halves{half(pools[0], pools[1]), half(pools[1], pools[0])};
@@ -128,9 +132,9 @@ void mutate_numbers(Schedule& schedule, const ImageBuffer& image, const ChainSet
     const std::uint64_t which = item % 2, states = mutations / count + (item < mutations % count);
     const auto& [v, starts, weights] = halves[which];
     if (count_paths)
-      for (std::uint64_t i = 0; i < states; ++i) tile.count_path();
+      for (std::uint64_t i = paths * item / count; i < paths * (item + 1) / count; ++i) tile.count_path();
     const std::uint64_t first = starts.begin(item / 2, (count + 1 - which) / 2, ChoiceNumbers(seed + which).next());
-    chains.run(chains.path_seed(which, first), mix_bits(seed + item), states, weights, v, tile, arena);
+    chains.run(path_seed(seed, which, first), mix_bits(seed + item), states, weights, v, tile, arena, schedule.abort);
   });
 }
 

@@ -121,6 +121,13 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
                 &output),
             0)
       << output;
+  // A mutation takes part in those that are built in.
+  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
+                    "/build/libturn_mutation.so --renderers 'PathTracer,PathSpaceMetropolis { mutations: [ TurnMutation {} ], "
+                    "bootstrap: 0.5 }' --samples 256 --size 32x32 --quiet",
+                &output),
+            0)
+      << output;
 }
 
 TEST_F(Plugin, AProgramDrivesARender) {
@@ -157,6 +164,7 @@ TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
   check(ETENDUE_SOURCE_DIR "/tests/plugin/student_tracer.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 60);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/small_photon_mapper.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 190);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/small_metropolis.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 160);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/turn_mutation.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 50);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/drive_a_render.cpp", ETENDUE_SOURCE_DIR "/docs/drive-a-render.md", 70);
 }
 

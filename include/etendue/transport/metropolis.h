@@ -103,9 +103,10 @@ class ChainStarts {
 /// `b` need only be near the integral, but must not depend on what is weighted: it comes from other paths than W.
 struct StateWeights {
   double W = 0, b = 0, p = 0;
+  double scale = 1;  ///< of all
 
   double factor(bool drawn_anew, double part, double brightness) const {
-    return ((drawn_anew ? b : 0) + part * W) / (p * b + brightness);
+    return scale * ((drawn_anew ? b : 0) + part * W) / (p * b + brightness);
   }
 };
 

@@ -1,0 +1,199 @@
+// Metropolis light transport in the space of paths (Veach & Guibas 1997; Veach 1997, chapter 11).
+//
+// A state is a whole path x (transport/light_path.h), which brings f(x) to the film; I(x) is the luminance of that. Mutations
+// (transport/mutation.h), chosen by their shares, propose y, accepted with the probability
+//     a = min(1, I(y) T(y -> x) / (I(x) T(x -> y))).
+// With a probability p the proposal is an independent path instead. Its length k is chosen with probability P(k), falling as
+// 1 / k, and how many of its vertices come from either end is, too; with D the mean of the densities of all such ways its
+// density is
+//     T(y) = P(k) D(y),
+// and F = f / T an estimate of the picture by itself. The pool that brightness is measured by, and that chains begin with, is
+// of such paths; states count as in all Metropolis renderers here (StateWeights), in terms of F.
+//
+// What paths of one or two segments bring is found sample by sample, by a bidirectional path tracer.
+
+#include "etendue/render/number_chains.h"
+#include "etendue/transport/mutation.h"
+#include "etendue/transport/renderer_members.h"
+
+namespace etendue {
+
+class PathSpaceMetropolis final : public Renderer {
+ public:
+  int max_depth = 64;
+  std::vector<Ref<Mutation>> mutations;
+  int mutations_per_sample = 4, chains = ChainSettings().chains;
+  float bootstrap = ChainSettings().bootstrap, large_steps = 0.1f;
+  bool even_errors = ChainSettings().even_errors;
+
+  PathSpaceMetropolis() {
+    const auto add = [&](const char* name, float share) {
+      mutations.push_back(ref_cast<Mutation>(Registry::instance().create(name)));
+      mutations.back()->share = share;
+    };
+    add("BidirectionalMutation", 1);
+    add("LensMutation", 1);
+    add("CausticMutation", 0.3f);
+    add("MultiChainMutation", 0.5f);
+  }
+
+  static void describe(Description<PathSpaceMetropolis>& d) {
+    d.summary("Metropolis light transport that mutates paths themselves.",
+              "Veach & Guibas 1997, Metropolis light transport; Veach 1997, chapter 11");
+    d.group("Paths");
+    describe_max_depth<&PathSpaceMetropolis::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    d.member<&PathSpaceMetropolis::mutations>("mutations", "", "ways in which paths are changed");
+    describe_chain_starts<&PathSpaceMetropolis::mutations_per_sample, &PathSpaceMetropolis::chains,
+                          &PathSpaceMetropolis::bootstrap, &PathSpaceMetropolis::large_steps,
+                          &PathSpaceMetropolis::even_errors>(d);
+  }
+
+  bool splats() const override { return true; }
+  PathClasses finds() const override { return seen_luminaires | area_light | diffuse_light | glossy_light; }
+  Estimator estimator() const override { return Estimator::correlated; }
+
+ private:
+  std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
+};
+
+namespace {
+
+constexpr int direct_length = MutatedPaths::direct_length;
+
+class PathSpaceProcess final : public RenderProcess, Chains {
+ public:
+  PathSpaceProcess(const PathSpaceMetropolis& r, const RenderContext& c, Ref<Renderer> direct)
+      : RenderProcess(r, c), settings_(r), direct_renderer_(std::move(direct)), direct_(direct_renderer_->start(c)) {
+    require_mutable(c.wavelengths, r);
+    if (!c.image.crop.empty()) r.fail({}, "renders whole pictures, no crops");
+    if (c.camera.parallel()) r.fail({}, "needs a camera that sees from a place, and not by parallel rays");
+    if (c.camera.shutter_close > c.camera.shutter_open)
+      r.fail({}, "cannot mutate time: needs a camera whose shutter opens for a moment");
+    if (r.mutations.empty()) r.fail("mutations", "there must be some");
+    double sum = 0;
+    for (const Ref<Mutation>& m : r.mutations) shares_.push_back(sum += double(m->share));
+    sum = 0;
+    for (int k = direct_length + 1; k <= r.max_depth; ++k) lengths_.push_back(sum += 1.0 / k);
+  }
+
+  void step(Schedule& schedule, const Step& step) override {
+    RenderProcess::step(schedule, step);  // direct light
+    if (lengths_.empty()) return;
+    const auto pixels = std::uint64_t(context.image.width) * std::uint64_t(context.image.height);
+    run_chains(schedule, context.image,
+               {settings_.mutations_per_sample, settings_.chains, settings_.bootstrap, settings_.large_steps, 0,
+                settings_.even_errors},
+               *this, mix_bits(context.seed + mix_bits(step.samples.begin)), pixels * (step.samples.end - step.samples.begin),
+               false);
+  }
+  Spectrum radiance(const Ray& ray, SampleContext& sample) const override { return direct_->radiance(ray, sample); }
+  CameraSample sample(int, int, std::uint32_t, Arena&, const PathRequest&) const override {
+    renderer.fail({}, "its samples are mutations of one another: none belongs to a pixel, and none can be replayed by itself");
+  }
+
+ private:
+  const PathSpaceMetropolis& settings_;
+  const Ref<Renderer> direct_renderer_;
+  const std::unique_ptr<RenderProcess> direct_;
+  std::vector<double> shares_, lengths_;  ///< sums, of what mutations and lengths are chosen in proportion to
+
+  /// Where a number falls among such sums.
+  static size_t chosen(const std::vector<double>& sums, double u) {
+    return std::min(size_t(std::ranges::upper_bound(sums, u * sums.back()) - sums.begin()), sums.size() - 1);
+  }
+  /// T of an independent path.
+  double density(const LightPath& y) const {
+    const double P = 1.0 / y.length() / lengths_.back();
+    return P * PathSpace::density(y, 0, y.length());
+  }
+  /// F
+  void contribution(const LightPath& y, bool found, Contribution& F) const {
+    F.clear();
+    if (!found) return;
+    const auto T = float(density(y));
+    if (!(T > 0) || !std::isfinite(T)) return;  // as in PathSpace::complete
+    F.add({y.film, y.f / T, y.wavelengths, y.length()}, {0, 0, context.image.width, context.image.height});
+  }
+  bool independent(const PathSpace& space, Arena& arena, ChoiceNumbers& choices, LightPath& y) const {
+    LightPath none;
+    none.wavelengths = wavelengths({}, std::min(float(choices.next()), one_minus_epsilon));
+    none.lens = {float(choices.next()), float(choices.next())};
+    none.arena = &arena;
+    space.begin(y, none, 0);
+    const int k = direct_length + 1 + int(chosen(lengths_, choices.next()));
+    return space.join(y, {space.lens(y)}, k, choices);
+  }
+
+  void draw(std::uint64_t seed, Arena& arena, const std::atomic<bool>*, Contribution& F) const override {
+    const PathSpace space(context, *settings_.light_sampler);
+    static thread_local LightPath y;
+    ChoiceNumbers choices(seed);
+    const ArenaScope memory(arena);
+    contribution(y, independent(space, arena, choices, y), F);
+  }
+
+  void run(std::uint64_t first, std::uint64_t own_seed, std::uint64_t states, const StateWeights& weights, const FilmWeights& v,
+           ImageTile& tile, Arena&, const std::atomic<bool>* abort) const override {
+    Arena arenas[2];
+    Arena* arena = &arenas[0];
+    std::uint64_t accepted = 0;
+    const PathSpace space(context, *settings_.light_sampler);
+    auto x = std::make_unique<LightPath>(), y = std::make_unique<LightPath>();
+    Contribution current, proposed;  // F
+    ChoiceNumbers start(first), choices(own_seed);
+    contribution(*x, independent(space, *arena, start, *x), current);
+    double I = current.brightness(v), waiting = 0;  // what x counts for that is not added yet
+    for (std::uint64_t i = 0; i < states && !(abort && abort->load(std::memory_order_relaxed)); ++i) {
+      const Arena::Mark before = arena->mark();
+      const bool large = choices.next() < double(settings_.large_steps);
+      double ratio = 0;  // T(y -> x) / T(x -> y), times T(y) / T(x), as I is that of F
+      bool found = false;
+      if (large) {
+        found = independent(space, *arena, choices, *y);
+        ratio = 1;
+      } else if (I > 0) {
+        const Mutation& mutation = *settings_.mutations[chosen(shares_, choices.next())];
+        const std::optional<double> back = mutation.propose(space, *x, *y, choices);
+        found = back && *back > 0 && y->length() > direct_length && y->length() <= settings_.max_depth;
+        if (found) ratio = *back * density(*y) / density(*x);
+      }
+      contribution(*y, found, proposed);
+      proposed.report_bad(tile);
+      const double J = proposed.brightness(v), accept = !(I > 0) ? 1 : std::min(1.0, J * ratio / I);
+      waiting += weights.factor(false, 1 - accept, I);
+      const double now = weights.factor(large, accept, J);
+      if (choices.next() < accept) {
+        current.add_to(tile, waiting);
+        std::swap(current, proposed);
+        std::swap(x, y);
+        I = J;
+        waiting = now;
+        if (!(I > 0)) {
+          arena->rewind(before);
+        } else if (++accepted % 256 == 0) {  // what vertices that are gone pointed to is left behind
+          arena = &arenas[arena == &arenas[0]];
+          arena->reset();
+          space.move(*x, *arena);
+        }
+      } else {
+        arena->rewind(before);
+        proposed.add_to(tile, now);
+      }
+    }
+    current.add_to(tile, waiting);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<RenderProcess> PathSpaceMetropolis::begin(const RenderContext& context) const {
+  const auto direct = ref_cast<Renderer>(Registry::instance().create("BidirectionalPathTracer"));
+  direct->sampler = sampler;
+  direct->light_sampler = light_sampler;
+  set(*direct, "max_depth", Value(Number{double(std::min(max_depth, direct_length))}));
+  return std::make_unique<PathSpaceProcess>(*this, context, direct);
+}
+
+static const Register<PathSpaceMetropolis> registered;
+
+}  // namespace etendue

@@ -1,0 +1,88 @@
+// MutatedPaths: chains around another process.
+
+#include <array>
+
+#include "etendue/render/number_chains.h"
+
+namespace etendue {
+
+MutatedPaths::MutatedPaths(const Renderer& r, const RenderContext& c, const ChainSettings& settings,
+                           std::unique_ptr<RenderProcess> paths, std::unique_ptr<RenderProcess> direct, Ref<Renderer> held)
+    : RenderProcess(r, c),
+      settings_(settings),
+      area_(c.image.sampled_area()),
+      lengths_(size_t(std::max(c.image.path_lengths, direct_length + 1))),
+      held_(std::move(held)),
+      paths_(std::move(paths)),
+      direct_(std::move(direct)) {
+  require_mutable(c.wavelengths, r);
+}
+
+void MutatedPaths::prepare_step(Schedule& schedule, const Step& step) {
+  paths_->prepare_step(schedule, step);
+  if (direct_) direct_->prepare_step(schedule, step);
+  // A process whose samples are no paths by themselves, such as another of this kind, says so.
+  try {
+    Arena arena;
+    paths_->sample(area_.x0, area_.y0, step.samples.begin, arena);
+  } catch (const Error& e) {
+    renderer.fail({}, std::string("has no paths that could be mutated: ") + e.what());
+  }
+}
+
+void MutatedPaths::step(Schedule& schedule, const Step& step) {
+  if (direct_) RenderProcess::step(schedule, step);  // asks for `radiance`
+  const auto pixels = std::uint64_t(area_.width()) * std::uint64_t(area_.height());
+  mutate_numbers(schedule, context.image, settings_, *this, mix_bits(context.seed + mix_bits(step.samples.begin)),
+                 pixels * (step.samples.end - step.samples.begin), !direct_);
+}
+
+Spectrum MutatedPaths::radiance(const Ray& ray, SampleContext& sample) const {
+  std::array<Spectrum, direct_length + 1> lengths;
+  std::vector<Splat> splats;
+  SampleContext own{sample.wavelengths, sample.numbers, sample.arena, {sample.observe.features, nullptr, lengths}, &splats,
+                    sample.abort};
+  direct_->radiance(ray, own);
+  for (const Splat& s : splats)
+    if (is_direct(s.length)) sample.splat(s.film, s.value, s.wavelengths, s.length);
+  Spectrum light;
+  for (int length = 1; length <= direct_length; ++length) {
+    light += lengths[size_t(length - 1)];
+    sample.observe.light(length, lengths[size_t(length - 1)]);
+  }
+  return light;
+}
+
+CameraSample MutatedPaths::sample(int, int, std::uint32_t, Arena&, const PathRequest&) const {
+  renderer.fail({}, "its samples are mutations of one another: none belongs to a pixel, and none can be replayed by itself");
+}
+
+void MutatedPaths::evaluate(const NumberSource& numbers, Arena& arena, const std::atomic<bool>* abort, Contribution& f) const {
+  static thread_local std::vector<Splat> splats;
+  static thread_local std::vector<Spectrum> lengths;
+  splats.clear();
+  lengths.assign(lengths_, {});
+  f.clear();
+  PathRequest request;
+  request.observe.lengths = lengths;
+  request.splats = &splats;
+  request.abort = abort;
+  const CameraSample s = paths_->path(area_, numbers, {}, arena, request);
+  // What one path brings to the mean over the whole film, of a crop that all of them go through.
+  const auto share =
+      float(double(area_.width()) * area_.height() / (double(context.image.width) * double(context.image.height)));
+  const auto add = [&](const Spectrum& light, int length) { f.add({s.film, light * share, s.wavelengths, length}, area_); };
+  Spectrum told;
+  for (size_t i = 0; i < lengths.size(); ++i) {
+    told += lengths[i];
+    if (!is_direct(int(i) + 1)) add(lengths[i], int(i) + 1);
+  }
+  // Light of which nobody tells the length is the chains', all of it. Less is rounding.
+  const Spectrum untold = s.value + told * -1.0f;
+  if (untold.maximum() > 1e-4f * s.value.maximum()) add(untold, 0);
+  for (const Splat& splat : splats)
+    if (!is_direct(splat.length) && area_.contains(int(std::floor(splat.film.x)), int(std::floor(splat.film.y))))
+      f.add(splat, area_);
+}
+
+}  // namespace etendue

@@ -1,0 +1,33 @@
+// A mutation of one's own for PathSpaceMetropolis, in one file, out of tree: the direction in which light goes on from some
+// vertex turns a little, and where that leads takes the place of the next vertex.
+//
+// The vertex, and the direction among those at the same angle, are alike likely both ways, so T(x -> y) is the density per area
+// of y_i for a uniform direction from x_{i-1}: the solid angle of an area at y_i, seen from there, over the area.
+#include "etendue/transport/mutation.h"
+
+using namespace etendue;
+
+class TurnMutation final : public Mutation {
+  float largest = 0.1f;
+
+ public:
+  static void describe(Description<TurnMutation>& d) {
+    d.summary("Turns one direction of a path, and keeps what comes before and after it.")
+        .member<&TurnMutation::largest>("largest", "rad", "greatest angle", range(1e-5, 1));
+  }
+
+  std::optional<double> propose(const PathSpace& space, const LightPath& x, LightPath& y,
+                                ChoiceNumbers& choices) const override {
+    const int k = x.length(), moved = 1 + int(choices.next() * (k - 1));
+    space.begin(y, x, moved);
+    const float angle = small_change(choices.next(), largest / 1000, largest);
+    KeptVertex met;
+    if (!space.follow(y.x.back(), turned(x.x[size_t(moved - 1)].out, angle, choices.next()), y, met)) return {};
+    y.x.push_back(met);
+    y.x.insert(y.x.end(), x.x.begin() + moved + 1, x.x.end());
+    if (!space.complete(y) || !space.visible(y, moved)) return {};
+    return double(x.solid_angle(moved)) / double(y.solid_angle(moved));
+  }
+};
+
+static const Register<TurnMutation> registered;
