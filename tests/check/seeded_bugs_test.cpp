@@ -1,4 +1,4 @@
-// Ten faults of the kind that give plausible pictures, one at a time in renderers made of the same parts as the program's
+// Eleven faults of the kind that give plausible pictures, one at a time in renderers made of the same parts as the program's
 // (faulty_renderers): `verify` must find each, and nothing when none is on.
 
 #include <gtest/gtest.h>
@@ -64,7 +64,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"lens_importance", "cornell_box", "FaultyLightTracer", "BidirectionalPathTracer", 1024},
                       Case{"phase_density", "fog_with_spot", "FaultyPathTracer", "BidirectionalPathTracer", 256},
                       Case{"transmittance_squared", "fog_with_spot", "FaultyPathTracer", "BidirectionalPathTracer", 128},
-                      Case{"skipped_length", "cornell_box", "FaultyPathTracer", "PathTracer", 256}),
+                      Case{"skipped_length", "cornell_box", "FaultyPathTracer", "PathTracer", 256},
+                      Case{"guide_density", "cornell_box", "FaultyGuidedTracer", "PathTracer", 256}),
     [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace

@@ -17,14 +17,15 @@ enum class Fault : std::uint8_t {
   phase_density,          ///< phase functions sampled as they are, weighted as if uniform
   transmittance_squared,  ///< on the way to luminaires
   skipped_length,         ///< no paths of exactly four segments
+  guide_density,          ///< directions that a guide chooses are weighted as if scattering had chosen them
 };
 
 template <auto member, class R>
 void describe_fault(Description<R>& d) {
-  d.template member<member>(
-      "fault", "", "what is wrong",
-      choices("none", "wrong_mis_weight", "no_squared_index", "lost_cosine", "wrong_measure", "roulette_undivided",
-              "luminaire_twice", "lens_importance", "phase_density", "transmittance_squared", "skipped_length"));
+  d.template member<member>("fault", "", "what is wrong",
+                            choices("none", "wrong_mis_weight", "no_squared_index", "lost_cosine", "wrong_measure",
+                                    "roulette_undivided", "luminaire_twice", "lens_importance", "phase_density",
+                                    "transmittance_squared", "skipped_length", "guide_density"));
 }
 
 }  // namespace etendue
