@@ -68,7 +68,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"acceptance_inverted", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
                       Case{"no_expected_values", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
                       Case{"large_steps_twice", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
-                      Case{"direct_light_twice", "cornell_box", "FaultyMetropolis", "PathTracer", 256}),
+                      Case{"direct_light_twice", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
+                      Case{"guide_density", "cornell_box", "FaultyGuidedTracer", "PathTracer", 256}),
     [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace

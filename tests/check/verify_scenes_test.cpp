@@ -48,7 +48,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, VerifyScenes,
                                            VerifyScene{"nested_dielectrics", 512}, VerifyScene{"sphere_and_environment", 256},
                                            VerifyScene{"every_rough_shader", 256}, VerifyScene{"every_mirror_shader", 512},
                                            VerifyScene{"every_emission", 256}, VerifyScene{"every_sky", 256},
-                                           VerifyScene{"nested_lamps", 192}, VerifyScene{"tilted_normals", 512}),
+                                           VerifyScene{"nested_lamps", 192}, VerifyScene{"small_opening", 256},
+                                           VerifyScene{"tilted_normals", 512}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace

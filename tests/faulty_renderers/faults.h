@@ -21,6 +21,7 @@ enum class Fault : std::uint8_t {
   no_expected_values,     ///< states are not added again when a proposal is rejected
   large_steps_twice,      ///< large steps count as independent samples, beside all that chains find
   direct_light_twice,     ///< chains carry what is sampled apart
+  guide_density,          ///< directions that a guide chooses are weighted as if scattering had chosen them
 };
 
 template <auto member, class R>
@@ -29,7 +30,7 @@ void describe_fault(Description<R>& d) {
       "fault", "", "what is wrong",
       choices("none", "wrong_mis_weight", "no_squared_index", "lost_cosine", "wrong_measure", "roulette_undivided",
               "luminaire_twice", "lens_importance", "phase_density", "transmittance_squared", "skipped_length",
-              "acceptance_inverted", "no_expected_values", "large_steps_twice", "direct_light_twice"));
+              "acceptance_inverted", "no_expected_values", "large_steps_twice", "direct_light_twice", "guide_density"));
 }
 
 }  // namespace etendue

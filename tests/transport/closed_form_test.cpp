@@ -35,6 +35,17 @@ TEST(ClosedForm, FurnaceReachesItsLimit) {  // L = 1 / (1 - 0.8)
   }
 }
 
+// Guided paths: the guide, directly seen light and what is learned of both leave the mean as it is.
+TEST(ClosedForm, GuidedFurnaceReachesItsLimit) {  // L = 1 / (1 - 0.8)
+  const std::string sphere =
+      std::string("Sphere { radius: 1, shader: Lambertian { color: 0.8 }, emission: ") + unit_emission + " }";
+  for (const char* more : {"", ", next_event: false", ", target: \"second_moment\""}) {
+    const auto m = measure(job_text(std::string("GuidedPathTracer { max_depth: 10000, samples: 1024") + more + " }",
+                                    "PerspectiveCamera { from: [0.3, 0.1, 0.2] m, to: [0, 0, 1] m, fov: 90 deg }", 16, sphere));
+    expect_value(m, 5);
+  }
+}
+
 TEST(ClosedForm, FurnaceOfLimitedDepth) {
   const std::string box = R"(TriangleMesh {
       positions: [[-1,-1,-1],[1,-1,-1],[1,1,-1],[-1,1,-1],[-1,-1,1],[1,-1,1],[1,1,1],[-1,1,1]]

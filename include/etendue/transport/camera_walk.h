@@ -44,6 +44,8 @@ class CameraWalk : public Walk<clear> {
   }
 
   Spectrum radiance;  ///< L, as far as it is gathered
+  Spectrum earlier;   ///< of it, what has not come along the last segment: once the walk has ended, the rest tells what a
+                      ///< direction brought
 
   /// Goes to the next vertex and adds the light of luminaires it meets, each with `weight(its point)`. False: the walk has
   /// ended, and all that was added has arrived (light of one vertex is settled on the way to the next).
@@ -51,6 +53,7 @@ class CameraWalk : public Walk<clear> {
   [[gnu::always_inline]] bool next_vertex(const Weight& weight) {
     if (!goes_on_ || moved_) {
       settle(awaits_ && !(clear && scene.any(direct_.shadow)));
+      earlier = radiance;
       if (!moved_) return false;
       moved_ = goes_on_ = false;  // it came to the vertex through a body
       sample.observe.surface(vertex.point, placed(throughput));
@@ -60,6 +63,7 @@ class CameraWalk : public Walk<clear> {
     sample.arena.rewind(memory_);  // of earlier vertices nothing is needed any more
     const auto [blocked, found] = scene.any_and_nearest(clear && awaits_ ? &direct_.shadow : nullptr, ray, this->hit);
     settle(!blocked);
+    earlier = radiance;
     goes_on_ = false;
     if (!this->come_to_vertex(found, Listener<Weight>{{}, *this, weight})) return false;
     if (vertex.in_medium()) {

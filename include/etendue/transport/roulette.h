@@ -12,11 +12,15 @@ namespace etendue {
 struct Roulette {
   int depth = 5;  ///< segments before it may end a walk
 
-  /// False: the walk ends. Takes a number only where there is a choice.
+  /// False: the walk ends. Takes a number only where there is a choice. `left`: what counts as left of the walk.
   template <class Walk>
   bool survives(Walk& walk) const {
+    return survives(walk, walk.left());
+  }
+  template <class Walk>
+  bool survives(Walk& walk, float left) const {
     if (walk.length >= depth) {
-      const float survival = std::min(1.0f, walk.left());
+      const float survival = std::min(1.0f, left);
       if (walk.numbers.next() >= survival) return false;
       walk.throughput /= survival;
     }
