@@ -2,7 +2,7 @@
 // upwards.
 
 #include "etendue/transport/camera_walk.h"
-#include "etendue/transport/direction_tree.h"
+#include "etendue/guiding/direction_tree.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/roulette.h"
 #include "faults.h"

@@ -1,7 +1,7 @@
 // What guides learn, held against what is known of directions: densities that integrate to one and are those of the samples,
 // optima in closed form, states that come back byte by byte or not at all.
 
-#include "etendue/transport/guide.h"
+#include "etendue/guiding/guide.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 // density
 //     p(w) = a p_guide(w) + (1 - a) p_scatter(w)                    (one-sample mixture: Veach 1997, section 9.2.4)
 // at surfaces and in media alike; specular lobes are chosen by scattering alone, with probability 1 - a. What guides is a
-// density for each place that follows what paths have found there (transport/guide.h): Müller, Gross & Novák 2017, "Practical
+// density for each place that follows what paths have found there (guiding/guide.h): Müller, Gross & Novák 2017, "Practical
 // path guiding for efficient light-transport simulation"; a is learned and the sums are smoothed as in Müller 2019, "Path
 // guiding in production". What is followed is the mean of f |cos| L_i over all paths, or the root of its second moment (Rath et
 // al. 2020, "Variance-aware path guiding").
@@ -20,9 +20,9 @@
 // Russian roulette ends a walk by what would be left of it had scattering alone chosen the same directions: T itself is small
 // just where a guide leads into light.
 
+#include "etendue/guiding/guide.h"
 #include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"
-#include "etendue/transport/guide.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/roulette.h"
 

@@ -14,10 +14,10 @@
 // of the K nearest one is taken in proportion to what its photon carries, so that with a share q
 // In media no light is gathered: photons at the vertex bring all that was scattered before.
 
+#include "etendue/guiding/photon_directions.h"
 #include "etendue/render/photon_process.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/irradiance_points.h"
-#include "etendue/transport/photon_directions.h"
 #include "etendue/transport/renderer_members.h"
 
 namespace etendue {

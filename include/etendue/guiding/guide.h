@@ -19,7 +19,7 @@
 // counts are effective samples, (sum X)^2 / sum X^2 (Kish 1965). A region is not made anew from fewer of them than it was made
 // of (it goes on adding), and neither it nor its directions are divided more finely than they tell.
 
-#include "etendue/transport/direction_tree.h"
+#include "etendue/guiding/direction_tree.h"
 
 namespace etendue {
 

@@ -1,10 +1,10 @@
-#include "etendue/transport/direction_tree.h"
+#include "etendue/guiding/direction_tree.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "etendue/core/warp.h"
-#include "transport/saved_bytes.h"
+#include "guiding/saved_bytes.h"
 
 namespace etendue {
 namespace {

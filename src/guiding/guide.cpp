@@ -1,9 +1,9 @@
-#include "etendue/transport/guide.h"
+#include "etendue/guiding/guide.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "transport/saved_bytes.h"
+#include "guiding/saved_bytes.h"
 
 namespace etendue {
 namespace {
