@@ -54,6 +54,13 @@ const std::multimap<std::string, std::string> never_tried = {
     {"DirectRenderer", "pictures of known value"},
     {"WhittedRenderer", "pictures of known value"},
     {"BidirectionalPathTracer", "pictures of known value"},  // with members drawn that leave strategies out
+    {"PhotonMapper", "pictures of known value"},
+    {"PrimarySampleMetropolis", "pictures of known value"},  // renderers that learn were drawn for inside
+    // Few photons, which were drawn, are all noise.
+    {"ProgressivePhotonMapper", "the value of a plane under an environment is the known one"},
+    {"ProgressivePhotonMapper", "the value of a plane under a distant light is the known one"},
+    {"VertexConnectionMerging", "the value of a plane under an environment is the known one"},
+    {"VertexConnectionMerging", "the value of a plane under a distant light is the known one"},
     {"LightTracer", "the value of a plane under a distant light is the known one"},  // all noise, with few samples
     {"CosineLobeEmission", "power is the integral of radiance, on a Point"},         // an amount of a black radiance was drawn
     {"CosineLobeEmission", "power is the integral of radiance, on a Environment"},

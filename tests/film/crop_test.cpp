@@ -67,7 +67,7 @@ Image merged(const Ref<Job>& job) {
 }
 
 /// Whether a renderer brings light to places of the film other than its samples'.
-bool splats(const std::string& renderer) { return renderer == "LightTracer" || renderer == "BidirectionalPathTracer"; }
+bool splats(const std::string& renderer) { return room(renderer + " {}", test::make_filter("BoxFilter"))->renderer->splats(); }
 
 /// Every value of every channel, bit by bit.
 void expect_same(const Image& a, const Image& b, const std::string& what) {

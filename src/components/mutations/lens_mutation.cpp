@@ -15,7 +15,8 @@ class LensMutation final : public Mutation {
   static void describe(Description<LensMutation>& d) {
     d.summary("Moves a path's place on the film, and keeps all but the first thing seen.",
               "Veach & Guibas 1997, section 5.3.2; Veach 1997, section 11.4.2")
-        .member<&LensMutation::smallest>("smallest", "1", "least distance on the film [pixels]", more_than(0))
+        .member<&LensMutation::smallest>("smallest", "1", "least distance on the film [pixels]", more_than(0), soft(0.01, 10),
+                                         logarithmic)
         .member<&LensMutation::largest>("largest", "1", "greatest distance, over the width of the film", range(1e-4, 1));
   }
 

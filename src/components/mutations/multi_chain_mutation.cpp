@@ -17,7 +17,8 @@ class MultiChainMutation final : public Mutation {
   static void describe(Description<MultiChainMutation>& d) {
     d.summary("Moves a path's place on the film, and turns its direction behind the first thing seen.",
               "Veach & Guibas 1997, section 5.3.4; Veach 1997, section 11.4.2")
-        .member<&MultiChainMutation::smallest>("smallest", "1", "least distance on the film [pixels]", more_than(0))
+        .member<&MultiChainMutation::smallest>("smallest", "1", "least distance on the film [pixels]", more_than(0),
+                                               soft(0.01, 10), logarithmic)
         .member<&MultiChainMutation::largest>("largest", "1", "greatest distance, over the width of the film", range(1e-4, 1))
         .member<&MultiChainMutation::smallest_angle>("smallest_angle", "rad", "least angle", range(1e-7, 1))
         .member<&MultiChainMutation::largest_angle>("largest_angle", "rad", "greatest angle", range(1e-7, 1));

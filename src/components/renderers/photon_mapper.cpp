@@ -31,7 +31,7 @@ class PhotonMapper final : public Renderer {
   int samples_per_map = 16, nearest = 60, nearest_caustic = 40;
   float farthest = 30, farthest_caustic = 6;
   bool final_gather = true, irradiance = false;
-  float importance = 0.5f;
+  float importance = 0;
 
   static void describe(Description<PhotonMapper>& d) {
     d.summary(

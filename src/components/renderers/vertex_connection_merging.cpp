@@ -37,7 +37,7 @@ class VertexConnectionMerging final : public Renderer, public ShrinkingBias {
     d.group("Paths");
     describe_max_depth<&VertexConnectionMerging::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
     describe_roulette_depth<&VertexConnectionMerging::roulette_depth>(d);
-    describe_heuristic<&VertexConnectionMerging::heuristic>(d, when("connecting"), when("merging"));
+    describe_heuristic<&VertexConnectionMerging::heuristic>(d, when("connecting"));
     d.group("Strategies")
         .member<&VertexConnectionMerging::connecting>(
             "connecting", "",
