@@ -1,8 +1,8 @@
 // A guided path tracer with a fault, of the same parts as GuidedPathTracer. What guides is the same everywhere: it looks
 // upwards.
 
-#include "etendue/transport/camera_walk.h"
 #include "etendue/guiding/direction_tree.h"
+#include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/roulette.h"
 #include "faults.h"
