@@ -67,7 +67,7 @@ inline bool parted(const Scene& scene, const Vertex& v, const Photon& p, float r
 /// Photons that can be asked for by their places.
 class PhotonMap {
  public:
-  /// Builds it on all cores. Takes a third of the photons' memory for itself while it does, and a fifth after.
+  /// Builds it on all cores. Takes a third of the photons' memory for itself while it does, and a seventh after.
   void build(std::vector<Photon>&&);
 
   size_t size() const { return photons_.size(); }
