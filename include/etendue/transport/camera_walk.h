@@ -119,6 +119,15 @@ class CameraWalk : public Walk<clear> {
     add_direct(lights, u, heuristic, ScatteringOf{vertex});
   }
 
+  /// The weight of a luminaire that the walk meets, which `add_direct` could have sampled at the vertex before; behind a mirror
+  /// it could not.
+  [[gnu::always_inline]] float weight_of_met(const LightSampler& lights, Heuristic heuristic,
+                                             const SurfacePoint& luminaire) const {
+    if (this->specular) return 1;
+    return heuristic_weight(heuristic, this->direction_density,
+                            direct_light_density(lights, this->from, this->from_normal, ray.direction, luminaire));
+  }
+
   /// Goes on from the last vertex; false: it is absorbed there.
   [[gnu::always_inline]] bool scatter(const NumberStream::Bounce& u) {
     const std::optional<ScatterSample> next = this->sample_direction(u.lobe_choice, u.direction);

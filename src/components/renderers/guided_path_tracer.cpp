@@ -235,9 +235,7 @@ class GuidedProcess final : public RenderProcess {
     const Roulette roulette{settings_.roulette_depth};
     float more = 1;  // the product of p / p_scatter: by so much more would be left without a guide
     const auto met = [&](const SurfacePoint& luminaire) {
-      if (walk.specular || !settings_.next_event) return 1.0f;
-      return heuristic_weight(settings_.heuristic, walk.direction_density,
-                              direct_light_density(lights, walk.from, walk.from_normal, walk.ray.direction, luminaire));
+      return settings_.next_event ? walk.weight_of_met(lights, settings_.heuristic, luminaire) : 1.0f;
     };
     const auto next_vertex = [&] {
       const bool goes_on = walk.next_vertex(met);

@@ -64,9 +64,7 @@ class PathTracer final : public Renderer {
     const Division division{split_depth, split_wavelengths};
     // Of light that the walk meets, against having sampled it.
     const auto met = [&](const SurfacePoint& luminaire) {
-      if (walk.specular || !next_event) return 1.0f;
-      return heuristic_weight(heuristic, walk.direction_density,
-                              direct_light_density(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire));
+      return next_event ? walk.weight_of_met(*light_sampler, heuristic, luminaire) : 1.0f;
     };
     while (walk.next_vertex(met) && !walk.at_end()) {
       const NumberStream::Bounce u = walk.next_bounce();

@@ -113,10 +113,8 @@ class PhotonMapperProcess final : public PhotonProcess {
       luminaires,  // those straight ahead: photons brought the rest
     } seeks = Seeks::all;
     const auto met = [&](const SurfacePoint& luminaire) {
-      if (walk.specular) return seeks == Seeks::all ? 1.0f : 0.0f;
-      return heuristic_weight(
-          settings_.heuristic, walk.direction_density,
-          direct_light_density(*settings_.light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire));
+      if (walk.specular && seeks != Seeks::all) return 0.0f;
+      return walk.weight_of_met(*settings_.light_sampler, settings_.heuristic, luminaire);
     };
     while (walk.next_vertex(met) && seeks != Seeks::luminaires && !walk.at_end()) {
       const Vertex& v = walk.vertex;

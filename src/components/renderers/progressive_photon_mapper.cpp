@@ -120,10 +120,7 @@ class ProgressivePhotonProcess final : public PhotonProcess {
 
     /// The weight of a luminaire, against having sampled it.
     float operator()(const SurfacePoint& luminaire) const {
-      if (walk.specular) return 1;
-      const LightSampler& lights = *self.settings_.light_sampler;
-      return heuristic_weight(self.settings_.heuristic, walk.direction_density,
-                              direct_light_density(lights, walk.from, walk.from_normal, walk.ray.direction, luminaire));
+      return walk.weight_of_met(*self.settings_.light_sampler, self.settings_.heuristic, luminaire);
     }
     /// A medium, for so far. What it sends to a smooth vertex photons have brought there.
     void through(const Medium& medium, float reach) const {
