@@ -2,6 +2,9 @@
 
 #include "scene_options.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <filesystem>
 
 #include "etendue/language/language.h"
@@ -20,7 +23,9 @@ std::pair<std::string, std::string> split(const std::string& option, const std::
 }  // namespace
 
 void SceneOptions::add_to(CLI::App& command) {
-  command.add_option("FILE", file, "The render description (.etd, or .json)")->required()->type_name("");
+  command.add_option("FILE", file, "The render description (.etd, or .json), or a file of another program")
+      ->required()
+      ->type_name("");
   add_overrides_to(command);
 }
 
@@ -35,18 +40,46 @@ void SceneOptions::add_overrides_to(CLI::App& command) {
   command.add_option("--plugin", plugins, "Load a shared library of further classes; may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
+  command.add_flag("--strict", import.strict, "Of other programs' files: what cannot be expressed exactly is an error");
+  command
+      .add_option("--allow-path", import.allowed_folders,
+                  "Of other programs' files: they may name files in this folder too, not in their own alone; may be repeated")
+      ->type_name("FOLDER")
+      ->allow_extra_args(false);
 }
 
-Ref<Job> SceneOptions::load() const {
+LoadOptions SceneOptions::load_options() const {
   for (const std::string& plugin : plugins) Registry::instance().load_plugin(plugin);
   LoadOptions options;
   for (const std::string& define : defines) options.defines.push_back(split("-D", define, "name=value"));
-  Ref<Job> job = load_job(file, options);
+  options.import = import;
+  return options;
+}
+
+Ref<Job> SceneOptions::load() const {
+  Ref<Job> job = load_job(file, load_options());
+  apply_sets(*job);
+  return job;
+}
+
+ImportedJob SceneOptions::load_imported() const {
+  const LoadOptions options = load_options();
+  const Ref<Importer> importer = importer_of(file);
+  if (!importer)
+    throw Error(
+        fmt::format("files of this ending are not imported; those that are: {}", fmt::join(imported_extensions(), ", ")),
+        {intern(file), 0, 0});
+  ImportedJob imported = import_job(*importer, file, options);
+  apply_sets(*imported.job);
+  return imported;
+}
+
+void SceneOptions::apply_sets(Job& job) const {
   std::vector<Error> errors;
   for (const std::string& set : sets) {
     try {
       const auto [path, value] = split("--set", set, "path=value");
-      set_path(*job, path, value);
+      set_path(job, path, value);
     } catch (const Errors& several) {
       errors.insert(errors.end(), several.errors.begin(), several.errors.end());
     } catch (const Error& error) {
@@ -54,7 +87,6 @@ Ref<Job> SceneOptions::load() const {
     }
   }
   if (!errors.empty()) throw Errors(std::move(errors));
-  return job;
 }
 
 std::string SceneOptions::command_line() const { return " " + shell_quoted(file) + overrides_line(); }
@@ -64,6 +96,8 @@ std::string SceneOptions::overrides_line() const {
   for (const std::string& define : defines) text += " -D " + shell_quoted(define);
   for (const std::string& set : sets) text += " --set " + shell_quoted(set);
   for (const std::string& plugin : plugins) text += " --plugin " + shell_quoted(plugin);
+  if (import.strict) text += " --strict";
+  for (const std::string& folder : import.allowed_folders) text += " --allow-path " + shell_quoted(folder);
   return text;
 }
 

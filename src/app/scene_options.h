@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "etendue/render/job.h"
+#include "render/import_job.h"
 
 namespace etendue {
 
@@ -15,6 +16,7 @@ struct SceneOptions {
   std::vector<std::string> defines;  ///< "name=value"
   std::vector<std::string> sets;     ///< "path=value"
   std::vector<std::string> plugins;
+  ImportOptions import;  ///< for files of other programs
 
   void add_to(CLI::App& command);
   /// All but the file, for commands that take several.
@@ -22,10 +24,16 @@ struct SceneOptions {
 
   /// Loads plugins and file and applies the overrides. Throws Errors.
   Ref<Job> load() const;
+  /// The same for a file of another program, with what is not as there. Throws when no Importer reads it.
+  ImportedJob load_imported() const;
   /// These options as they are written on a command line, quoted for a shell, each with a blank before it.
   std::string command_line() const;
   /// The same without the file.
   std::string overrides_line() const;
+
+ private:
+  LoadOptions load_options() const;
+  void apply_sets(Job&) const;
 };
 
 /// The text in single quotes when a shell would otherwise take it apart.

@@ -2,11 +2,17 @@
 
 #include "etendue/render/job.h"
 #include "language/loader.h"
+#include "render/import_job.h"
 
 namespace etendue {
 
 Ref<Job> load_job(const std::string& path, const LoadOptions& options) {
   try {
+    if (const Ref<Importer> importer = importer_of(path)) {
+      const ImportedJob imported = import_job(*importer, path, options);
+      for (const Error& note : imported.notes) warn(note.what(), note.location);
+      return imported.job;
+    }
     language::Loader loader(options);
     loader.add_file(path);
     return ref_cast<Job>(loader.result(true));

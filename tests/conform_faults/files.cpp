@@ -101,9 +101,8 @@ class LinesImporter : public Importer {
 class ThrowingImporter final : public LinesImporter {
  public:
   static void describe(Description<ThrowingImporter>& d) { d.summary("Throws what is no Error for files it cannot read."); }
-  std::vector<Ref<Component>> import(const std::string& path) const override {
-    const std::string text = read(path);
-    return std::vector<Ref<Component>>(size_t(std::stoi(text)));
+  Ref<Component> import(Importing& importing) const override {
+    return std::stoi(read(importing.path())) > 0 ? nullptr : importing.make("Job", importing.at());
   }
 };
 const Register<ThrowingImporter> throwing;
@@ -111,8 +110,8 @@ const Register<ThrowingImporter> throwing;
 class NamelessImporter final : public LinesImporter {
  public:
   static void describe(Description<NamelessImporter>& d) { d.summary("Does not say which file it cannot read."); }
-  std::vector<Ref<Component>> import(const std::string& path) const override {
-    read(path);
+  Ref<Component> import(Importing& importing) const override {
+    read(importing.path());
     throw Error("line 1 is no line");
   }
 };
@@ -121,11 +120,11 @@ const Register<NamelessImporter> nameless;
 class FickleImporter final : public LinesImporter {
  public:
   static void describe(Description<FickleImporter>& d) { d.summary("Reads the same file otherwise the next time."); }
-  std::vector<Ref<Component>> import(const std::string& path) const override {
-    read(path);
+  Ref<Component> import(Importing& importing) const override {
+    read(importing.path());
     static std::atomic<int> times = 0;
-    if (++times % 2 == 0) throw Error("'" + path + "' is no file of lines");
-    return {};
+    if (++times % 2 == 0) throw Error("'" + importing.path() + "' is no file of lines");
+    return importing.make("Job", importing.at());
   }
 };
 const Register<FickleImporter> fickle;

@@ -10,9 +10,17 @@
 
 namespace etendue {
 
+/// What is said to importers, which read the files of other programs (etendue/importer.h).
+struct ImportOptions {
+  bool strict = false;                       ///< what cannot be expressed exactly is an error, not a warning
+  std::vector<std::string> allowed_folders;  ///< whose files a source may name, besides those in its own folder
+  double time = 0;                           ///< of what is animated [s]
+};
+
 struct LoadOptions {
   std::vector<std::pair<std::string, std::string>> defines;  ///< `-D name=value`: replace `param`s
   bool allow_files = true;  ///< false: include, plugin and spectrum("file") are errors, for texts from strangers
+  ImportOptions import;
 };
 
 /// Any one component, such as "Sphere { radius: 2 m }", which definitions may precede; for tests and tools.

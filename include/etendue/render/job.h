@@ -58,7 +58,8 @@ class Job final : public Component {
   float opened_ = 0;  // the time at which the shutter opens, for which the scene counts from there [s]
 };
 
-/// Reads a render description; throws Errors with everything wrong that can be found in one run. Not prepared yet.
+/// Reads a render description, or a file of another program that an Importer knows by its ending, whose differences are warned
+/// of; throws Errors with everything wrong that can be found in one run. Not prepared yet.
 Ref<Job> load_job(const std::string& path, const LoadOptions& = {});
 /// The same from a text; `name` stands for the file in messages, paths are relative to `folder`.
 Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder = {},

@@ -13,6 +13,7 @@
 #include "conformance.h"
 #include "describe/guard.h"
 #include "etendue/language/language.h"
+#include "etendue/render/job.h"
 
 namespace etendue::conform {
 namespace {
@@ -72,16 +73,18 @@ class ImporterTrial {
   }
 
   struct Imported {
-    std::vector<Ref<Component>> components;
+    Ref<Component> component;
+    std::vector<Error> notes;
     std::string path, error;
   };
 
   Imported import(const std::string& path) {
-    Imported r{{}, path, {}};
+    Imported r{{}, {}, path, {}};
     try {
-      r.components = importer_.import(path);
-      trial.expect(std::ranges::all_of(r.components, [](const Ref<Component>& c) { return bool(c); }),
-                   "what is imported is there, each component of it");
+      Importing importing(path, {});
+      r.component = importer_.import(importing);
+      trial.expect(ref_cast<Job>(r.component) || ref_cast<Scene>(r.component), "what is imported is a Job or a Scene");
+      r.notes = importing.notes();
     } catch (const Errors& e) {
       r.error = e.what();
     } catch (const Error& e) {
@@ -99,7 +102,8 @@ class ImporterTrial {
   static std::string told(const Imported& i) { return i.error; }
   static std::string text(const Imported& i) {
     std::string all = i.error;
-    for (const Ref<Component>& c : i.components) all += c ? write_description(*c) + "\n" : "none\n";
+    if (i.component) all += write_description(*i.component);
+    for (const Error& note : i.notes) all += note.what() + std::string("\n");
     return all;
   }
 

@@ -1,11 +1,45 @@
-// What all importers have in common: they have no members of their own.
+// What all importers have in common: they have no members of their own; and which of them reads a file.
 
 #include "etendue/importer.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 
 namespace etendue {
 
 void Importer::describe(Description<Importer>& d) { d.summary("Reads a file of another program into components."); }
 
 static const Register<Importer> registered;
+
+namespace {
+
+std::vector<Ref<Importer>> all_importers() {
+  std::vector<Ref<Importer>> all;
+  const Registry& registry = Registry::instance();
+  for (const ClassInfo* c : registry.subclasses(*registry.find("Importer"))) all.push_back(ref_cast<Importer>(c->create()));
+  return all;
+}
+
+}  // namespace
+
+Ref<Importer> importer_of(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  if (ending.size() < 2) return nullptr;
+  ending.erase(0, 1);
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  for (Ref<Importer>& importer : all_importers())
+    if (std::ranges::count(importer->extensions(), ending)) return importer;
+  return nullptr;
+}
+
+std::vector<std::string> imported_extensions() {
+  std::vector<std::string> all;
+  for (const Ref<Importer>& importer : all_importers())
+    for (const std::string& ending : importer->extensions()) all.push_back(ending);
+  std::ranges::sort(all);
+  all.erase(std::ranges::unique(all).begin(), all.end());
+  return all;
+}
 
 }  // namespace etendue

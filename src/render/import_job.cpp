@@ -1,0 +1,106 @@
+#include "render/import_job.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace etendue {
+
+namespace {
+
+/// Bounds of all that has an end, as the scene will be when it is prepared: which these objects are for this.
+Bounds3 prepared_bounds(const Scene& scene) {
+  Bounds3 all;
+  for (const Ref<SceneObject>& object : scene.objects) {
+    prepare_tree(*object);
+    if (!object->infinite() && !object->unbounded()) all.add(object->bounds());
+  }
+  return all;
+}
+
+bool emits(const Scene& scene) {
+  for (const Ref<SceneObject>& object : scene.objects) {
+    if (object->luminaire()) return true;
+    if (const auto* inner = dynamic_cast<const Scene*>(object.get()); inner && emits(*inner)) return true;
+  }
+  return false;
+}
+
+DoubleVector3 sum(double a, const DoubleVector3& x, double b, const DoubleVector3& y, double c, const DoubleVector3& z) {
+  return {a * x.x + b * y.x + c * z.x, a * x.y + b * y.y + c * z.y, a * x.z + b * y.z + c * z.z};
+}
+
+/// A camera that sees all of a scene from the front, a little from the right and from above. "Front" is +z where y is up, as in
+/// glTF and most models, and -y where z is up, as in CAD.
+Ref<Camera> camera_on(const Scene& scene, const Importing& importing) {
+  const Bounds3 bounds = prepared_bounds(scene);
+  const Location at = importing.at();
+  if (bounds.empty()) throw Error("there is nothing in it to be seen", at);
+  const Point3 centre = bounds.centre();
+  const double radius = std::max(double(length(bounds.diagonal())) / 2, 1e-6);
+  const DoubleVector3 up = importing.up;
+  const DoubleVector3 front = up.z != 0 ? DoubleVector3{0, -up.z, 0} : DoubleVector3{0, 0, 1};
+  const DoubleVector3 right = cross(up, front);
+  constexpr double field_of_view = 40;  // [deg]
+  constexpr double sideways = 0.55, upwards = 0.4;
+  const double distance = 1.03 * radius / std::sin(field_of_view / 2 * pi / 180);
+  const double scale = distance / std::sqrt(1 + sideways * sideways + upwards * upwards);
+  const DoubleVector3 back = sum(scale, front, scale * sideways, right, scale * upwards, up);
+  Ref<Component> camera = importing.make("PerspectiveCamera", at);
+  const auto point = [](double x, double y, double z) { return Numbers{{x, y, z}, 1, Dimension::none}; };
+  const double x = double(centre.x), y = double(centre.y), z = double(centre.z);
+  set_member(*camera, "from", point(x + back.x, y + back.y, z + back.z), at);
+  set_member(*camera, "to", point(x, y, z), at);
+  set_member(*camera, "up", point(up.x, up.y, up.z), at);
+  set_member(*camera, "fov", field_of_view, at);
+  return ref_cast<Camera>(camera);
+}
+
+/// Light from all sides, and more of it from the upper left behind the camera, so that shapes can be told.
+void add_light(Scene& scene, const Importing& importing) {
+  const Location at = importing.at();
+  const auto add = [&](const char* object_class, const std::string& emission) {
+    Ref<Component> object = importing.make(object_class, at);
+    set(*object, "emission", Value(parse_component(emission, "light added to " + importing.path()), at));
+    scene.objects.push_back(ref_cast<SceneObject>(object));
+    return object;
+  };
+  add("Environment", "DiffuseEmission { radiance: illuminant(\"D65\") }");
+  const Ref<Component> sun = add("Distant", "DiffuseEmission { radiance: 4 * illuminant(\"D65\") }");
+  const bool z_up = importing.up.z != 0;
+  set_member(*sun, "direction",
+             z_up ? Numbers{{0.45, 0.6, -1 * importing.up.z}, 1, Dimension::none}
+                  : Numbers{{0.45, -1 * importing.up.y, -0.6}, 1, Dimension::none},
+             at);
+}
+
+Ref<Job> job_around(const Ref<Scene>& scene, Importing& importing) {
+  Ref<Component> job = importing.make("Job", importing.at());
+  const Ref<Camera> camera = camera_on(*scene, importing);
+  importing.inexact("it has no camera: one that sees all of it is added", importing.at());
+  if (!emits(*scene)) {
+    add_light(*scene, importing);
+    importing.inexact("it has no light: light from all sides and from the upper left is added", importing.at());
+  }
+  set(*job, "camera", Value(Ref<Component>(camera)));
+  set(*job, "scene", Value(Ref<Component>(scene)));
+  return ref_cast<Job>(job);
+}
+
+}  // namespace
+
+ImportedJob import_job(const Importer& importer, const std::string& path, const LoadOptions& options) {
+  Importing importing(path, options.import, options.defines);
+  const Ref<Component> read = importer.import(importing);
+  Ref<Job> job = ref_cast<Job>(read);
+  if (!job) {
+    const Ref<Scene> scene = ref_cast<Scene>(read);
+    if (!scene) throw Error("the importer gave neither a Job nor a Scene", importing.at());
+    job = job_around(scene, importing);
+  }
+  ImportedJob result{job, importing.notes()};
+  if (options.import.strict && !result.notes.empty()) throw Errors(std::move(result.notes));
+  return result;
+}
+
+}  // namespace etendue
