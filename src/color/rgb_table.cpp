@@ -60,17 +60,28 @@ void RgbTable::compute(const RgbSpace& space) {
         for (int ix = 0; ix < ratios - 1; ++ix) {
           if (!needed(level, iy, ix)) continue;
           const double z = (level_z(level) + level_z(level + 1)) / 2;
-          const std::array<double, 3> rgb = rgb_of(largest, z, node_ratio(ix + 0.5), node_ratio(iy + 0.5));
-          const float floats[3] = {float(rgb[0]), float(rgb[1]), float(rgb[2])};
-          bool coarse = false;
-          const RgbCoefficients found = interpolate(storage_.data(), floats, coarse);
+          Node& corner = storage_[node_index(largest, level, iy, ix)];
+          const RgbCoefficients found = between(&corner, ratios, size_t(ratios * ratios), 0.5f, 0.5f, 0.5f, float(z));
           Coefficients c{double(found.c0), double(found.c1), double(found.c2)};
-          if (fit_->solve(rgb, c, 0, 0) > coarse_error) storage_[node_index(largest, level, iy, ix)].coarse = 1;
+          if (fit_->solve(rgb_of(largest, z, node_ratio(ix + 0.5), node_ratio(iy + 0.5)), c, 0, 0) > coarse_error)
+            corner.coarse = 1;
         }
+  divided_ = std::make_unique<std::atomic<const Divided*>[]>(storage_.size());
   nodes_.store(storage_.data(), std::memory_order_release);
 }
 
-RgbCoefficients RgbTable::interpolate(const Node* nodes, const float rgb[3], bool& coarse) {
+RgbTable::~RgbTable() {
+  if (divided_)
+    for (size_t i = 0; i < storage_.size(); ++i) delete divided_[i].load();
+}
+
+struct RgbTable::Place {
+  int largest, ix, iy, level;
+  float x, y, z;  // from 0 to 1 in the cell
+  size_t index() const { return node_index(largest, level, iy, ix); }
+};
+
+RgbTable::Place RgbTable::place_of(const float rgb[3]) {
   int largest = rgb[1] > rgb[0] ? 1 : 0;
   if (rgb[2] > rgb[largest]) largest = 2;
   const float z = rgb[largest], inverse = 1 / z;
@@ -78,27 +89,69 @@ RgbCoefficients RgbTable::interpolate(const Node* nodes, const float rgb[3], boo
     cell = std::clamp(int(position), 0, count - 2);
     return position - float(cell);
   };
-  int ix, iy, iz;
-  const float fx = split(rgb[(largest + 1) % 3] * inverse * float(ratios - 1), ratios, ix);
-  const float fy = split(rgb[(largest + 2) % 3] * inverse * float(ratios - 1), ratios, iy);
-  const float fz = split(z * float(levels - 1), levels, iz);
-  const Node* corner = nodes + node_index(largest, iz, iy, ix);
+  Place place{largest, 0, 0, 0, 0, 0, 0};
+  place.x = split(rgb[(largest + 1) % 3] * inverse * float(ratios - 1), ratios, place.ix);
+  place.y = split(rgb[(largest + 2) % 3] * inverse * float(ratios - 1), ratios, place.iy);
+  place.z = split(z * float(levels - 1), levels, place.level);
+  return place;
+}
 
+/// Between the eight nodes of a cell, whose neighbours along y and z are `row` and `sheet` nodes away; the largest component is
+/// `largest`.
+RgbCoefficients RgbTable::between(const Node* corner, size_t row, size_t sheet, float x, float y, float z, float largest) {
   using Row = float __attribute__((vector_size(16)));
-  const auto row = [&](const Node* node) {
+  const auto along_x = [&](const Node* node) {
     Row p, q;
     __builtin_memcpy(&p, node, sizeof p);
     __builtin_memcpy(&q, node + 1, sizeof q);
-    return p + fx * (q - p);
+    return p + x * (q - p);
   };
-  const auto sheet = [&](const Node* node) {
-    const Row p = row(node), q = row(node + ratios);
-    return p + fy * (q - p);
+  const auto along_y = [&](const Node* node) {
+    const Row p = along_x(node), q = along_x(node + row);
+    return p + y * (q - p);
   };
-  const Row low = sheet(corner), high = sheet(corner + ratios * ratios);
-  const Row c = (low + fz * (high - low)) * (1 / std::sqrt(z));
-  coarse = corner->coarse != 0;
+  const Row low = along_y(corner), high = along_y(corner + sheet);
+  const Row c = (low + z * (high - low)) * (1 / std::sqrt(largest));
   return {c[0], c[1], c[2]};
+}
+
+/// What two threads make of a cell at once is the same: one of the two is kept.
+const RgbTable::Divided& RgbTable::divided(const Node* nodes, const Place& place) {
+  std::atomic<const Divided*>& slot = divided_[place.index()];
+  if (const Divided* there = slot.load(std::memory_order_acquire)) return *there;
+  std::unique_ptr<Divided> made = divide(nodes, place);
+  const Divided* kept = nullptr;
+  if (slot.compare_exchange_strong(kept, made.get(), std::memory_order_acq_rel)) kept = made.release();
+  return *kept;
+}
+
+std::unique_ptr<RgbTable::Divided> RgbTable::divide(const Node* nodes, const Place& place) const {
+  auto made = std::make_unique<Divided>();
+  const Node* const corner = nodes + place.index();
+  const double low = level_z(place.level), high = level_z(place.level + 1);
+  const auto rgb_at = [&](double x, double y, double z) {
+    return rgb_of(place.largest, low + z * (high - low), node_ratio(place.ix + x), node_ratio(place.iy + y));
+  };
+  for (int k = 0; k < divided_nodes; ++k) {
+    const double x = (k % side) / double(parts), y = (k / side % side) / double(parts), z = (k / (side * side)) / double(parts);
+    const std::array<double, 3> rgb = rgb_at(x, y, z);
+    const double largest = rgb[size_t(place.largest)];
+    const RgbCoefficients found =
+        between(corner, ratios, size_t(ratios * ratios), float(x), float(y), float(z), float(largest));
+    Coefficients c{double(found.c0), double(found.c1), double(found.c2)};
+    fit_->solve(rgb, c, 2e-5, 20);
+    for (size_t i = 0; i < 3; ++i) made->nodes[k].c[i] = float(c[i] * std::sqrt(largest));
+  }
+  for (int k = 0; k < divided_nodes; ++k) {
+    const int ix = k % side, iy = k / side % side, iz = k / (side * side);
+    if (ix == parts || iy == parts || iz == parts) continue;
+    const std::array<double, 3> rgb = rgb_at((ix + 0.5) / parts, (iy + 0.5) / parts, (iz + 0.5) / parts);
+    const RgbCoefficients found =
+        between(&made->nodes[k], side, side * side, 0.5f, 0.5f, 0.5f, float(rgb[size_t(place.largest)]));
+    Coefficients c{double(found.c0), double(found.c1), double(found.c2)};
+    if (fit_->solve(rgb, c, 0, 0) > improved_error) made->nodes[k].coarse = 1;
+  }
+  return made;
 }
 
 RgbCoefficients RgbTable::find(const RgbSpace& space, float r, float g, float b) {
@@ -116,15 +169,34 @@ RgbCoefficients RgbTable::find(const RgbSpace& space, float r, float g, float b)
     for (float& x : rgb) x = 1 - x;
   // Black, and what has no finite reciprocal; bright ones have 1 - rgb well above that.
   if (!bright && largest < std::numeric_limits<float>::min()) return {0, 0, -1e9f};
-  bool coarse = false;
-  RgbCoefficients found = interpolate(nodes, rgb, coarse);
-  if (coarse) {
-    Coefficients c{double(found.c0), double(found.c1), double(found.c2)};
-    fit_->solve({double(rgb[0]), double(rgb[1]), double(rgb[2])}, c, improved_error, 30);
-    found = {float(c[0]), float(c[1]), float(c[2])};
-  }
+  const RgbCoefficients found = look_up(nodes, rgb);
   if (bright) return {-found.c0, -found.c1, -found.c2};
   return found;
+}
+
+/// Of a colour whose largest and smallest component add up to 1 at most.
+RgbCoefficients RgbTable::look_up(const Node* nodes, const float rgb[3]) {
+  const Place place = place_of(rgb);
+  const Node* const corner = nodes + place.index();
+  const float z = rgb[place.largest];
+  if (corner->coarse == 0) return between(corner, ratios, size_t(ratios * ratios), place.x, place.y, place.z, z);
+  const Divided& cell = divided(nodes, place);
+  // Below the darkest level the whole table goes by z^-1/2, as does its lowest level here.
+  const float at[3] = {
+      place.x * parts, place.y * parts,
+      clamp((z - float(level_z(place.level))) / float(level_z(place.level + 1) - level_z(place.level)), 0, 1) * parts};
+  int of[3];
+  float within[3];
+  for (int i = 0; i < 3; ++i) {
+    of[i] = std::clamp(int(at[i]), 0, parts - 1);
+    within[i] = at[i] - float(of[i]);
+  }
+  const Node* const inner = &cell.nodes[(of[2] * side + of[1]) * side + of[0]];
+  const RgbCoefficients found = between(inner, side, side * side, within[0], within[1], within[2], z);
+  if (inner->coarse == 0) return found;
+  Coefficients c{double(found.c0), double(found.c1), double(found.c2)};
+  fit_->solve({double(rgb[0]), double(rgb[1]), double(rgb[2])}, c, improved_error, 30);
+  return {float(c[0]), float(c[1]), float(c[2])};
 }
 
 RgbCoefficients rgb_coefficients(const RgbSpace& space, float r, float g, float b) { return space.table->find(space, r, g, b); }

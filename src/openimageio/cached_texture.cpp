@@ -100,12 +100,7 @@ std::shared_ptr<const CachedTexture> CachedTexture::open(const std::string& path
   return texture;
 }
 
-void CachedTexture::read(const std::string& key) {
-  OIIO::ImageCache& cache = image_cache();
-  name_ = OIIO::ustring(key);
-  OIIO::ImageSpec spec;
-  if (!cache.add_file(name_, make_linear_input) || !cache.get_imagespec(name_, spec)) throw Error(cache.geterror());
-  handle_ = cache.get_image_handle(name_);
+void CachedTexture::read_header(const OIIO::ImageSpec& spec) {
   channels_ = spec.nchannels;
   left_ = spec.full_x;
   top_ = spec.full_y;
@@ -119,6 +114,38 @@ void CachedTexture::read(const std::string& key) {
   if (area > 0x1p26 && area > 16.0 * pixels_x_ * pixels_y_) throw Error("its display window is far larger than what it shows");
   levels_.reserve(32);  // as many as there can be: lookups in the first go on while the others are made
   levels_.push_back({width, height, {}});
+}
+
+/// Keeps all texels, if they fit; false: they do not.
+bool CachedTexture::keep(const std::string& key) {
+  const std::unique_ptr<OIIO::ImageInput> input(make_linear_input());
+  OIIO::ImageSpec spec;
+  if (!input->open(key, spec)) throw Error(input->geterror());
+  read_header(spec);
+  const size_t row = size_t(pixels_x_) * size_t(channels_), count = row * size_t(pixels_y_);
+  if (!KeptTexels::allowed(count)) return false;
+  try {
+    std::vector<float> values(row);
+    auto kept = std::make_unique<KeptTexels>(count);
+    for (int y = 0; y < pixels_y_; ++y) {
+      if (!input->read_native_scanline(0, 0, spec.y + y, 0, values.data())) throw Error(input->geterror());
+      for (const float value : values) largest_ = value > largest_ ? value : largest_;
+      kept->add(values.data(), row);
+    }
+    kept_ = std::move(kept);
+    kept_whole_ = begin_x_ == 0 && begin_y_ == 0 && pixels_x_ == levels_[0].width && pixels_y_ == levels_[0].height;
+  } catch (const std::bad_alloc&) {  // other things take the memory
+    return false;
+  }
+  return true;
+}
+
+void CachedTexture::read(const std::string& key) {
+  if (keep(key)) return;
+  OIIO::ImageCache& cache = image_cache();
+  name_ = OIIO::ustring(key);
+  if (!cache.add_file(name_, make_linear_input)) throw Error(cache.geterror());
+  handle_ = cache.get_image_handle(name_);
   // All of it, so that a damaged file is found now.
   const size_t row = size_t(pixels_x_) * size_t(channels_);
   const auto use = [&](int begin, int end, const float* strip) {
@@ -132,12 +159,16 @@ template <class Use>
 bool CachedTexture::read_rows(Use use) const {
   constexpr int rows = 64;
   const int left = left_ + begin_x_, top = top_ + begin_y_;
-  std::vector<float> strip(size_t(pixels_x_) * size_t(channels_) * rows);
+  const size_t row = size_t(pixels_x_) * size_t(channels_);
+  std::vector<float> strip(row * rows);
   for (int y = 0; y < pixels_y_; y += rows) {
     const int end = std::min(y + rows, pixels_y_);
-    if (!image_cache().get_pixels(name_, 0, 0, left, left + pixels_x_, top + y, top + end, 0, 1, OIIO::TypeDesc::FLOAT,
-                                  strip.data()))
+    if (kept_) {
+      for (size_t i = 0; i < row * size_t(end - y); ++i) strip[i] = (*kept_)[row * size_t(y) + i];
+    } else if (!image_cache().get_pixels(name_, 0, 0, left, left + pixels_x_, top + y, top + end, 0, 1, OIIO::TypeDesc::FLOAT,
+                                         strip.data())) {
       return false;
+    }
     use(y, end, strip.data());
   }
   return true;

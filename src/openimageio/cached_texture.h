@@ -1,5 +1,5 @@
 #pragma once
-// Textures whose texels stay in OpenImageIO's cache.
+// Textures whose texels stay in memory, or in OpenImageIO's cache.
 
 #include <OpenImageIO/imagecache.h>
 
@@ -9,11 +9,14 @@
 #include <vector>
 
 #include "components/maps/image_texture.h"
+#include "kept_texels.h"
 
 namespace etendue {
 
-/// Its texels stay in OpenImageIO's cache, which reads them from the file again when memory is short; levels of averages, each
-/// half as wide and half as high as the one before, are made when the first mean is asked for, and kept.
+/// Its texels are kept as long as all kept ones fit into half of the machine's memory. Those of further images stay in
+/// OpenImageIO's cache, which reads them from the file again when memory is short. (A lookup in kept ones takes a fifth of the
+/// time of one in the cache, whose tiles are found by hashing and counted.) Levels of averages, each half as wide and half as
+/// high as the one before, are made when the first mean is asked for, and kept.
 class CachedTexture final : public ImageTexture {
  public:
   /// See ImageTexture::open; errors tell the reason alone.
@@ -37,13 +40,18 @@ class CachedTexture final : public ImageTexture {
   };
 
   void read(const std::string& key);
+  void read_header(const OIIO::ImageSpec&);
+  bool keep(const std::string& key);
   /// Passes over the pixels that are there, some rows at a time: use(first row, end, their numbers). False: the file is bad.
   template <class Use>
   bool read_rows(Use use) const;
   void make_levels() const;
+  bool add_kept_between(float x, float y, Wrap, float* out) const;
   /// The mean along a line of `length` texels, from -half_line to half_line, of what level `detail` shows.
   void line(Point2 at, Vector2 half_line, float length, float detail, Wrap, float* out) const;
 
+  std::unique_ptr<KeptTexels> kept_;  // null: in the cache
+  bool kept_whole_ = false;           // kept, and there is a pixel for each place of the display window
   OIIO::ImageCache::ImageHandle* handle_ = nullptr;
   int channels_ = 3;
   float largest_ = 0;

@@ -1,5 +1,7 @@
 // Means of an ImageMap over ellipses, on images of any size.
 
+#include <random>
+
 #include "components/maps/footprint.h"
 #include "etendue/object_map.h"
 #include "support/component_test_support.h"
@@ -207,6 +209,28 @@ TEST(ImageFilter, KnowsPicturesThatAreSmallerThanTheirFrame) {
       }
   }
   EXPECT_NEAR(image.map()->scalar(seen(0, 0, 1000)), 80.0f * 90 / (150 * 130), 1e-5f);
+}
+
+/// Images of few different numbers are kept as bytes; one that turns out to have more becomes floats on the way.
+TEST(ImageTexels, AreTheFilesHoweverManyDifferentNumbers) {
+  for (const int different : {1, 3, 255, 256, 257, 4000}) {
+    const GreyImage image("texels" + std::to_string(different), 80, 50,
+                          [&](int x, int y) { return 0.001f * float((x + 80 * y) % different * (x + 80 * y) % different); });
+    for (const char* wrap : {"repeat", "clamp", "black", "mirror"}) {
+      const Ref<ObjectMap> exact = image.map(wrap, "nearest"), between = image.map(wrap);
+      for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+          const float u = (float(x) + 0.5f) / float(image.width), v = 1 - (float(y) + 0.5f) / float(image.height);
+          EXPECT_EQ(exact->scalar(seen(u, v, 0)), image.texels[size_t(y * image.width + x)]) << different << " " << wrap;
+        }
+      std::mt19937 random(7);
+      std::uniform_real_distribution<float> inside(0.02f, 0.98f);
+      for (int i = 0; i < 100; ++i) {
+        const float u = inside(random), v = inside(random);
+        EXPECT_NEAR(double(between->scalar(seen(u, v, 0))), image.at(double(u), double(v)), 1e-3) << different << " " << wrap;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct ImportOptions {
 struct LoadOptions {
   std::vector<std::pair<std::string, std::string>> defines;  ///< `-D name=value`: replace `param`s
   bool allow_files = true;  ///< false: include, plugin and spectrum("file") are errors, for texts from strangers
-  ImportOptions import;
+  ImportOptions import = {};
 };
 
 /// Any one component, such as "Sphere { radius: 2 m }", which definitions may precede; for tests and tools.
