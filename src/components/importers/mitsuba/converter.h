@@ -9,6 +9,7 @@
 #include "element.h"
 #include "etendue/importer.h"
 #include "etendue/render/job.h"
+#include "values.h"
 
 namespace etendue::mitsuba {
 
