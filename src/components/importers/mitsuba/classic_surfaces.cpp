@@ -40,7 +40,8 @@ Converter::Surface Converter::classic(const Element& e, Uv uv, const std::string
   } else {
     const std::string variant = e.string("variant", "balanced");
     if (variant != "balanced")
-      importing_.inexact(fmt::format("the variant '{}' of Ward's model is taken for 'balanced'", variant), e.location_of("variant"));
+      importing_.inexact(fmt::format("the variant '{}' of Ward's model is taken for 'balanced'", variant),
+                         e.location_of("variant"));
     const Value both = scalar(e, "alpha", 0.1, uv);
     set(*shader, "roughness_u", e.has("alpha_u") ? scalar(e, "alpha_u", 0.1, uv) : both);
     set(*shader, "roughness_v", e.has("alpha_v") ? scalar(e, "alpha_v", 0.1, uv) : both);

@@ -23,8 +23,7 @@ Ref<Job> Converter::job(const Element& scene) {
   Ref<Component> job = importing_.make("Job", scene.at);
   std::vector<const Element*> sensors = scene.all("sensor");
   const Element* sensor = sensors.empty() ? nullptr : sensors.front();
-  if (sensors.size() > 1)
-    importing_.inexact("the scene has several sensors: the first counts", sensors[1]->at);
+  if (sensors.size() > 1) importing_.inexact("the scene has several sensors: the first counts", sensors[1]->at);
 
   Ref<Component> objects = importing_.make("EmbreeScene", scene.at);
   Value::List list;
@@ -106,8 +105,8 @@ void Converter::note_unread(const Element& scene) {
       } else {
         std::vector<std::string> known = e.known;
         std::erase(known, p.name);
-        importing_.inexact(
-            fmt::format("'{}' of {} '{}' is not used{}", p.name, e.tag, e.type, suggestion(p.name, known)), p.at);
+        importing_.inexact(fmt::format("'{}' of {} '{}' is not used{}", p.name, e.tag, e.type, suggestion(p.name, known)),
+                           p.at);
       }
     }
   }

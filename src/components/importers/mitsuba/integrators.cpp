@@ -10,10 +10,35 @@ namespace etendue::mitsuba {
 
 namespace {
 
-const std::vector<std::string> known_integrators = {
-    "path",   "volpath",  "volpathmis", "volpath_simple", "direct", "bdpt",   "ptracer",    "sppm",    "ppm",       "photonmapper",
-    "pssmlt", "mlt",      "erpt",       "vpl",            "aov",    "moment", "depth",      "ao",      "prb",       "prbvolpath",
-    "prb_basic", "prb_projective", "direct_projective", "irrcache", "adaptive", "multichannel", "field", "stokes", "guiding"};
+const std::vector<std::string> known_integrators = {"path",
+                                                    "volpath",
+                                                    "volpathmis",
+                                                    "volpath_simple",
+                                                    "direct",
+                                                    "bdpt",
+                                                    "ptracer",
+                                                    "sppm",
+                                                    "ppm",
+                                                    "photonmapper",
+                                                    "pssmlt",
+                                                    "mlt",
+                                                    "erpt",
+                                                    "vpl",
+                                                    "aov",
+                                                    "moment",
+                                                    "depth",
+                                                    "ao",
+                                                    "prb",
+                                                    "prbvolpath",
+                                                    "prb_basic",
+                                                    "prb_projective",
+                                                    "direct_projective",
+                                                    "irrcache",
+                                                    "adaptive",
+                                                    "multichannel",
+                                                    "field",
+                                                    "stokes",
+                                                    "guiding"};
 
 constexpr int without_end = 100000;  // segments; Russian roulette ends paths long before
 
@@ -30,8 +55,8 @@ Ref<Component> Converter::renderer(const Element* integrator, const Element* sam
   }
   if (sampler) {
     const Reading reading(*sampler);
-    static const std::vector<std::string> known = {"independent", "stratified", "multijitter", "orthogonal", "ldsampler",
-                                                   "halton",      "hammersley", "sobol"};
+    static const std::vector<std::string> known = {"independent", "stratified", "multijitter", "orthogonal",
+                                                   "ldsampler",   "halton",     "hammersley",  "sobol"};
     if (std::ranges::find(known, sampler->type) == known.end()) fail_unknown(*sampler, known);
     set_member(*made, "samples", double(sampler->integer("sample_count", 4)), sampler->location_of("sample_count"));
     if (sampler->type == "independent") set_member(*made, "sampler", make("IndependentSampler", *sampler), sampler->at);
@@ -89,13 +114,19 @@ Ref<Component> Converter::light_transport(const Element& e) {
     return made;
   }
   const char* renderer = "PathTracer";
-  if (t == "bdpt") renderer = "BidirectionalPathTracer";
-  else if (t == "ptracer") renderer = "LightTracer";
-  else if (t == "sppm" || t == "ppm") renderer = "ProgressivePhotonMapper";
-  else if (t == "photonmapper") renderer = "PhotonMapper";
-  else if (t == "pssmlt") renderer = "PrimarySampleMetropolis";
-  else if (t == "mlt" || t == "erpt") renderer = "PathSpaceMetropolis";
-  static const std::vector<std::string> plain = {"path",     "volpath",   "volpathmis",     "volpath_simple", "prb",
+  if (t == "bdpt")
+    renderer = "BidirectionalPathTracer";
+  else if (t == "ptracer")
+    renderer = "LightTracer";
+  else if (t == "sppm" || t == "ppm")
+    renderer = "ProgressivePhotonMapper";
+  else if (t == "photonmapper")
+    renderer = "PhotonMapper";
+  else if (t == "pssmlt")
+    renderer = "PrimarySampleMetropolis";
+  else if (t == "mlt" || t == "erpt")
+    renderer = "PathSpaceMetropolis";
+  static const std::vector<std::string> plain = {"path",      "volpath",    "volpathmis",     "volpath_simple", "prb",
                                                  "prb_basic", "prbvolpath", "prb_projective", "bdpt",           "ptracer"};
   if (std::ranges::find(plain, t) == plain.end())
     inexact(e, fmt::format("integrator '{}' becomes {}, whose other settings are its defaults", t, renderer));

@@ -12,9 +12,9 @@ namespace etendue::mitsuba {
 
 namespace {
 
-const std::vector<std::string> known_emitters = {"area",     "point",    "spot", "directional", "directionalarea", "constant",
-                                                 "envmap",   "projector", "sky", "sun",         "sunsky",          "collimated",
-                                                 "volumelight", "timed_sunsky"};
+const std::vector<std::string> known_emitters = {"area",     "point",      "spot",        "directional", "directionalarea",
+                                                 "constant", "envmap",     "projector",   "sky",         "sun",
+                                                 "sunsky",   "collimated", "volumelight", "timed_sunsky"};
 
 Numbers three(const DoubleVector3& v) { return {{v.x, v.y, v.z}, 1, Dimension::none}; }
 
@@ -95,7 +95,8 @@ Ref<SceneObject> Converter::emitter(const Element& e) {
   } else if (e.type == "collimated") {
     object = beam(e);
   } else if (e.type == "area") {
-    throw Error("an 'area' emitter stands inside a shape", e.at);
+    if (e.id.empty()) throw Error("an 'area' emitter stands inside a shape", e.at);
+    e.read = false;  // shapes refer to it
   } else {
     inexact(e, fmt::format("emitter '{}' is not known here: it is left out", e.type));
   }

@@ -22,8 +22,8 @@ void Converter::set_phase(Component& volume, const Element& e) {
     if (phase->type == "hg" || phase->type == "isotropic") {
       if (phase->type == "hg") set_member(volume, "anisotropy", phase->number("g", 0.8), phase->at);
     } else {
-      inexact(*phase, fmt::format("phase function '{}' has no counterpart here: light scatters alike in all directions",
-                                  phase->type));
+      inexact(*phase,
+              fmt::format("phase function '{}' has no counterpart here: light scatters alike in all directions", phase->type));
     }
   }
 }

@@ -12,8 +12,7 @@ namespace etendue::mitsuba {
 Ref<Component> Converter::mesh(const Element& e, Uv& uv) {
   Ref<Component> mesh = make("TriangleMesh", e);
   set_member(*mesh, "file", file(e), e.location_of("filename"));
-  if (e.type == "serialized")
-    set_member(*mesh, "number", double(e.integer("shape_index", 0)), e.location_of("shape_index"));
+  if (e.type == "serialized") set_member(*mesh, "number", double(e.integer("shape_index", 0)), e.location_of("shape_index"));
   // Normals that a file lacks are found from the triangles, unless faces are to be flat.
   set_member(*mesh, e.boolean("face_normals", false) ? "flat" : "smooth", true, e.at);
   if (e.has("max_smooth_angle")) {
@@ -48,7 +47,8 @@ Strands read_strands(const std::string& path, Location at, bool with_radius, dou
   size_t points = 0, line_number = 0;
   const auto end_strand = [&] {
     if (points > 0 && points < fewest)
-      throw Error(fmt::format("'{}', line {}: a strand has {} points, but {} are needed", path, line_number, points, fewest), at);
+      throw Error(fmt::format("'{}', line {}: a strand has {} points, but {} are needed", path, line_number, points, fewest),
+                  at);
     if (points > 0) all.counts.values.push_back(double(points));
     points = 0;
   };

@@ -16,13 +16,14 @@ struct NamedIndex {
   double index;
 };
 // As Mitsuba has them, so that scenes look as they do there: "Mitsuba 3 documentation", plugin "dielectric".
-constexpr NamedIndex indices[] = {
-    {"vacuum", 1.0},         {"helium", 1.00004},       {"hydrogen", 1.00013},     {"air", 1.000277},
-    {"carbon dioxide", 1.00045}, {"water", 1.3330},     {"acetone", 1.36},         {"ethanol", 1.361},
-    {"carbon tetrachloride", 1.461}, {"glycerol", 1.4729}, {"benzene", 1.501},     {"silicone oil", 1.52045},
-    {"bromine", 1.661},      {"water ice", 1.31},       {"fused quartz", 1.458},   {"pyrex", 1.470},
-    {"acrylic glass", 1.49}, {"polypropylene", 1.49},   {"bk7", 1.5046},           {"sodium chloride", 1.544},
-    {"amber", 1.55},         {"pet", 1.5750},           {"diamond", 2.419}};
+constexpr NamedIndex indices[] = {{"vacuum", 1.0},      {"helium", 1.00004},         {"hydrogen", 1.00013},
+                                  {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.3330},
+                                  {"acetone", 1.36},    {"ethanol", 1.361},          {"carbon tetrachloride", 1.461},
+                                  {"glycerol", 1.4729}, {"benzene", 1.501},          {"silicone oil", 1.52045},
+                                  {"bromine", 1.661},   {"water ice", 1.31},         {"fused quartz", 1.458},
+                                  {"pyrex", 1.470},     {"acrylic glass", 1.49},     {"polypropylene", 1.49},
+                                  {"bk7", 1.5046},      {"sodium chloride", 1.544},  {"amber", 1.55},
+                                  {"pet", 1.5750},      {"diamond", 2.419}};
 
 }  // namespace
 
@@ -76,8 +77,7 @@ Converter::Surface Converter::dielectric(const Element& e, Uv uv, const std::str
   } else {
     set_member(*shader, "ior", inside, e.location_of("int_ior"));
     set_member(*shader, "exterior", outside, e.location_of("ext_ior"));
-    if (e.type == "roughdielectric")
-      set_roughness(*shader, e, uv, 0.1);
+    if (e.type == "roughdielectric") set_roughness(*shader, e, uv, 0.1);
   }
   if (e.has("specular_reflectance")) set(*shader, "reflection_tint", color(e, "specular_reflectance", 1, uv));
   if (e.has("specular_transmittance")) set(*shader, "transmission_tint", color(e, "specular_transmittance", 1, uv));
@@ -120,13 +120,14 @@ Converter::Surface Converter::conductor(const Element& e, Uv uv, const std::stri
     const std::string element = material.substr(0, material.find('_'));
     try {
       set_member(*shader, "ior", metal_index(element), e.location_of("material"));
-      importing_.inexact(fmt::format("the optical constants of '{}' are those of metal(\"{}\"), from another source", material,
-                                     element),
-                         e.location_of("material"));
+      importing_.inexact(
+          fmt::format("the optical constants of '{}' are those of metal(\"{}\"), from another source", material, element),
+          e.location_of("material"));
     } catch (const Error&) {
       set_member(*shader, "ior", metal_index("Cr"), e.location_of("material"));
-      importing_.inexact(fmt::format("the optical constants of '{}' are not known here: those of chromium stand for them", material),
-                         e.location_of("material"));
+      importing_.inexact(
+          fmt::format("the optical constants of '{}' are not known here: those of chromium stand for them", material),
+          e.location_of("material"));
     }
   }
   set(*shader, "color", color(e, "specular_reflectance", 1, uv));

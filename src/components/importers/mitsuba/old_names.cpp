@@ -26,8 +26,8 @@ std::string modern_tag(const std::string& tag) {
 
 std::string modern_type(const std::string& tag, const std::string& type) {
   static constexpr std::pair<const char*, const char*> bsdfs[] = {
-      {"lambertian", "diffuse"},         {"microfacet", "roughplastic"}, {"roughglass", "roughdielectric"},
-      {"roughmetal", "roughconductor"},  {"composite", "mixturebsdf"},   {"bump", "bumpmap"},
+      {"lambertian", "diffuse"},        {"microfacet", "roughplastic"}, {"roughglass", "roughdielectric"},
+      {"roughmetal", "roughconductor"}, {"composite", "mixturebsdf"},   {"bump", "bumpmap"},
       {"difftrans", "difftrans"},
   };
   static constexpr std::pair<const char*, const char*> textures[] = {{"ldrtexture", "bitmap"}, {"exrtexture", "bitmap"}};

@@ -50,9 +50,9 @@ std::string SceneReader::with_parameters(const std::string& text, Location at) {
     if (!value) {
       std::vector<std::string> names;
       for (const auto& [name, unused] : defaults_) names.push_back(name);
-      throw Error(fmt::format("the parameter '${}' has no value: neither <default> nor -D gives one{}", word,
-                              suggestion(word, names)),
-                  at);
+      throw Error(
+          fmt::format("the parameter '${}' has no value: neither <default> nor -D gives one{}", word, suggestion(word, names)),
+          at);
     }
     result += *value;
     const size_t rest = dollar + 1 + length;
@@ -72,7 +72,8 @@ void SceneReader::resolve() {
       if (!nested || nested->element) continue;
       const auto found = by_id_.find(nested->reference);
       if (found == by_id_.end())
-        throw Error(fmt::format("there is nothing of the id '{}'{}", nested->reference, suggestion(nested->reference, ids)), p.at);
+        throw Error(fmt::format("there is nothing of the id '{}'{}", nested->reference, suggestion(nested->reference, ids)),
+                    p.at);
       nested->element = found->second;
     }
 }

@@ -12,16 +12,16 @@ namespace etendue::mitsuba {
 
 namespace {
 
-constexpr size_t deepest = 100;          // plugins in plugins
-constexpr size_t deepest_include = 16;   // files that include files
-constexpr size_t most_includes = 10000;  // of one scene
+constexpr size_t deepest = 100;                    // plugins in plugins
+constexpr size_t deepest_include = 16;             // files that include files
+constexpr size_t most_includes = 10000;            // of one scene
 constexpr size_t most_included = size_t(1) << 30;  // [bytes] of all files together
 
 const std::vector<std::string> plugin_tags = {"integrator", "sensor", "film",   "sampler", "rfilter", "bsdf",      "texture",
                                               "emitter",    "shape",  "medium", "phase",   "volume",  "subsurface"};
-const std::vector<std::string> value_tags = {"float",  "integer", "boolean",  "string",    "vector",    "point",
-                                             "rgb",    "srgb",    "spectrum", "blackbody", "transform", "animation",
-                                             "ref",    "alias",   "include",  "default",   "path"};
+const std::vector<std::string> value_tags = {"float", "integer", "boolean",  "string",    "vector",    "point",
+                                             "rgb",   "srgb",    "spectrum", "blackbody", "transform", "animation",
+                                             "ref",   "alias",   "include",  "default",   "path"};
 
 bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
@@ -104,14 +104,22 @@ void SceneReader::read_child(const pugi::xml_node& node, Element& into) {
   }
   const std::string name = modern_name(required(node, "name").text);
   const auto set = [&](auto value) { add(into, {name, at(node), std::move(value)}); };
-  if (tag == "float") set(parse_number(required(node, "value")));
-  else if (tag == "integer") set(parse_integer(required(node, "value")));
-  else if (tag == "boolean") set(parse_boolean(required(node, "value")));
-  else if (tag == "string") set(required(node, "value").text);
-  else if (tag == "vector" || tag == "point") set(parse_vector(node, attributes(), places(), 0));
-  else if (tag == "rgb" || tag == "srgb") set(parse_rgb(required(node, "value"), tag == "srgb"));
-  else if (tag == "transform") set(parse_transform(node, attributes(), places()));
-  else set(read_spectrum(node, into));
+  if (tag == "float")
+    set(parse_number(required(node, "value")));
+  else if (tag == "integer")
+    set(parse_integer(required(node, "value")));
+  else if (tag == "boolean")
+    set(parse_boolean(required(node, "value")));
+  else if (tag == "string")
+    set(required(node, "value").text);
+  else if (tag == "vector" || tag == "point")
+    set(parse_vector(node, attributes(), places(), 0));
+  else if (tag == "rgb" || tag == "srgb")
+    set(parse_rgb(required(node, "value"), tag == "srgb"));
+  else if (tag == "transform")
+    set(parse_transform(node, attributes(), places()));
+  else
+    set(read_spectrum(node, into));
   if (tag != "transform") {
     expect_attributes(node, {"name", "value", "x", "y", "z", "filename", "temperature", "scale", "intent"});
     if (node.first_child()) throw Error(fmt::format("<{}> holds nothing", tag), at(node.first_child()));

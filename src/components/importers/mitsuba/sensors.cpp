@@ -11,9 +11,9 @@ namespace etendue::mitsuba {
 
 namespace {
 
-const std::vector<std::string> known_sensors = {"perspective", "thinlens",       "orthographic", "radiancemeter", "irradiancemeter",
-                                                "fluencemeter", "telecentric",   "spherical",    "distant",       "batch",
-                                                "perspective_rdist"};
+const std::vector<std::string> known_sensors = {"perspective",     "thinlens",     "orthographic",     "radiancemeter",
+                                                "irradiancemeter", "fluencemeter", "telecentric",      "spherical",
+                                                "distant",         "batch",        "perspective_rdist"};
 
 Numbers three(double x, double y, double z) { return {{x, y, z}, 1, Dimension::none}; }
 
@@ -134,7 +134,8 @@ Ref<Component> Converter::image(const Element* film, int& width, int& height) {
       const double x = double(film->integer("crop_offset_x", 0)), y = double(film->integer("crop_offset_y", 0));
       set_member(*image, "crop",
                  Numbers{{x, y, x + double(film->integer("crop_width", w)), y + double(film->integer("crop_height", h))},
-                         1, Dimension::none},
+                         1,
+                         Dimension::none},
                  film->location_of("crop_width"));
     }
     if (const Ref<Component> f = filter(*film)) set_member(*image, "filter", f, film->at);
@@ -186,14 +187,17 @@ void Converter::add_outputs(Component& job, const Element* film) {
   static const std::vector<std::string> known_films = {"hdrfilm", "ldrfilm", "specfilm", "mfilm", "tiledhdrfilm"};
   if (!film) return;
   if (std::ranges::find(known_films, film->type) == known_films.end()) fail_unknown(*film, known_films);
-  film->ignore({"sample_border", "high_quality_edges", "banner", "label", "pixel_format", "attach_log", "compensate", "variable"});
+  film->ignore(
+      {"sample_border", "high_quality_edges", "banner", "label", "pixel_format", "attach_log", "compensate", "variable"});
   Value::List outputs;
   if (film->type == "ldrfilm") {
     Ref<Component> tone_map = make("ExposureToneMap", *film, "");
     if (film->has("exposure")) set_member(*tone_map, "stops", film->number("exposure", 0), film->location_of("exposure"));
     const double gamma = film->number("gamma", -1);
-    if (gamma == 2.2) set_member(*tone_map, "transfer", "gamma2.2", film->location_of("gamma"));
-    else if (gamma == 1) set_member(*tone_map, "transfer", "linear", film->location_of("gamma"));
+    if (gamma == 2.2)
+      set_member(*tone_map, "transfer", "gamma2.2", film->location_of("gamma"));
+    else if (gamma == 1)
+      set_member(*tone_map, "transfer", "linear", film->location_of("gamma"));
     else if (gamma > 0)
       importing_.inexact(fmt::format("a gamma of {} is taken for sRGB's", gamma), film->location_of("gamma"));
     if (film->string("tonemap_method", "gamma") != "gamma")
@@ -210,7 +214,8 @@ void Converter::add_outputs(Component& job, const Element* film) {
     const std::string format = film->string("file_format", "openexr");
     Ref<Component> output = make(format == "rgbe" ? "HdrOutput" : "ExrOutput", *film, "");
     const std::string component = film->string("component_format", "float16");
-    if (format != "rgbe" && component == "float16") set_member(*output, "precision", "half", film->location_of("component_format"));
+    if (format != "rgbe" && component == "float16")
+      set_member(*output, "precision", "half", film->location_of("component_format"));
     outputs.emplace_back(output, film->at);
   }
   set(job, "outputs", Value(std::move(outputs), film->at));

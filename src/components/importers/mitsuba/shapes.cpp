@@ -12,9 +12,9 @@ namespace etendue::mitsuba {
 namespace {
 
 const std::vector<std::string> known_shapes = {
-    "obj",        "ply",  "serialized",   "sphere",      "rectangle", "disk",    "cylinder", "cube",        "shapegroup",
-    "instance",   "hair", "bsplinecurve", "linearcurve", "merge",     "sdfgrid", "ellipsoids", "heightfield", "deformable",
-    "blender",    "ellipsoidsmesh", "batch"};
+    "obj",     "ply",        "serialized",  "sphere",     "rectangle",    "disk",           "cylinder",
+    "cube",    "shapegroup", "instance",    "hair",       "bsplinecurve", "linearcurve",    "merge",
+    "sdfgrid", "ellipsoids", "heightfield", "deformable", "blender",      "ellipsoidsmesh", "batch"};
 
 Numbers three(double x, double y, double z) { return {{x, y, z}, 1, Dimension::none}; }
 

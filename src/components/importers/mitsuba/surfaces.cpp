@@ -10,12 +10,38 @@ namespace etendue::mitsuba {
 
 namespace {
 
-const std::vector<std::string> known_bsdfs = {
-    "diffuse",    "roughdiffuse", "dielectric",  "thindielectric", "roughdielectric", "conductor", "roughconductor",
-    "plastic",    "roughplastic", "coating",     "roughcoating",   "mask",            "twosided",  "blendbsdf",
-    "mixturebsdf", "bumpmap",     "normalmap",   "phong",          "ward",            "difftrans", "principled",
-    "principledthin", "null",     "hair",        "measured",       "hk",              "irawan",    "pplastic",
-    "polarizer",  "retarder",     "circular",    "measured_polarized"};
+const std::vector<std::string> known_bsdfs = {"diffuse",
+                                              "roughdiffuse",
+                                              "dielectric",
+                                              "thindielectric",
+                                              "roughdielectric",
+                                              "conductor",
+                                              "roughconductor",
+                                              "plastic",
+                                              "roughplastic",
+                                              "coating",
+                                              "roughcoating",
+                                              "mask",
+                                              "twosided",
+                                              "blendbsdf",
+                                              "mixturebsdf",
+                                              "bumpmap",
+                                              "normalmap",
+                                              "phong",
+                                              "ward",
+                                              "difftrans",
+                                              "principled",
+                                              "principledthin",
+                                              "null",
+                                              "hair",
+                                              "measured",
+                                              "hk",
+                                              "irawan",
+                                              "pplastic",
+                                              "polarizer",
+                                              "retarder",
+                                              "circular",
+                                              "measured_polarized"};
 
 }  // namespace
 
@@ -117,9 +143,9 @@ Converter::Surface Converter::mixture(const Element& e, Uv uv, const std::string
   for (size_t i = 0; i < count; ++i) {
     share += weights[i];
     if (weights[i] == 0) continue;
-    so_far = weights[i] == share ? parts[i].shader
-                                 : mixed(so_far, parts[i].shader, Value(Number{weights[i] / share}, e.at),
-                                         i + 1 == count ? name : "");
+    so_far = weights[i] == share
+                 ? parts[i].shader
+                 : mixed(so_far, parts[i].shader, Value(Number{weights[i] / share}, e.at), i + 1 == count ? name : "");
   }
   return {so_far, any};
 }

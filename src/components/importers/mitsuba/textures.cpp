@@ -13,8 +13,8 @@ namespace etendue::mitsuba {
 namespace {
 
 const std::vector<std::string> known_textures = {
-    "bitmap",  "checkerboard", "mesh_attribute", "vertexcolors", "scale",     "rawconstant", "srgb",   "uniform", "d65",
-    "blackbody", "regular",    "irregular",      "gridtexture",  "wireframe", "curvature",   "volume", "uv"};
+    "bitmap",    "checkerboard", "mesh_attribute", "vertexcolors", "scale",     "rawconstant", "srgb",   "uniform", "d65",
+    "blackbody", "regular",      "irregular",      "gridtexture",  "wireframe", "curvature",   "volume", "uv"};
 
 Numbers pair(double x, double y) { return {{x, y}, 1, Dimension::none}; }
 
@@ -114,9 +114,12 @@ Value Converter::bitmap(const Element& e, Uv uv) {
   if (e.boolean("raw", false)) set_member(*image, "transfer", "linear", e.location_of("raw"));
   if (e.has("gamma")) {
     const double gamma = e.number("gamma", 0);
-    if (gamma == 1) set_member(*image, "transfer", "linear", e.location_of("gamma"));
-    else if (gamma == 2.2) set_member(*image, "transfer", "gamma2.2", e.location_of("gamma"));
-    else if (gamma > 0) importing_.inexact(fmt::format("a gamma of {} is taken for sRGB's", gamma), e.location_of("gamma"));
+    if (gamma == 1)
+      set_member(*image, "transfer", "linear", e.location_of("gamma"));
+    else if (gamma == 2.2)
+      set_member(*image, "transfer", "gamma2.2", e.location_of("gamma"));
+    else if (gamma > 0)
+      importing_.inexact(fmt::format("a gamma of {} is taken for sRGB's", gamma), e.location_of("gamma"));
   }
   std::string channel = e.string("channel", "");
   if (channel == "r" || channel == "g" || channel == "b" || channel == "a")

@@ -185,7 +185,8 @@ TransformValue::LookAt look_at_of(const pugi::xml_node& node, const Attributes& 
   if (!from || !to) throw Error("<lookat> needs an origin and a target", place(node));
   const DoubleVector3 way{to->x - from->x, to->y - from->y, to->z - from->z};
   DoubleVector3 up = three("up").value_or(DoubleVector3{0, 0, 0});
-  if (length(up) == 0) up = std::abs(way.x) + std::abs(way.z) > std::abs(way.y) * 1e-3 ? DoubleVector3{0, 1, 0} : DoubleVector3{0, 0, 1};
+  if (length(up) == 0)
+    up = std::abs(way.x) + std::abs(way.z) > std::abs(way.y) * 1e-3 ? DoubleVector3{0, 1, 0} : DoubleVector3{0, 0, 1};
   if (!(length(way) > 0)) throw Error("the target of <lookat> is its origin", place(node));
   if (!(length(cross(way, up)) > 1e-9 * length(way) * length(up)))
     throw Error("'up' of <lookat> points along the line of sight", place(node));

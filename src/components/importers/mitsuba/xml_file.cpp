@@ -27,8 +27,8 @@ XmlFile::XmlFile(const std::string& path, const char* name) : name_(name) {
     if (c == 0) throw Error("the file holds a zero byte: it is not XML in UTF-8", at(std::ptrdiff_t(i)));
   }
   if (text_.find_first_not_of(" \t\r\n") == std::string::npos) throw Error("'" + path + "' is empty", {name, 0, 0});
-  const pugi::xml_parse_result result = document_.load_buffer_inplace(
-      text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
+  const pugi::xml_parse_result result =
+      document_.load_buffer_inplace(text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
   if (!result) throw Error("this is not XML: " + std::string(result.description()), at(result.offset));
   for (const pugi::xml_node& node : document_.children())
     if (node.type() == pugi::node_doctype && std::string_view(node.value()).find("ENTITY") != std::string_view::npos)

@@ -17,7 +17,14 @@
 namespace etendue {
 namespace {
 
-enum Flag : std::uint32_t { has_normals = 1, has_uvs = 2, has_colors = 8, own_normals = 16, in_floats = 0x1000, in_doubles = 0x2000 };
+enum Flag : std::uint32_t {
+  has_normals = 1,
+  has_uvs = 2,
+  has_colors = 8,
+  own_normals = 16,
+  in_floats = 0x1000,
+  in_doubles = 0x2000
+};
 
 constexpr std::uint64_t most_elements = 0xffffffffu / 3;
 
@@ -86,8 +93,8 @@ std::string_view part_of(std::string_view file, std::uint32_t number) {
   const size_t width = version == 3 ? 4 : 8;
   const auto count = at<std::uint32_t>(file, file.size() - std::min<size_t>(file.size(), 4));
   if (number >= count)
-    throw Error("the file holds " + std::to_string(count) + " shapes, so there is none of the number " + std::to_string(number) +
-                " (they count from 0)");
+    throw Error("the file holds " + std::to_string(count) + " shapes, so there is none of the number " +
+                std::to_string(number) + " (they count from 0)");
   if (count > file.size() / width) throw Error("the list of shapes at the file's end is damaged");
   const size_t directory = file.size() - 4 - width * count;
   const auto offset_of = [&](size_t i) {
@@ -146,8 +153,8 @@ MeshData read_serialized(std::string_view file, std::uint32_t number) {
   for (size_t i = 0; i < corners.size(); i += 3) {
     for (size_t k = 0; k < 3; ++k)
       if (corners[i + k] >= vertices)
-        throw Error("a triangle has the corner " + std::to_string(corners[i + k]) + ", but there are " + std::to_string(vertices) +
-                    " vertices");
+        throw Error("a triangle has the corner " + std::to_string(corners[i + k]) + ", but there are " +
+                    std::to_string(vertices) + " vertices");
     mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
   }
   mesh.faceted = flags & own_normals;

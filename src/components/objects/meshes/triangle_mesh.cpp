@@ -44,10 +44,11 @@ class TriangleMesh final : public TriangleObject {
          "Triangles, from a file or written out. Meshes from one file share it. A mesh that changes its shape has several "
          "keys: at each of `times` the vertices are where one of them says, and between two they move in straight lines.")
         .group("Shape")
-        .member<&TriangleMesh::file>("file", "", "a PLY file (text or binary), an OBJ file or one of Mitsuba's serialized meshes; none: the lists below",
-                                     Effect::rebuild)
-        .member<&TriangleMesh::number>("number", "1", "which mesh of a file that holds several, counted from 0", Effect::rebuild,
-                                       when("file"))
+        .member<&TriangleMesh::file>(
+            "file", "", "a PLY file (text or binary), an OBJ file or one of Mitsuba's serialized meshes; none: the lists below",
+            Effect::rebuild)
+        .member<&TriangleMesh::number>("number", "1", "which mesh of a file that holds several, counted from 0",
+                                       Effect::rebuild, when("file"))
         .member<&TriangleMesh::positions>("positions", "m", "the vertices, when there is no file", Effect::rebuild)
         .member<&TriangleMesh::triangles>(
             "triangles", "1", "three vertices, counting from 0, for each triangle; counter-clockwise seen from the front",
