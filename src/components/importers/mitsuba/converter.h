@@ -114,8 +114,11 @@ class Converter {
   Ref<Component> diffuse_emission(const Element&, const char* light_name);
 
   // media
-  Ref<Component> medium(const Element&);
-  Ref<Component> make_medium(const Element&);
+  /// What fills an object, whose transform is set: grids lie in the object's own coordinates.
+  Ref<Component> medium(const Element&, const Component& object);
+  Ref<Component> homogeneous(const Element&);
+  Ref<Component> heterogeneous(const Element&, const Component& object);
+  Ref<Component> grid(const Element& medium, const Element& volume, const Component& object);
   void set_phase(Component& volume, const Element& medium);
 
   // helpers

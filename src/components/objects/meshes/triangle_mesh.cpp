@@ -26,7 +26,7 @@ void append_normals(std::span<const Point3> positions, std::span<const std::arra
 
 class TriangleMesh final : public TriangleObject {
   FilePath file;
-  std::uint32_t number = 0;
+  std::uint32_t mesh_number = 0;
   std::vector<DoublePoint3> positions;
   std::vector<std::uint32_t> triangles;
   std::vector<Normal3> normals;
@@ -47,7 +47,7 @@ class TriangleMesh final : public TriangleObject {
         .member<&TriangleMesh::file>(
             "file", "", "a PLY file (text or binary), an OBJ file or one of Mitsuba's serialized meshes; none: the lists below",
             Effect::rebuild)
-        .member<&TriangleMesh::number>("number", "1", "which mesh of a file that holds several, counted from 0",
+        .member<&TriangleMesh::mesh_number>("number", "1", "which mesh of a file that holds several, counted from 0",
                                        Effect::rebuild, when("file"))
         .member<&TriangleMesh::positions>("positions", "m", "the vertices, when there is no file", Effect::rebuild)
         .member<&TriangleMesh::triangles>(
@@ -141,7 +141,7 @@ class TriangleMesh final : public TriangleObject {
     static std::mutex mutex;
     static auto* all = new std::map<std::tuple<std::string, std::uint32_t, bool>, Known>;
     const std::string name = path.resolved();
-    const std::tuple key(name, number, whole);
+    const std::tuple key(name, mesh_number, whole);
     std::error_code none;  // what is wrong with the file, reading it tells
     const auto written = std::filesystem::last_write_time(name, none);
     const auto size = std::filesystem::file_size(name, none);
@@ -151,7 +151,7 @@ class TriangleMesh final : public TriangleObject {
         known != all->end() && known->second.written == written && known->second.size == size)
       if (auto mesh = known->second.mesh.lock()) return mesh;
     try {
-      MeshData mesh = read_mesh(name, number);
+      MeshData mesh = read_mesh(name, mesh_number);
       if (!whole) drop_unusable(mesh, "'" + name + "'");
       make_shareable(mesh);
       auto made = std::make_shared<const MeshData>(std::move(mesh));
