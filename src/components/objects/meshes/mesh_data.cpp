@@ -8,21 +8,43 @@
 
 namespace etendue {
 
-MeshData read_mesh(const std::string& path) {
+MeshData read_mesh(const std::string& path, std::uint32_t number) {
   try {
     const FileContents file(path);
     const std::string_view text = file.text();
     if (text.empty()) throw Error("the file is empty");
-    if (text.starts_with("ply\n") || text.starts_with("ply\r")) return read_ply(text);
     std::string ending = path.substr(std::min(path.size(), path.find_last_of('.') + 1));
     for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+    if (ending == "serialized") return read_serialized(text, number);
+    if (number != 0) throw Error("files of this format hold one mesh, of the number 0");
+    if (text.starts_with("ply\n") || text.starts_with("ply\r")) return read_ply(text);
     if (ending == "ply") return read_ply(text);
     if (ending == "obj") return read_obj(text);
-    throw Error("this is no mesh format that is known here (PLY and OBJ are; others come in through an importer)");
+    throw Error("this is no mesh format that is known here (PLY, OBJ and serialized are; others come in through an importer)");
   } catch (const Error& error) {
     throw Error("'" + path + "': " + error.what());
   } catch (const std::bad_alloc&) {
     throw Error("'" + path + "': " + no_memory_to_read);
+  }
+}
+
+void smooth_normals(MeshData& mesh) {
+  std::vector<Vector3> sums(mesh.positions.size());
+  for (const auto& t : mesh.triangles) {
+    const Point3 corner[3] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+    const Vector3 across = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const float area = length(across);
+    if (!(area > 0 && area < infinity)) continue;
+    for (int i = 0; i < 3; ++i) {
+      const Vector3 a = corner[(i + 1) % 3] - corner[i], b = corner[(i + 2) % 3] - corner[i];
+      sums[t[size_t(i)]] += std::atan2(length(cross(a, b)), dot(a, b)) / area * across;
+    }
+  }
+  mesh.normals.clear();
+  mesh.normals.reserve(sums.size());
+  for (const Vector3& n : sums) {
+    const float l = length(n);
+    mesh.normals.push_back(l > 0 && l < infinity ? Normal3(n / l) : Normal3{});
   }
 }
 

@@ -29,14 +29,21 @@ struct MeshData {
   std::vector<VertexAttribute> attributes;       ///< "color" (linear sRGB) and whatever else a file tells of its vertices
   std::vector<VertexAttribute> face_attributes;  ///< of triangles: those of the faces they are part of; "face_" and a name
   std::vector<std::string> materials;            ///< names of those that the file uses, each once; nothing more is read of them
+  bool faceted = false;                          ///< the file says that it is to look so, not smooth
 };
 
 // The readers take the file's contents. They throw Error("what is wrong"), with the line for text, without the file's name.
 // Indices are checked, positions are not: that is for drop_unusable.
 MeshData read_ply(std::string_view file);
 MeshData read_obj(std::string_view file);
-/// By the file's contents (PLY) or the ending of its name. Throws Error("'name': what is wrong").
-MeshData read_mesh(const std::string& path);
+MeshData read_serialized(std::string_view file, std::uint32_t number);
+/// By the file's contents (PLY) or the ending of its name. Of a format that holds several meshes, the one of this number,
+/// counted from 0. Throws Error("'name': what is wrong").
+MeshData read_mesh(const std::string& path, std::uint32_t number = 0);
+
+/// Gives every vertex the mean of the normals of the triangles around it, by their angles there (Thuermer & Wuethrich 1998,
+/// Computing vertex normals from polygonal facets).
+void smooth_normals(MeshData&);
 
 /// Removes triangles with a corner that is not finite and triangles without area, with one warning for each kind that
 /// names `whose`. Throws Error when nothing is left. Of a mesh that changes its shape, `later` holds all positions at the

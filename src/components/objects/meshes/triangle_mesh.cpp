@@ -26,12 +26,13 @@ void append_normals(std::span<const Point3> positions, std::span<const std::arra
 
 class TriangleMesh final : public TriangleObject {
   FilePath file;
+  std::uint32_t mesh_number = 0;
   std::vector<DoublePoint3> positions;
   std::vector<std::uint32_t> triangles;
   std::vector<Normal3> normals;
   std::vector<Point2> uvs;
   std::vector<Vector3> colors, face_colors;
-  bool flat = false;
+  bool flat = false, smooth = false;
   std::vector<float> times;
   std::vector<FilePath> motion_files;
   std::vector<DoublePoint3> motion_positions;
@@ -43,8 +44,11 @@ class TriangleMesh final : public TriangleObject {
          "Triangles, from a file or written out. Meshes from one file share it. A mesh that changes its shape has several "
          "keys: at each of `times` the vertices are where one of them says, and between two they move in straight lines.")
         .group("Shape")
-        .member<&TriangleMesh::file>("file", "", "a PLY file (text or binary) or an OBJ file; none: the lists below",
-                                     Effect::rebuild)
+        .member<&TriangleMesh::file>(
+            "file", "", "a PLY file (text or binary), an OBJ file or one of Mitsuba's serialized meshes; none: the lists below",
+            Effect::rebuild)
+        .member<&TriangleMesh::mesh_number>("number", "1", "which mesh of a file that holds several, counted from 0",
+                                       Effect::rebuild, when("file"))
         .member<&TriangleMesh::positions>("positions", "m", "the vertices, when there is no file", Effect::rebuild)
         .member<&TriangleMesh::triangles>(
             "triangles", "1", "three vertices, counting from 0, for each triangle; counter-clockwise seen from the front",
@@ -59,6 +63,10 @@ class TriangleMesh final : public TriangleObject {
         .member<&TriangleMesh::face_colors>(
             "face_colors", "1", "likewise for each triangle, or none; for AttributeMap as \"face_color\"", Effect::rebuild)
         .member<&TriangleMesh::flat>("flat", "", "ignores normals of vertices: the surface is shaded as it is", Effect::rebuild)
+        .member<&TriangleMesh::smooth>("smooth", "",
+                                       "gives a mesh without normals those of the triangles around each vertex, so that it "
+                                       "looks round",
+                                       Effect::rebuild)
         .group("Motion")
         .member<&TriangleMesh::times>("times", "s", "of the keys, increasing: the first is that of `file` or `positions`",
                                       Effect::rebuild)
@@ -85,6 +93,12 @@ class TriangleMesh final : public TriangleObject {
       if (!moves) drop(own);
       make_shareable(own);
       mesh = std::make_shared<const MeshData>(std::move(own));
+    }
+    if (smooth && !flat && mesh->normals.empty() && !mesh->faceted) {
+      auto round = std::make_shared<MeshData>(*mesh);
+      smooth_normals(*round);
+      round->normals.pop_back();  // of the padding behind the last vertex
+      mesh = std::move(round);
     }
     MeshMotion motion = keyed(mesh);
     if (flat && !mesh->normals.empty()) {
@@ -135,9 +149,9 @@ class TriangleMesh final : public TriangleObject {
       std::weak_ptr<const MeshData> mesh;
     };
     static std::mutex mutex;
-    static auto* all = new std::map<std::pair<std::string, bool>, Known>;
+    static auto* all = new std::map<std::tuple<std::string, std::uint32_t, bool>, Known>;
     const std::string name = path.resolved();
-    const std::pair key(name, whole);
+    const std::tuple key(name, mesh_number, whole);
     std::error_code none;  // what is wrong with the file, reading it tells
     const auto written = std::filesystem::last_write_time(name, none);
     const auto size = std::filesystem::file_size(name, none);
@@ -147,7 +161,7 @@ class TriangleMesh final : public TriangleObject {
         known != all->end() && known->second.written == written && known->second.size == size)
       if (auto mesh = known->second.mesh.lock()) return mesh;
     try {
-      MeshData mesh = read_mesh(name);
+      MeshData mesh = read_mesh(name, mesh_number);
       if (!whole) drop_unusable(mesh, "'" + name + "'");
       make_shareable(mesh);
       auto made = std::make_shared<const MeshData>(std::move(mesh));

@@ -1,0 +1,90 @@
+// Matt surfaces, glossy ones by formula, Disney's model, hair.
+
+#include <fmt/format.h>
+
+#include "converter.h"
+#include "etendue/describe/color.h"
+
+namespace etendue::mitsuba {
+
+Converter::Surface Converter::matte(const Element& e, Uv uv, const std::string& name) {
+  if (e.type == "difftrans") {
+    Ref<Component> shader = make("DiffuseTransmitter", e, name);
+    set_member(*shader, "reflectance", 0, e.at);
+    set(*shader, "transmittance", color(e, "transmittance", 0.5, uv));
+    return {shader, true};
+  }
+  const bool rough = e.type == "roughdiffuse";
+  Ref<Component> shader = make(rough ? "OrenNayar" : "Lambertian", e, name);
+  const bool old_name = !e.has("reflectance") && e.has("diffuse_reflectance");
+  set(*shader, "color", color(e, old_name ? "diffuse_reflectance" : "reflectance", 0.5, uv));
+  if (rough) {
+    set(*shader, "roughness", scalar(e, "alpha", 0.2, uv));
+    inexact(e, "'roughdiffuse' is a newer model here, which loses no light");
+    e.ignore({"use_fast_approx"});
+  }
+  return {shader, false};
+}
+
+Converter::Surface Converter::classic(const Element& e, Uv uv, const std::string& name) {
+  const bool phong = e.type == "phong";
+  Ref<Component> shader = make(phong ? "PhongShader" : "WardShader", e, name);
+  set(*shader, "color", color(e, "diffuse_reflectance", 0.5, uv));
+  set(*shader, "specular", color(e, "specular_reflectance", 0.2, uv));
+  if (phong) {
+    const Value exponent = scalar(e, "exponent", 30, uv);
+    if (exponent.as<Number>())
+      set(*shader, "exponent", exponent);
+    else
+      importing_.inexact("the exponent is one number: 32 stands for the texture", e.location_of("exponent"));
+  } else {
+    const std::string variant = e.string("variant", "balanced");
+    if (variant != "balanced")
+      importing_.inexact(fmt::format("the variant '{}' of Ward's model is taken for 'balanced'", variant),
+                         e.location_of("variant"));
+    const Value both = scalar(e, "alpha", 0.1, uv);
+    set(*shader, "roughness_u", e.has("alpha_u") ? scalar(e, "alpha_u", 0.1, uv) : both);
+    set(*shader, "roughness_v", e.has("alpha_v") ? scalar(e, "alpha_v", 0.1, uv) : both);
+  }
+  e.ignore({"specular_sampling_weight", "diffuse_amount", "specular_amount"});
+  return {shader, false};
+}
+
+Converter::Surface Converter::principled(const Element& e, Uv uv, const std::string& name) {
+  const bool thin = e.type == "principledthin";
+  Ref<Component> shader = make("Principled", e, name);
+  const double specular = e.number("specular", 0.5);
+  const double eta = e.has("eta") ? e.number("eta", 1.5) : 2 / (1 - std::sqrt(0.08 * std::min(specular, 1.0))) - 1;
+  set(*shader, "base_color", color(e, "base_color", 0.5, uv));
+  set(*shader, "specular_roughness", scalar(e, "roughness", 0.5, uv));
+  set(*shader, "specular_roughness_anisotropy", scalar(e, "anisotropic", 0, uv));
+  set(*shader, "transmission_weight", scalar(e, "spec_trans", 0, uv));
+  set(*shader, "base_metalness", scalar(e, "metallic", 0, uv));
+  set(*shader, "fuzz_weight", scalar(e, "sheen", 0, uv));
+  set(*shader, "coat_weight", scalar(e, "clearcoat", 0, uv));
+  set_member(*shader, "specular_ior", eta, e.location_of("specular"));
+  if (thin) set_member(*shader, "thin_walled", true, e.at);
+  if (e.has("spec_trans")) set(*shader, "transmission_color", color(e, "base_color", 0.5, uv));
+  inexact(e, fmt::format("'{}' becomes OpenPBR's surface, which differs in its coat, its sheen and its tints", e.type));
+  e.ignore({"sheen_tint", "spec_tint", "clearcoat_gloss", "flatness", "diff_trans", "diffuse_reflectance_sampling_rate",
+            "main_specular_sampling_rate", "clearcoat_sampling_rate", "specular_sampling_rate"});
+  return {shader, thin || e.has("spec_trans")};
+}
+
+Converter::Surface Converter::fibre(const Element& e, const std::string& name) {
+  Ref<Component> shader = make("HairShader", e, name);
+  if (e.has("sigma_a")) {
+    set_member(*shader, "pigment", "absorption", e.at);
+    set(*shader, "absorption", color(e, "sigma_a", 0.2, Uv::as_is));
+  } else {
+    set_member(*shader, "eumelanin", e.number("eumelanin", 1.3), e.location_of("eumelanin"));
+    set_member(*shader, "pheomelanin", e.number("pheomelanin", 0.2), e.location_of("pheomelanin"));
+  }
+  set_member(*shader, "longitudinal_roughness", e.number("longitudinal_roughness", 0.3), e.at);
+  set_member(*shader, "azimuthal_roughness", e.number("azimuthal_roughness", 0.3), e.at);
+  set_member(*shader, "tilt", e.number("scale_tilt", 2), e.location_of("scale_tilt"));
+  set_member(*shader, "ior", index(e, "int_ior", "amber") / index(e, "ext_ior", "air"), e.at);
+  return {shader, true};
+}
+
+}  // namespace etendue::mitsuba

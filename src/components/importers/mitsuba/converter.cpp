@@ -1,0 +1,115 @@
+#include "converter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace etendue::mitsuba {
+
+namespace {
+
+constexpr size_t most_errors = 20;  // told at once
+
+}  // namespace
+
+Converter::Reading::Reading(const Element& element) : element_(element) {
+  if (element.being_read) throw Error(fmt::format("this {} '{}' holds itself", element.tag, element.type), element.at);
+  element.being_read = element.read = true;
+}
+
+Ref<Job> Converter::job(const Element& scene) {
+  const Reading reading(scene);
+  Ref<Component> job = importing_.make("Job", scene.at);
+  std::vector<const Element*> sensors = scene.all("sensor");
+  const Element* sensor = sensors.empty() ? nullptr : sensors.front();
+  if (sensors.size() > 1) importing_.inexact("the scene has several sensors: the first counts", sensors[1]->at);
+
+  Ref<Component> objects = importing_.make("EmbreeScene", scene.at);
+  Value::List list;
+  std::vector<Error> errors;
+  for (const Property& p : scene.properties) {
+    const auto* nested = std::get_if<Nested>(&p.value);
+    if (!nested || !nested->reference.empty()) continue;
+    const Element& e = *nested->element;
+    try {
+      Ref<SceneObject> object;
+      if (e.tag == "shape" && e.type != "shapegroup") object = shape(e);
+      if (e.tag == "emitter") object = emitter(e);
+      if (object) list.emplace_back(Ref<Component>(object), e.at);
+    } catch (const Error& error) {
+      errors.push_back(error);
+      if (errors.size() >= most_errors) throw Errors(std::move(errors));
+    }
+    if (e.tag == "shape" || e.tag == "emitter" || e.tag == "bsdf" || e.tag == "texture" || e.tag == "medium" ||
+        e.tag == "phase" || e.tag == "volume" || e.tag == "spectrum")
+      p.asked = true;
+  }
+  if (!errors.empty()) throw Errors(std::move(errors));
+  if (list.empty()) importing_.inexact("the scene has no shapes", scene.at);
+  set(*objects, "objects", Value(std::move(list)));
+
+  const std::vector<const Element*> films = sensor ? sensor->all("film") : std::vector<const Element*>{};
+  const std::vector<const Element*> samplers = sensor ? sensor->all("sampler") : std::vector<const Element*>{};
+  const std::vector<const Element*> integrators = scene.all("integrator");
+  const Element* const film = films.empty() ? nullptr : films.front();
+  int width = 768, height = 576;
+  set_member(*job, "image", image(film, width, height), scene.at);
+  if (sensor) {
+    set_member(*job, "camera", camera(*sensor, width, height), sensor->at);
+  } else {
+    importing_.inexact("the scene has no sensor: a camera at the origin looks along +z", scene.at);
+    set_member(*job, "camera", importing_.make("PerspectiveCamera", scene.at), scene.at);
+  }
+  set_member(*job, "renderer",
+             renderer(integrators.empty() ? nullptr : integrators.front(), samplers.empty() ? nullptr : samplers.front()),
+             scene.at);
+  set_member(*job, "scene", objects, scene.at);
+  add_outputs(*job, film);
+  note_unread(scene);
+  return ref_cast<Job>(job);
+}
+
+void Converter::set_transform(Component& part, const TransformValue& t, Location at) {
+  if (t.transform.animated())
+    set_member(part, "transform", t.transform, at);
+  else if (!t.transform.still().identity())
+    set_member(part, "transform", t.transform.still(), at);
+}
+
+FilePath Converter::file(const Element& e, const std::string& name) {
+  const std::string named = e.string(name, "");
+  if (!e.has(name)) throw Error(fmt::format("{} '{}' needs a '{}'", e.tag, e.type, name), e.at);
+  return {importing_.file(named, e.location_of(name), e.folder), {}};
+}
+
+void Converter::fail_unknown(const Element& e, const std::vector<std::string>& known) const {
+  throw Error(fmt::format("there is no {} '{}' in Mitsuba{}", e.tag, e.type, suggestion(e.type, known)), e.at);
+}
+
+void Converter::note_unread(const Element& scene) {
+  std::vector<const Element*> open{&scene};
+  std::set<const Element*> seen;
+  while (!open.empty()) {
+    const Element& e = *open.back();
+    open.pop_back();
+    if (!seen.insert(&e).second) continue;
+    for (const Property& p : e.properties) {
+      const auto* nested = std::get_if<Nested>(&p.value);
+      if (nested && nested->element->read) open.push_back(nested->element);
+      if (!e.read || p.asked) continue;
+      if (nested) {
+        importing_.inexact(fmt::format("{} '{}' has no use for a {} '{}'{}", e.tag, e.type, nested->element->tag,
+                                       nested->element->type, p.name.empty() ? "" : " called '" + p.name + "'"),
+                           p.at);
+      } else {
+        std::vector<std::string> known = e.known;
+        std::erase(known, p.name);
+        importing_.inexact(fmt::format("'{}' of {} '{}' is not used{}", p.name, e.tag, e.type, suggestion(p.name, known)),
+                           p.at);
+      }
+    }
+  }
+}
+
+}  // namespace etendue::mitsuba

@@ -1,0 +1,143 @@
+#pragma once
+// Plugins of Mitsuba into components.
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "element.h"
+#include "etendue/importer.h"
+#include "etendue/render/job.h"
+#include "values.h"
+
+namespace etendue::mitsuba {
+
+/// How a shape's surface coordinates here relate to Mitsuba's, where v counts as the rows of images do, from their top.
+enum class Uv : std::uint8_t {
+  as_is,     ///< v is Mitsuba's
+  from_top,  ///< v is 1 - Mitsuba's, as images count here: OBJ files, which Mitsuba turns over, and spheres
+};
+
+class Converter {
+ public:
+  explicit Converter(Importing& importing) : importing_(importing) {}
+
+  Ref<Job> job(const Element& scene);
+
+ private:
+  /// Marks a plugin as read while it is; a plugin that holds itself is an Error.
+  class Reading {
+   public:
+    explicit Reading(const Element&);
+    ~Reading() { element_.being_read = false; }
+    Reading(const Reading&) = delete;
+    Reading& operator=(const Reading&) = delete;
+
+   private:
+    const Element& element_;
+  };
+
+  // sensors, films, integrators
+  void place(Component& camera, const Element& sensor);
+  Ref<Component> camera(const Element& sensor, int width, int height);
+  void set_view(Component& camera, const Element& sensor, int width, int height);
+  void set_shutter(Component& camera, const Element& sensor);
+  Ref<Component> image(const Element* film, int& width, int& height);
+  Ref<Component> filter(const Element& film);
+  void add_outputs(Component& job, const Element* film);
+  Ref<Component> renderer(const Element* integrator, const Element* sampler);
+  Ref<Component> light_transport(const Element& integrator);
+  void set_depths(Component& renderer, const Element& integrator);
+
+  // shapes
+  Ref<SceneObject> shape(const Element&);
+  Ref<Component> geometry(const Element&, Uv&);
+  Ref<Component> sphere(const Element&);
+  Ref<Component> rectangle(const Element&);
+  Ref<Component> cylinder(const Element&);
+  Ref<Component> cube(const Element&);
+  Ref<Component> mesh(const Element&, Uv&);
+  Ref<Component> curves(const Element&);
+  Ref<Component> instance(const Element&);
+  Ref<Component> group(const Element&);
+  void set_surface(Component& object, const Element& shape, Uv);
+  bool textured(const Element&);
+
+  // surfaces
+  struct Surface {
+    Ref<Component> shader;
+    bool both_sides = false;  ///< as seen from behind it is no black
+  };
+  Surface surface(const Element& bsdf, Uv);
+  Surface make_surface(const Element& bsdf, Uv, const std::string& name);
+  Surface inner_surface(const Element& bsdf, Uv, size_t number = 0);
+  Surface matte(const Element&, Uv, const std::string& name);
+  Surface dielectric(const Element&, Uv, const std::string& name);
+  Surface conductor(const Element&, Uv, const std::string& name);
+  Surface plastic(const Element&, Uv, const std::string& name);
+  Surface coating(const Element&, Uv, const std::string& name);
+  Surface mixture(const Element&, Uv, const std::string& name);
+  Surface mask(const Element&, Uv, const std::string& name);
+  Surface tilted(const Element&, Uv, const std::string& name);
+  Surface classic(const Element&, Uv, const std::string& name);
+  Surface principled(const Element&, Uv, const std::string& name);
+  Surface fibre(const Element&, const std::string& name);
+  void set_roughness(Component& shader, const Element&, Uv, double otherwise);
+  double index(const Element&, const char* name, const char* otherwise);
+  Color spectrum_of(const Element&, const std::string& name, double otherwise);
+
+  // textures and colours
+  /// What a member that takes a colour or a map is set to.
+  Value color(const Element&, const std::string& name, double otherwise, Uv);
+  Value scalar(const Element&, const std::string& name, double otherwise, Uv);
+  Value texture(const Element&, Uv);
+  Value bitmap(const Element&, Uv);
+  Value checkerboard(const Element&, Uv);
+  Value attribute_map(const Element&);
+  Value light(const Element&, const std::string& name, Uv);
+  Value light_of(const Element& spectrum, Uv);
+  Color scaled_light(const ColorValue&, bool old) const;
+  /// A map looked up at the coordinates that `to_uv` and the shape's own make of u and v; `from_top`: it counts v downwards.
+  Value placed(const Ref<Component>& map, const Element& texture, Uv, bool counts_from_top);
+  Transform to_uv(const Element& texture);
+
+  // light
+  Ref<SceneObject> emitter(const Element&);
+  Ref<Component> area_emission(const Element&, Uv);
+  Ref<Component> spot(const Element&);
+  Ref<Component> projector(const Element&);
+  Ref<Component> directional(const Element&);
+  Ref<Component> environment(const Element&);
+  Ref<Component> sky(const Element&);
+  Ref<Component> beam(const Element&);
+  Ref<Component> diffuse_emission(const Element&, const char* light_name);
+
+  // media
+  /// What fills an object, whose transform is set: grids lie in the object's own coordinates.
+  Ref<Component> medium(const Element&, const Component& object);
+  Ref<Component> homogeneous(const Element&);
+  Ref<Component> heterogeneous(const Element&, const Component& object);
+  Ref<Component> grid(const Element& medium, const Element& volume, const Component& object);
+  void set_phase(Component& volume, const Element& medium);
+
+  // helpers
+  Ref<Component> make(const char* class_name, const Element& e, const std::string& name) {
+    return importing_.make(class_name, e.at, name);
+  }
+  Ref<Component> make(const char* class_name, const Element& e) { return make(class_name, e, e.id); }
+  void set_transform(Component&, const TransformValue&, Location);
+  /// A file a plugin names.
+  FilePath file(const Element&, const std::string& name = "filename");
+  [[noreturn]] void fail_unknown(const Element&, const std::vector<std::string>& known) const;
+  /// Notes properties of plugins that were read which nobody has asked for.
+  void note_unread(const Element& scene);
+  void inexact(const Element& e, const std::string& what) { importing_.inexact(what, e.at); }
+
+  Importing& importing_;
+  std::map<std::pair<const Element*, Uv>, Surface> surfaces_;
+  std::map<const Element*, Ref<Component>> media_, groups_;
+  std::map<const Element*, bool> textured_;
+};
+
+}  // namespace etendue::mitsuba

@@ -1,0 +1,190 @@
+// Emitters, and colours as light.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "converter.h"
+#include "etendue/describe/color.h"
+
+namespace etendue::mitsuba {
+
+namespace {
+
+const std::vector<std::string> known_emitters = {"area",     "point",      "spot",        "directional", "directionalarea",
+                                                 "constant", "envmap",     "projector",   "sky",         "sun",
+                                                 "sunsky",   "collimated", "volumelight", "timed_sunsky"};
+
+Numbers three(const DoubleVector3& v) { return {{v.x, v.y, v.z}, 1, Dimension::none}; }
+
+}  // namespace
+
+Color Converter::scaled_light(const ColorValue& c, bool old) const {
+  // Mitsuba before 2 renders red, green and blue: a light of equal values is white there, which is D65.
+  if (old && c.kind == ColorValue::Kind::flat) return rgb_color("srgb", c.rgb[0], c.rgb[0], c.rgb[0]);
+  return c.color;
+}
+
+Value Converter::light(const Element& e, const std::string& name, Uv uv) {
+  const Property* p = e.find(name);
+  if (!p) return Value(illuminant_spectrum("D65"), e.at);
+  if (const auto* c = std::get_if<ColorValue>(&p->value)) return Value(scaled_light(*c, e.old), p->at);
+  if (std::holds_alternative<Nested>(p->value)) return light_of(*e.nested(name), uv);
+  const double value = e.number(name, 1);
+  return Value(rgb_color("srgb", value, value, value), p->at);
+}
+
+Value Converter::light_of(const Element& e, Uv uv) {
+  Value v = texture(e, uv);
+  if (const auto* n = v.as<Number>(); n && e.old) return Value(rgb_color("srgb", n->value, n->value, n->value), e.at);
+  const auto* map = v.as<Ref<Component>>();
+  if (!map || e.old) return v;
+  // There a picture as light is not multiplied by the white of its colour space.
+  Ref<Component> read = make("ReadAsMap", e, "");
+  set_member(*read, "map", *map, e.at);
+  set_member(*read, "as", "coefficient", e.at);
+  return Value(read, e.at);
+}
+
+Ref<Component> Converter::area_emission(const Element& e, Uv uv) {
+  if (e.type != "area" && e.type != "directionalarea" && e.type != "collimated") {
+    importing_.inexact(fmt::format("emitter '{}' on a shape is taken for 'area'", e.type), e.at);
+  }
+  const Reading reading(e);
+  const char* const name = !e.has("radiance") && e.has("intensity") ? "intensity" : "radiance";  // the latter in 0.3
+  Ref<Component> emission = make(e.type == "directionalarea" ? "CollimatedEmission" : "DiffuseEmission", e);
+  if (e.type == "directionalarea") inexact(e, "light along the normal alone spreads by 0.1 degrees here");
+  set(*emission, "radiance", light(e, name, uv));
+  e.ignore({"sampling_weight"});
+  return emission;
+}
+
+Ref<Component> Converter::diffuse_emission(const Element& e, const char* light_name) {
+  Ref<Component> emission = make("DiffuseEmission", e, "");
+  set(*emission, "radiance", light(e, light_name, Uv::as_is));
+  return emission;
+}
+
+Ref<SceneObject> Converter::emitter(const Element& e) {
+  if (std::ranges::find(known_emitters, e.type) == known_emitters.end()) fail_unknown(e, known_emitters);
+  const Reading reading(e);
+  e.ignore({"sampling_weight"});
+  Ref<Component> object;
+  if (e.type == "point") {
+    object = make("Point", e);
+    set_member(*object, "emission", diffuse_emission(e, "intensity"), e.at);
+    if (e.has("position"))
+      set_member(*object, "position", three(e.vector("position", {})), e.location_of("position"));
+    else
+      set_transform(*object, e.transform(), e.location_of("to_world"));
+  } else if (e.type == "spot") {
+    object = spot(e);
+  } else if (e.type == "projector") {
+    object = projector(e);
+  } else if (e.type == "directional") {
+    object = directional(e);
+  } else if (e.type == "constant") {
+    object = make("Environment", e);
+    const bool other = !e.has("radiance") && e.has("intensity");
+    set_member(*object, "emission", diffuse_emission(e, other ? "intensity" : "radiance"), e.at);
+  } else if (e.type == "envmap") {
+    object = environment(e);
+  } else if (e.type == "sky" || e.type == "sun" || e.type == "sunsky" || e.type == "timed_sunsky") {
+    object = sky(e);
+  } else if (e.type == "collimated") {
+    object = beam(e);
+  } else if (e.type == "area") {
+    if (e.id.empty()) throw Error("an 'area' emitter stands inside a shape", e.at);
+    e.read = false;  // shapes refer to it
+  } else {
+    inexact(e, fmt::format("emitter '{}' is not known here: it is left out", e.type));
+  }
+  return ref_cast<SceneObject>(object);
+}
+
+Ref<Component> Converter::spot(const Element& e) {
+  const double cutoff = e.number("cutoff_angle", 20);
+  Ref<Component> emission = make("SpotEmission", e, "");
+  set(*emission, "radiance", light(e, "intensity", Uv::as_is));
+  set_member(*emission, "outer_angle", cutoff, e.location_of("cutoff_angle"));
+  set_member(*emission, "inner_angle", e.number("beam_width", cutoff * 3 / 4), e.location_of("beam_width"));
+  set_member(*emission, "edge", "linear", e.at);
+  // u and v of its picture begin at the lower right as the light sees it; its rows at their top, as all images there.
+  if (const Element* picture = e.nested("texture")) {
+    set(*emission, "picture", texture(*picture, Uv::as_is));
+  }
+  Ref<Component> object = make("Point", e);
+  set_member(*object, "emission", emission, e.at);
+  set_transform(*object, e.transform(), e.location_of("to_world"));
+  return object;
+}
+
+Ref<Component> Converter::projector(const Element& e) {
+  Ref<Component> emission = make("ProjectorEmission", e, "");
+  const Element* const picture = e.nested("irradiance");
+  if (!picture) throw Error("a projector needs a texture called 'irradiance'", e.at);
+  set(*emission, "picture", light_of(*picture, Uv::from_top));
+  set_member(*emission, "fov", e.number("fov", 46.79), e.location_of("fov"));
+  set_member(*emission, "scale", e.number("scale", 1) * std::numbers::pi, e.at);
+  inexact(e, "a projector's picture is taken for a square; it ends at its edges instead of being repeated");
+  Ref<Component> object = make("Point", e);
+  set_member(*object, "emission", emission, e.at);
+  set_transform(*object, e.transform(), e.location_of("to_world"));
+  return object;
+}
+
+Ref<Component> Converter::directional(const Element& e) {
+  Ref<Component> object = make("Distant", e);
+  set_member(*object, "emission", diffuse_emission(e, !e.has("irradiance") && e.has("intensity") ? "intensity" : "irradiance"),
+             e.at);
+  const bool given = e.has("direction");
+  set_member(*object, "direction", three(e.vector("direction", {0, 0, 1})), e.location_of("direction"));
+  if (!given) set_transform(*object, e.transform(), e.location_of("to_world"));
+  return object;
+}
+
+Ref<Component> Converter::environment(const Element& e) {
+  Ref<Component> emission = make("EnvironmentEmission", e, "");
+  set_member(*emission, "file", file(e), e.location_of("filename"));
+  set_member(*emission, "rows", "poles", e.at);
+  if (e.has("scale")) set_member(*emission, "scale", e.number("scale", 1), e.location_of("scale"));
+  if (e.has("gamma")) {
+    if (e.number("gamma", 0) == 1) set_member(*emission, "transfer", "linear", e.location_of("gamma"));
+  }
+  Ref<Component> object = make("Environment", e);
+  set_member(*object, "emission", emission, e.at);
+  set_transform(*object, e.transform(), e.location_of("to_world"));
+  e.ignore({"cache", "mis_compensation"});
+  return object;
+}
+
+Ref<Component> Converter::sky(const Element& e) {
+  Ref<Component> emission = make("SkyEmission", e, "");
+  set_member(*emission, "sun", e.type != "sky", e.at);
+  if (e.has("turbidity")) set_member(*emission, "turbidity", e.number("turbidity", 3), e.location_of("turbidity"));
+  if (e.has("albedo")) set_member(*emission, "ground_albedo", spectrum_of(e, "albedo", 0.3), e.location_of("albedo"));
+  if (e.has("sun_direction"))
+    set_member(*emission, "sun_direction", three(e.vector("sun_direction", {0, 1, 0})), e.location_of("sun_direction"));
+  else
+    inexact(e, "the sun's place by date and time is not read: it stands in the direction (1, 1, 1)");
+  if (e.has("scale")) set_member(*emission, "scale", e.number("scale", 1), e.location_of("scale"));
+  inexact(e, fmt::format("'{}' is a model of measured skies whose brightness differs from Mitsuba's", e.type));
+  Ref<Component> object = make("Environment", e);
+  set_member(*object, "emission", emission, e.at);
+  set_transform(*object, e.transform(), e.location_of("to_world"));
+  return object;
+}
+
+Ref<Component> Converter::beam(const Element& e) {
+  Ref<Component> emission = make("CollimatedEmission", e, "");
+  set_member(*emission, "about", "axis", e.at);
+  set(*emission, "radiance", light(e, "power", Uv::as_is));
+  inexact(e, "a beam without width spreads by 0.1 degrees here, and its power is taken for its intensity");
+  Ref<Component> object = make("Point", e);
+  set_member(*object, "emission", emission, e.at);
+  set_transform(*object, e.transform(), e.location_of("to_world"));
+  return object;
+}
+
+}  // namespace etendue::mitsuba

@@ -1,0 +1,119 @@
+// Participating media.
+
+#include <fmt/format.h>
+
+#include "converter.h"
+#include "etendue/describe/color.h"
+
+namespace etendue::mitsuba {
+
+namespace {
+
+const std::vector<std::string> known_media = {"homogeneous", "heterogeneous"};
+
+}  // namespace
+
+Ref<Component> Converter::medium(const Element& e, const Component& object) {
+  if (e.tag != "medium") throw Error(fmt::format("a medium is expected, not a {}", e.tag), e.at);
+  if (const auto known = media_.find(&e); known != media_.end()) return known->second;
+  const Reading reading(e);
+  if (e.type == "heterogeneous") return heterogeneous(e, object);
+  if (e.type != "homogeneous") fail_unknown(e, known_media);
+  Ref<Component> made = homogeneous(e);
+  media_.emplace(&e, made);
+  return made;
+}
+
+void Converter::set_phase(Component& volume, const Element& e) {
+  for (const Element* phase : e.all("phase")) {
+    const Reading reading(*phase);
+    if (phase->type == "hg" || phase->type == "isotropic") {
+      if (phase->type == "hg") set_member(volume, "anisotropy", phase->number("g", 0.8), phase->at);
+    } else {
+      inexact(*phase,
+              fmt::format("phase function '{}' has no counterpart here: light scatters alike in all directions", phase->type));
+    }
+  }
+  e.ignore({"sample_emitters", "has_spectral_extinction", "majorant_resolution_factor", "control_density", "method", "strategy",
+            "medium_sampling_weight"});
+}
+
+Ref<Component> Converter::homogeneous(const Element& e) {
+  Ref<Component> volume = make("HomogeneousVolume", e);
+  set_phase(*volume, e);
+  const double scale = e.number("scale", 1);
+  const auto scaled = [&](const char* name, double otherwise) {
+    const Color c = spectrum_of(e, name, otherwise);
+    return scale == 1 ? c : scaled_spectrum(scale, c);
+  };
+  if (e.has("material")) {
+    inexact(e, fmt::format("the medium of the material '{}' is not known: it neither absorbs nor scatters",
+                           e.string("material", "")));
+    return volume;
+  }
+  if (e.has("sigma_a") || e.has("sigma_s")) {
+    if (e.has("sigma_a")) set_member(*volume, "absorption", scaled("sigma_a", 0), e.location_of("sigma_a"));
+    if (e.has("sigma_s")) set_member(*volume, "scattering", scaled("sigma_s", 0), e.location_of("sigma_s"));
+  } else {
+    set_member(*volume, "extinction", scaled("sigma_t", 1), e.location_of("sigma_t"));
+    set_member(*volume, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
+  }
+  return volume;
+}
+
+Ref<Component> Converter::heterogeneous(const Element& e, const Component& object) {
+  const char* const name = e.has("sigma_t") ? "sigma_t" : "density";  // the latter in 0.5
+  const Element* const volume = e.nested(name);
+  if (!volume) {
+    if (!e.has(name)) throw Error("a heterogeneous medium needs a volume called 'sigma_t'", e.at);
+    return homogeneous(e);
+  }
+  const Reading reading(*volume);
+  if (volume->type == "constvolume") {
+    Ref<Component> same = make("HomogeneousVolume", e);
+    set_phase(*same, e);
+    set_member(*same, "extinction", scaled_spectrum(e.number("scale", 1), spectrum_of(*volume, "value", 1)), volume->at);
+    set_member(*same, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
+    return same;
+  }
+  if (volume->type != "gridvolume") {
+    inexact(*volume, fmt::format("volume '{}' is not known here: the medium is left out", volume->type));
+    return nullptr;
+  }
+  return grid(e, *volume, object);
+}
+
+Ref<Component> Converter::grid(const Element& e, const Element& volume, const Component& object) {
+  Ref<Component> grid = make("GridVolume", e);
+  set_phase(*grid, e);
+  set_member(*grid, "file", file(volume), volume.location_of("filename"));
+  set_member(*grid, "extinction", e.number("scale", 1), e.location_of("scale"));
+  const Element* albedo = e.nested("albedo");
+  if (albedo && albedo->tag == "volume") {
+    const Reading reading(*albedo);
+    if (albedo->type == "gridvolume") {
+      set_member(*grid, "albedo", 1, albedo->at);
+      set_member(*grid, "albedo_file", file(*albedo), albedo->location_of("filename"));
+      if (albedo->transform().transform.still().exact() != volume.transform().transform.still().exact())
+        inexact(*albedo, "the grid of albedos is laid where that of densities is");
+      albedo->ignore({"raw", "use_grid_bbox", "filter_type", "wrap_mode", "accel"});
+    } else {
+      set_member(*grid, "albedo", spectrum_of(*albedo, "value", 0.75), albedo->at);
+    }
+  } else {
+    set_member(*grid, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
+  }
+  const auto* placed = get(object, "transform").as<AnimatedTransform>();
+  const auto* still = get(object, "transform").as<Transform>();
+  const Transform to_world = placed ? placed->still() : (still ? *still : Transform());
+  const Transform placement = to_world.inverse() * volume.transform().transform.still();
+  if (!placement.identity()) set_member(*grid, "placement", placement, volume.location_of("to_world"));
+  set_member(*grid, "file_box", volume.boolean("use_grid_bbox", false), volume.at);
+  const std::string filter = volume.string("filter_type", "trilinear"), wrap = volume.string("wrap_mode", "clamp");
+  set_member(*grid, "filter", filter, volume.location_of("filter_type"));
+  set_member(*grid, "outside", wrap, volume.location_of("wrap_mode"));
+  volume.ignore({"raw", "accel"});
+  return grid;
+}
+
+}  // namespace etendue::mitsuba

@@ -1,0 +1,130 @@
+// Meshes, curves, groups of shapes and their instances.
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "converter.h"
+#include "files/regular_file.h"
+
+namespace etendue::mitsuba {
+
+Ref<Component> Converter::mesh(const Element& e, Uv& uv) {
+  Ref<Component> mesh = make("TriangleMesh", e);
+  set_member(*mesh, "file", file(e), e.location_of("filename"));
+  if (e.type == "serialized") set_member(*mesh, "number", double(e.integer("shape_index", 0)), e.location_of("shape_index"));
+  // Normals that a file lacks are found from the triangles, unless faces are to be flat.
+  set_member(*mesh, e.boolean("face_normals", false) ? "flat" : "smooth", true, e.at);
+  if (e.has("max_smooth_angle")) {
+    e.find("max_smooth_angle");
+    importing_.inexact("'max_smooth_angle' is not used: edges are smooth where vertices are shared",
+                       e.location_of("max_smooth_angle"));
+  }
+  uv = e.boolean("flip_tex_coords", e.type == "obj") ? Uv::from_top : Uv::as_is;
+  set_transform(*mesh, e.transform(), e.location_of("to_world"));
+  e.ignore({"srgb", "collapse", "vertex_colors"});
+  return mesh;
+}
+
+namespace {
+
+struct Strands {
+  Numbers points{{}, 3, Dimension::none}, radius{{}, 1, Dimension::none}, counts{{}, 1, Dimension::none};
+};
+
+constexpr size_t fewest_of_spline = 4;
+
+/// Lines of x, y, z and a radius; an empty line ends a strand.
+Strands read_strands(const std::string& path, Location at, bool with_radius, double radius, size_t fewest) {
+  std::string text;
+  try {
+    text = read_regular_file(path);
+  } catch (const Error& error) {
+    throw Error(fmt::format("'{}': {}", path, error.what()), at);
+  }
+  if (text.starts_with("BINARY_HAIR")) throw Error(fmt::format("'{}': binary hair files are not read", path), at);
+  Strands all;
+  size_t points = 0, line_number = 0;
+  const auto end_strand = [&] {
+    if (points > 0 && points < fewest)
+      throw Error(fmt::format("'{}', line {}: a strand has {} points, but {} are needed", path, line_number, points, fewest),
+                  at);
+    if (points > 0) all.counts.values.push_back(double(points));
+    points = 0;
+  };
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    ++line_number;
+    double v[4] = {0, 0, 0, radius};
+    int n = 0;
+    const char *c = text.data() + begin, *stop = text.data() + end;
+    while (n < (with_radius ? 4 : 3)) {
+      while (c < stop && (*c == ' ' || *c == '\t' || *c == ',' || *c == '\r')) ++c;
+      if (c == stop) break;
+      const auto [next, code] = std::from_chars(c, stop, v[n]);
+      if (code != std::errc{} || !(std::abs(v[n]) < 1e18))
+        throw Error(fmt::format("'{}', line {}: a number is expected", path, line_number), at);
+      c = next;
+      ++n;
+    }
+    if (n == 0) {
+      end_strand();
+    } else {
+      if (n < 3) throw Error(fmt::format("'{}', line {}: {} numbers where x, y and z are expected", path, line_number, n), at);
+      all.points.values.insert(all.points.values.end(), v, v + 3);
+      all.radius.values.push_back(v[3]);
+      ++points;
+    }
+    begin = end + 1;
+  }
+  end_strand();
+  if (all.counts.values.empty()) throw Error(fmt::format("'{}' holds no curves", path), at);
+  return all;
+}
+
+}  // namespace
+
+Ref<Component> Converter::curves(const Element& e) {
+  const bool spline = e.type == "bsplinecurve";
+  const Strands strands = read_strands(file(e).resolved(), e.location_of("filename"), e.type != "hair",
+                                       e.number("radius", e.type == "hair" ? 0.025 : 1), spline ? fewest_of_spline : 2);
+  Ref<Component> curve = make("Curve", e);
+  set_member(*curve, "points", strands.points, e.at);
+  set_member(*curve, "radius", strands.radius, e.at);
+  set_member(*curve, "counts", strands.counts, e.at);
+  set_member(*curve, "basis", spline ? "b_spline" : "linear", e.at);
+  set_transform(*curve, e.transform(), e.location_of("to_world"));
+  e.ignore({"angle_threshold", "reduction"});
+  return curve;
+}
+
+Ref<Component> Converter::group(const Element& e) {
+  if (const auto known = groups_.find(&e); known != groups_.end()) return known->second;
+  Ref<Component> scene = make("EmbreeScene", e);
+  Value::List list;
+  for (const Element* inner : e.all("shape"))
+    if (const Ref<SceneObject> object = shape(*inner)) list.emplace_back(Ref<Component>(object), inner->at);
+  if (list.empty()) inexact(e, "the group holds no shapes");
+  set(*scene, "objects", Value(std::move(list)));
+  groups_.emplace(&e, scene);
+  return scene;
+}
+
+Ref<Component> Converter::instance(const Element& e) {
+  const std::vector<const Element*> shapes = e.all("shape");
+  if (shapes.empty()) throw Error("an instance needs a shapegroup", e.at);
+  const Element& of = *shapes.front();
+  if (of.type != "shapegroup") throw Error(fmt::format("an instance is of a shapegroup, not of a '{}'", of.type), e.at);
+  Ref<Component> instance = make("Instance", e);
+  const bool known = groups_.contains(&of);
+  if (known) {
+    set_member(*instance, "scene", group(of), e.at);
+  } else {
+    const Reading reading(of);
+    set_member(*instance, "scene", group(of), e.at);
+  }
+  set_transform(*instance, e.transform(), e.location_of("to_world"));
+  return instance;
+}
+
+}  // namespace etendue::mitsuba

@@ -1,0 +1,165 @@
+// Surfaces of glass, metal and plastic.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "converter.h"
+#include "etendue/describe/color.h"
+
+namespace etendue::mitsuba {
+
+namespace {
+
+struct NamedIndex {
+  const char* name;
+  double index;
+};
+// As Mitsuba has them, so that scenes look as they do there: "Mitsuba 3 documentation", plugin "dielectric".
+constexpr NamedIndex indices[] = {{"vacuum", 1.0},      {"helium", 1.00004},         {"hydrogen", 1.00013},
+                                  {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.3330},
+                                  {"acetone", 1.36},    {"ethanol", 1.361},          {"carbon tetrachloride", 1.461},
+                                  {"glycerol", 1.4729}, {"benzene", 1.501},          {"silicone oil", 1.52045},
+                                  {"bromine", 1.661},   {"water ice", 1.31},         {"fused quartz", 1.458},
+                                  {"pyrex", 1.470},     {"acrylic glass", 1.49},     {"polypropylene", 1.49},
+                                  {"bk7", 1.5046},      {"sodium chloride", 1.544},  {"amber", 1.55},
+                                  {"pet", 1.5750},      {"diamond", 2.419}};
+
+}  // namespace
+
+double Converter::index(const Element& e, const char* name, const char* otherwise) {
+  const auto look_up = [&](std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::vector<std::string> known;
+    for (const NamedIndex& i : indices) {
+      if (text == i.name) return i.index;
+      known.emplace_back(i.name);
+    }
+    throw Error(fmt::format("no material of index '{}' is known{}", text, suggestion(text, known)), e.location_of(name));
+  };
+  const Property* p = e.find(name);
+  if (!p) return look_up(otherwise);
+  if (std::holds_alternative<std::string>(p->value)) return look_up(e.string(name, ""));
+  const double index = e.number(name, 1);
+  if (!(index > 0)) throw Error(fmt::format("'{}' must be more than 0", name), p->at);
+  return index;
+}
+
+void Converter::set_roughness(Component& shader, const Element& e, Uv uv, double otherwise) {
+  const std::string distribution = e.string("distribution", "beckmann");
+  if (distribution == "ggx" || distribution == "beckmann") {
+    set_member(shader, "distribution", distribution, e.location_of("distribution"));
+  } else if (distribution == "phong" || distribution == "as") {
+    importing_.inexact(fmt::format("the microfacet distribution '{}' is taken for 'beckmann'", distribution),
+                       e.location_of("distribution"));
+    set_member(shader, "distribution", "beckmann", e.at);
+  } else {
+    throw Error(fmt::format("there is no microfacet distribution '{}'{}", distribution,
+                            suggestion(distribution, {"beckmann", "ggx", "phong", "as"})),
+                e.location_of("distribution"));
+  }
+  if (e.has("alpha_u") || e.has("alpha_v")) {
+    set(shader, "roughness", scalar(e, "alpha_u", otherwise, uv));
+    set(shader, "roughness_v", scalar(e, "alpha_v", otherwise, uv));
+  } else {
+    set(shader, "roughness", scalar(e, "alpha", otherwise, uv));
+  }
+  set_member(shader, "multiple_scattering", false, e.at);
+  e.ignore({"sample_visible"});
+}
+
+Converter::Surface Converter::dielectric(const Element& e, Uv uv, const std::string& name) {
+  const double inside = index(e, "int_ior", "bk7"), outside = index(e, "ext_ior", "air");
+  const bool thin = e.type == "thindielectric";
+  Ref<Component> shader = make(thin ? "ThinDielectric" : "Dielectric", e, name);
+  if (thin) {
+    set_member(*shader, "ior", inside / outside, e.location_of("int_ior"));
+  } else {
+    set_member(*shader, "ior", inside, e.location_of("int_ior"));
+    set_member(*shader, "exterior", outside, e.location_of("ext_ior"));
+    if (e.type == "roughdielectric") set_roughness(*shader, e, uv, 0.1);
+  }
+  if (e.has("specular_reflectance")) set(*shader, "reflection_tint", color(e, "specular_reflectance", 1, uv));
+  if (e.has("specular_transmittance")) set(*shader, "transmission_tint", color(e, "specular_transmittance", 1, uv));
+  return {shader, true};
+}
+
+Converter::Surface Converter::conductor(const Element& e, Uv uv, const std::string& name) {
+  std::string material = e.string("material", e.old && !e.has("eta") ? "Cu" : "none");
+  const bool by_numbers = e.has("eta") || e.has("k");
+  const bool rough = e.type == "roughconductor";
+  if (!by_numbers && (material == "none" || material == "None") && !rough) {
+    Ref<Component> mirror = make("PerfectSpecular", e, name);
+    set(*mirror, "color", color(e, "specular_reflectance", 1, uv));
+    return {mirror, false};
+  }
+  Ref<Component> shader = make("Conductor", e, name);
+  if (by_numbers) {
+    const Property *n = e.find("eta"), *k = e.find("k");
+    const auto* rgb_n = n ? std::get_if<ColorValue>(&n->value) : nullptr;
+    const auto* rgb_k = k ? std::get_if<ColorValue>(&k->value) : nullptr;
+    const double exterior = e.has("ext_eta") ? index(e, "ext_eta", "air") : 1;
+    const auto three = [&](const ColorValue& c) {
+      return Numbers{{c.rgb[0] / exterior, c.rgb[1] / exterior, c.rgb[2] / exterior}, 1, Dimension::none};
+    };
+    if (e.old && rgb_n && rgb_k && rgb_n->kind == ColorValue::Kind::rgb && rgb_k->kind == ColorValue::Kind::rgb) {
+      set_member(*shader, "index", "rgb", n->at);
+      set_member(*shader, "rgb_n", three(*rgb_n), n->at);
+      set_member(*shader, "rgb_k", three(*rgb_k), k->at);
+    } else {
+      const auto part = [&](const char* of, double otherwise) {
+        const Color c = spectrum_of(e, of, otherwise);
+        return exterior == 1 ? c : scaled_spectrum(1 / exterior, c);
+      };
+      set_member(*shader, "ior", complex_index(part("eta", 0), part("k", 1)), e.at);
+    }
+  } else if (material == "none" || material == "None") {
+    set_member(*shader, "ior", complex_index(flat_spectrum(0), flat_spectrum(1)), e.at);  // reflects all light
+  } else {
+    // Mitsuba's names may tell who measured: "Cu_palik".
+    const std::string element = material.substr(0, material.find('_'));
+    try {
+      set_member(*shader, "ior", metal_index(element), e.location_of("material"));
+      importing_.inexact(
+          fmt::format("the optical constants of '{}' are those of metal(\"{}\"), from another source", material, element),
+          e.location_of("material"));
+    } catch (const Error&) {
+      set_member(*shader, "ior", metal_index("Cr"), e.location_of("material"));
+      importing_.inexact(
+          fmt::format("the optical constants of '{}' are not known here: those of chromium stand for them", material),
+          e.location_of("material"));
+    }
+  }
+  set(*shader, "color", color(e, "specular_reflectance", 1, uv));
+  if (rough)
+    set_roughness(*shader, e, uv, 0.1);
+  else
+    set_member(*shader, "roughness", 0, e.at);
+  return {shader, false};
+}
+
+Converter::Surface Converter::plastic(const Element& e, Uv uv, const std::string& name) {
+  Ref<Component> shader = make("LossyPlastic", e, name);
+  set(*shader, "color", color(e, "diffuse_reflectance", 0.5, uv));
+  if (e.has("specular_reflectance")) set(*shader, "reflection_tint", color(e, "specular_reflectance", 1, uv));
+  set_member(*shader, "ior", index(e, "int_ior", "polypropylene") / index(e, "ext_ior", "air"), e.at);
+  set_member(*shader, "nonlinear", e.boolean("nonlinear", false), e.at);
+  if (e.type == "roughplastic") {
+    const std::string distribution = e.string("distribution", "beckmann");
+    if (distribution != "ggx" && distribution != "beckmann")
+      importing_.inexact(fmt::format("the microfacet distribution '{}' is taken for 'beckmann'", distribution),
+                         e.location_of("distribution"));
+    set_member(*shader, "distribution", distribution == "ggx" ? "ggx" : "beckmann", e.at);
+    const Value alpha = scalar(e, "alpha", 0.1, uv);
+    if (alpha.as<Number>())
+      set(*shader, "roughness", alpha);
+    else
+      importing_.inexact("the roughness of plastic is one number: 0.1 stands for the texture", e.location_of("alpha"));
+  } else {
+    set_member(*shader, "roughness", 0, e.at);
+  }
+  e.ignore({"sample_visible", "specular_sampling_weight"});
+  return {shader, false};
+}
+
+}  // namespace etendue::mitsuba

@@ -1,0 +1,81 @@
+// Attributes with the scene's parameters ("$spp") put in, and references by id.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene_reader.h"
+
+namespace etendue::mitsuba {
+
+std::optional<Text> SceneReader::attribute(const pugi::xml_node& node, const char* name) {
+  const pugi::xml_attribute a = node.attribute(name);
+  if (!a) return std::nullopt;
+  const Location place = file_->at(a, node);
+  return Text{with_parameters(a.value(), place), place};
+}
+
+Text SceneReader::required(const pugi::xml_node& node, const char* name) {
+  if (auto text = attribute(node, name)) return *text;
+  throw Error(fmt::format("<{}> needs the attribute '{}'", node.name(), name), at(node));
+}
+
+void SceneReader::expect_attributes(const pugi::xml_node& node, std::initializer_list<const char*> names) {
+  const std::vector<std::string> known(names.begin(), names.end());
+  for (const pugi::xml_attribute& a : node.attributes())
+    if (std::ranges::find(known, a.name()) == known.end())
+      throw Error(fmt::format("<{}> has no attribute '{}'{}", node.name(), a.name(), suggestion(a.name(), known)),
+                  file_->at(a, node));
+}
+
+std::string SceneReader::with_parameters(const std::string& text, Location at) {
+  size_t dollar = text.find('$');
+  if (dollar == std::string::npos) return text;
+  std::string result = text.substr(0, dollar);
+  while (dollar != std::string::npos) {
+    size_t end = dollar + 1;
+    while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_')) ++end;
+    const std::string word = text.substr(dollar + 1, std::min(end - dollar - 1, size_t(200)));
+    // "$resolution_x" may be the parameter "resolution" with something after it: the longest name that is known counts.
+    std::optional<std::string> value;
+    size_t length = word.size();
+    for (; length > 0 && !value; --length) {
+      const std::string name = word.substr(0, length);
+      if (const auto found = defaults_.find(name); found != defaults_.end())
+        value = found->second;
+      else
+        value = importing_.parameter(name);
+      if (value) break;
+    }
+    if (!value) {
+      std::vector<std::string> names;
+      for (const auto& [name, unused] : defaults_) names.push_back(name);
+      throw Error(
+          fmt::format("the parameter '${}' has no value: neither <default> nor -D gives one{}", word, suggestion(word, names)),
+          at);
+    }
+    result += *value;
+    const size_t rest = dollar + 1 + length;
+    dollar = text.find('$', rest);
+    result += text.substr(rest, dollar == std::string::npos ? dollar : dollar - rest);
+    if (result.size() > 1'000'000) throw Error("a value with its parameters is longer than 1000000 characters", at);
+  }
+  return result;
+}
+
+void SceneReader::resolve() {
+  std::vector<std::string> ids;
+  for (const auto& [id, element] : by_id_) ids.push_back(id);
+  for (const auto& element : elements_)
+    for (Property& p : element->properties) {
+      auto* nested = std::get_if<Nested>(&p.value);
+      if (!nested || nested->element) continue;
+      const auto found = by_id_.find(nested->reference);
+      if (found == by_id_.end())
+        throw Error(fmt::format("there is nothing of the id '{}'{}", nested->reference, suggestion(nested->reference, ids)),
+                    p.at);
+      nested->element = found->second;
+    }
+}
+
+}  // namespace etendue::mitsuba

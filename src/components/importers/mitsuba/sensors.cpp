@@ -1,0 +1,224 @@
+// Sensors and films.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "converter.h"
+
+namespace etendue::mitsuba {
+
+namespace {
+
+const std::vector<std::string> known_sensors = {"perspective",     "thinlens",     "orthographic",     "radiancemeter",
+                                                "irradiancemeter", "fluencemeter", "telecentric",      "spherical",
+                                                "distant",         "batch",        "perspective_rdist"};
+
+Numbers three(double x, double y, double z) { return {{x, y, z}, 1, Dimension::none}; }
+
+DoubleVector3 column(const Transform::DoubleMatrix& m, size_t i) { return {m[i], m[4 + i], m[8 + i]}; }
+
+/// The same without stretching, of which Mitsuba's cameras take no notice.
+Transform unstretched(const Transform& t) {
+  const Transform::DoubleMatrix& m = t.exact();
+  Transform::DoubleMatrix r = m;
+  for (size_t i = 0; i < 3; ++i) {
+    const double l = length(column(m, i));
+    for (size_t row = 0; row < 3; ++row) r[4 * row + i] = l > 0 ? m[4 * row + i] / l : m[4 * row + i];
+  }
+  return Transform(r);
+}
+
+}  // namespace
+
+void Converter::place(Component& camera, const Element& e) {
+  const TransformValue t = e.transform();
+  const Location at = e.location_of("to_world");
+  if (t.look_at) {
+    set_member(camera, "from", three(t.look_at->from.x, t.look_at->from.y, t.look_at->from.z), at);
+    set_member(camera, "to", three(t.look_at->to.x, t.look_at->to.y, t.look_at->to.z), at);
+    set_member(camera, "up", three(t.look_at->up.x, t.look_at->up.y, t.look_at->up.z), at);
+  } else if (t.transform.animated()) {
+    set_member(camera, "transform", t.transform, at);
+  } else if (const Transform bare = unstretched(t.transform.still()); !bare.identity()) {
+    set_member(camera, "transform", bare, at);
+  }
+}
+
+Ref<Component> Converter::camera(const Element& e, int width, int height) {
+  if (std::ranges::find(known_sensors, e.type) == known_sensors.end()) fail_unknown(e, known_sensors);
+  const Reading reading(e);
+  Ref<Component> camera;
+  if (e.type == "orthographic" || e.type == "telecentric") {
+    camera = make("OrthographicCamera", e);
+    const Transform::DoubleMatrix m = e.transform().transform.still().exact();
+    const double x = length(column(m, 0)), y = length(column(m, 1));
+    set_member(*camera, "width", 2 * x, e.location_of("to_world"));
+    if (std::abs(x - y) > 1e-4 * x)
+      importing_.inexact("the picture of an orthographic sensor is not stretched upwards", e.location_of("to_world"));
+    if (e.type == "telecentric") inexact(e, "a telecentric lens is taken for a pinhole: all is sharp");
+  } else {
+    if (e.type != "perspective" && e.type != "thinlens")
+      inexact(e, fmt::format("sensor '{}' has no counterpart here: a perspective camera stands for it", e.type));
+    camera = make("PerspectiveCamera", e);
+    set_view(*camera, e, width, height);
+    if (e.type == "thinlens") {
+      set_member(*camera, "lens_radius", e.number("aperture_radius", 0), e.location_of("aperture_radius"));
+      set_member(*camera, "focus_distance", e.number("focus_distance", 0), e.location_of("focus_distance"));
+    }
+  }
+  place(*camera, e);
+  set_shutter(*camera, e);
+  // Rays start at near_clip there. What stands nearer is seen here, unless the camera can leave it out.
+  if (const Member* near_clip = camera->class_info().find("near"); near_clip) {
+    set_member(*camera, "near", e.number("near_clip", 1e-2), e.location_of("near_clip"));
+    if (e.has("far_clip")) set_member(*camera, "far", e.number("far_clip", 1e4), e.location_of("far_clip"));
+  }
+  e.ignore({"near_clip", "far_clip", "focus_distance", "srf"});
+  if (const Element* medium = e.nested("medium"); medium)
+    importing_.inexact("a medium around the sensor is not expressed", e.location_of("medium"));
+  return camera;
+}
+
+void Converter::set_view(Component& camera, const Element& e, int width, int height) {
+  constexpr double film_diagonal = 43.266615305567875;  // [mm] of 36 x 24 mm
+  const double w = width, h = height, diagonal = std::hypot(w, h);
+  std::string axis = e.string("fov_axis", "x");
+  double fov = e.number("fov", 0);
+  Location at = e.location_of("fov");
+  if (!e.has("fov")) {
+    const Property* p = e.find("focal_length");
+    double focal_length = 50;  // [mm]
+    if (p) {
+      std::string text = std::holds_alternative<std::string>(p->value) ? e.string("focal_length", "") : "";
+      if (text.ends_with("mm")) text.resize(text.size() - 2);
+      focal_length = text.empty() ? e.number("focal_length", focal_length) : parse_number({text, p->at});
+      at = p->at;
+    }
+    if (!(focal_length > 0)) throw Error("a focal length must be more than 0 mm", at);
+    fov = 2 * std::atan(film_diagonal / 2 / focal_length) * 180 / std::numbers::pi;
+    axis = "diagonal";
+  }
+  static const std::vector<std::string> axes = {"x", "y", "diagonal", "smaller", "larger"};
+  if (std::ranges::find(axes, axis) == axes.end())
+    throw Error(fmt::format("there is no axis '{}'{}", axis, suggestion(axis, axes)), e.location_of("fov_axis"));
+  if (axis == "diagonal") {
+    fov = 2 * std::atan(std::tan(fov / 2 * std::numbers::pi / 180) * w / diagonal) * 180 / std::numbers::pi;
+    axis = "x";
+  }
+  set_member(camera, "fov", fov, at);
+  set_member(camera, "fov_axis", axis == "x" ? "width" : (axis == "y" ? "height" : axis.c_str()), e.location_of("fov_axis"));
+  for (const char* shifted : {"principal_point_offset_x", "principal_point_offset_y"})
+    if (e.number(shifted, 0) != 0)
+      importing_.inexact("the middle of the picture lies in the camera's axis: an offset is left out", e.location_of(shifted));
+}
+
+void Converter::set_shutter(Component& camera, const Element& e) {
+  if (e.has("shutter_open")) set_member(camera, "shutter_open", e.number("shutter_open", 0), e.location_of("shutter_open"));
+  const double close = e.number("shutter_close", e.number("shutter_open", 0));
+  if (e.has("shutter_close")) set_member(camera, "shutter_close", close, e.location_of("shutter_close"));
+}
+
+Ref<Component> Converter::image(const Element* film, int& width, int& height) {
+  Ref<Component> image = film ? make("ImageBuffer", *film) : importing_.make("ImageBuffer", importing_.at());
+  const Location at = film ? film->at : importing_.at();
+  if (film) {
+    film->read = true;
+    const std::int64_t w = film->integer("width", width), h = film->integer("height", height);
+    set_member(*image, "width", double(w), film->location_of("width"));
+    set_member(*image, "height", double(h), film->location_of("height"));
+    width = int(w);
+    height = int(h);
+    if (film->has("crop_width") || film->has("crop_height") || film->has("crop_offset_x") || film->has("crop_offset_y")) {
+      const double x = double(film->integer("crop_offset_x", 0)), y = double(film->integer("crop_offset_y", 0));
+      set_member(*image, "crop",
+                 Numbers{{x, y, x + double(film->integer("crop_width", w)), y + double(film->integer("crop_height", h))},
+                         1,
+                         Dimension::none},
+                 film->location_of("crop_width"));
+    }
+    if (const Ref<Component> f = filter(*film)) set_member(*image, "filter", f, film->at);
+  } else {
+    set_member(*image, "width", width, at);
+    set_member(*image, "height", height, at);
+  }
+  if (!image->class_info().find("filter")) return image;
+  if (!film || film->all("rfilter").empty()) {
+    Ref<Component> gaussian = importing_.make("GaussianFilter", at);
+    set_member(*gaussian, "radius", 2, at);
+    set_member(*image, "filter", gaussian, at);
+  }
+  return image;
+}
+
+Ref<Component> Converter::filter(const Element& film) {
+  const std::vector<const Element*> filters = film.all("rfilter");
+  if (filters.empty()) return nullptr;
+  const Element& e = *filters.front();
+  const Reading reading(e);
+  Ref<Component> filter;
+  if (e.type == "box") {
+    filter = make("BoxFilter", e);
+    if (e.has("radius")) set_member(*filter, "radius", e.number("radius", 0.5), e.location_of("radius"));
+  } else if (e.type == "tent") {
+    filter = make("TriangleFilter", e);
+    if (e.has("radius")) set_member(*filter, "radius", e.number("radius", 1), e.location_of("radius"));
+  } else if (e.type == "gaussian") {
+    filter = make("GaussianFilter", e);
+    const double deviation = e.number("stddev", 0.5);
+    set_member(*filter, "deviation", deviation, e.location_of("stddev"));
+    set_member(*filter, "radius", 4 * deviation, e.location_of("stddev"));
+  } else if (e.type == "mitchell" || e.type == "catmullrom") {
+    filter = make("MitchellFilter", e);
+    const bool mitchell = e.type == "mitchell";
+    set_member(*filter, "b", mitchell ? e.number("b", e.number("A", 1. / 3)) : 0, e.at);
+    set_member(*filter, "c", mitchell ? e.number("c", 1. / 3) : 0.5, e.at);
+  } else if (e.type == "lanczos") {
+    filter = make("LanczosFilter", e);
+    set_member(*filter, "radius", double(e.integer("lobes", 3)), e.location_of("lobes"));
+  } else {
+    fail_unknown(e, {"box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"});
+  }
+  return filter;
+}
+
+void Converter::add_outputs(Component& job, const Element* film) {
+  static const std::vector<std::string> known_films = {"hdrfilm", "ldrfilm", "specfilm", "mfilm", "tiledhdrfilm"};
+  if (!film) return;
+  if (std::ranges::find(known_films, film->type) == known_films.end()) fail_unknown(*film, known_films);
+  film->ignore(
+      {"sample_border", "high_quality_edges", "banner", "label", "pixel_format", "attach_log", "compensate", "variable"});
+  Value::List outputs;
+  if (film->type == "ldrfilm") {
+    Ref<Component> tone_map = make("ExposureToneMap", *film, "");
+    if (film->has("exposure")) set_member(*tone_map, "stops", film->number("exposure", 0), film->location_of("exposure"));
+    const double gamma = film->number("gamma", -1);
+    if (gamma == 2.2)
+      set_member(*tone_map, "transfer", "gamma2.2", film->location_of("gamma"));
+    else if (gamma == 1)
+      set_member(*tone_map, "transfer", "linear", film->location_of("gamma"));
+    else if (gamma > 0)
+      importing_.inexact(fmt::format("a gamma of {} is taken for sRGB's", gamma), film->location_of("gamma"));
+    if (film->string("tonemap_method", "gamma") != "gamma")
+      importing_.inexact("the tone map is exposure and gamma alone", film->location_of("tonemap_method"));
+    set_member(job, "tone_map", tone_map, film->at);
+    const std::string format = film->string("file_format", "png");
+    if (format != "png")
+      importing_.inexact(fmt::format("a picture in '{}' is written as PNG", format), film->location_of("file_format"));
+    outputs.emplace_back(make("PngOutput", *film, ""), film->at);
+    film->ignore({"key", "burn"});
+  } else {
+    if (film->type == "specfilm" || film->type == "mfilm")
+      inexact(*film, fmt::format("film '{}' is taken for 'hdrfilm'", film->type));
+    const std::string format = film->string("file_format", "openexr");
+    Ref<Component> output = make(format == "rgbe" ? "HdrOutput" : "ExrOutput", *film, "");
+    const std::string component = film->string("component_format", "float16");
+    if (format != "rgbe" && component == "float16")
+      set_member(*output, "precision", "half", film->location_of("component_format"));
+    outputs.emplace_back(output, film->at);
+  }
+  set(job, "outputs", Value(std::move(outputs), film->at));
+}
+
+}  // namespace etendue::mitsuba

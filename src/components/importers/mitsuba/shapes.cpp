@@ -1,0 +1,177 @@
+// Shapes: what Mitsuba has by formula, and what all shapes share.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "converter.h"
+#include "etendue/language/language.h"
+
+namespace etendue::mitsuba {
+
+namespace {
+
+const std::vector<std::string> known_shapes = {
+    "obj",     "ply",        "serialized",  "sphere",     "rectangle",    "disk",           "cylinder",
+    "cube",    "shapegroup", "instance",    "hair",       "bsplinecurve", "linearcurve",    "merge",
+    "sdfgrid", "ellipsoids", "heightfield", "deformable", "blender",      "ellipsoidsmesh", "batch"};
+
+Numbers three(double x, double y, double z) { return {{x, y, z}, 1, Dimension::none}; }
+
+bool mirrors(const TransformValue& t) { return t.transform.still().flips(); }
+
+}  // namespace
+
+Ref<SceneObject> Converter::shape(const Element& e) {
+  if (std::ranges::find(known_shapes, e.type) == known_shapes.end()) fail_unknown(e, known_shapes);
+  const Reading reading(e);
+  if (e.type == "instance") return ref_cast<SceneObject>(instance(e));
+  if (e.type == "merge") {
+    Ref<Component> all = group(e);
+    set_transform(*all, e.transform(), e.location_of("to_world"));
+    return ref_cast<SceneObject>(all);
+  }
+  Uv uv = Uv::as_is;
+  Ref<Component> object = geometry(e, uv);
+  if (!object) {
+    inexact(e, fmt::format("shape '{}' is not known here: it is left out", e.type));
+    return nullptr;
+  }
+  set_surface(*object, e, uv);
+  return ref_cast<SceneObject>(object);
+}
+
+Ref<Component> Converter::geometry(const Element& e, Uv& uv) {
+  if (e.type == "obj" || e.type == "ply" || e.type == "serialized") return mesh(e, uv);
+  if (e.type == "sphere") {
+    uv = Uv::from_top;
+    return sphere(e);
+  }
+  if (e.type == "rectangle") return rectangle(e);
+  if (e.type == "cylinder") return cylinder(e);
+  if (e.type == "cube") return cube(e);
+  if (e.type == "hair" || e.type == "bsplinecurve" || e.type == "linearcurve") return curves(e);
+  if (e.type != "disk") return nullptr;
+  Ref<Component> disc = make("Disc", e);
+  set_transform(*disc, e.transform(), e.location_of("to_world"));
+  if (textured(e)) {
+    if (disc->class_info().find("coordinates"))
+      set_member(*disc, "coordinates", "polar", e.at);
+    else
+      inexact(e, "a disk's coordinates for textures are along x and y, not around it");
+  }
+  return disc;
+}
+
+Ref<Component> Converter::sphere(const Element& e) {
+  Ref<Component> sphere = make("Sphere", e);
+  const DoubleVector3 centre = e.vector("center", {0, 0, 0});
+  if (e.has("center")) set_member(*sphere, "centre", three(centre.x, centre.y, centre.z), e.location_of("center"));
+  if (e.has("radius")) set_member(*sphere, "radius", e.number("radius", 1), e.location_of("radius"));
+  set_transform(*sphere, e.transform(), e.location_of("to_world"));
+  return sphere;
+}
+
+Ref<Component> Converter::rectangle(const Element& e) {
+  Ref<Component> rectangle = make("Rectangle", e);
+  set_member(*rectangle, "corner", three(-1, -1, 0), e.at);
+  set_member(*rectangle, "edge_u", three(2, 0, 0), e.at);
+  set_member(*rectangle, "edge_v", three(0, 2, 0), e.at);
+  set_transform(*rectangle, e.transform(), e.location_of("to_world"));
+  return rectangle;
+}
+
+Ref<Component> Converter::cylinder(const Element& e) {
+  const DoubleVector3 from = e.vector("p0", {0, 0, 0}), to = e.vector("p1", {0, 0, 1});
+  const double radius = e.number("radius", 1);
+  const DoubleVector3 way{to.x - from.x, to.y - from.y, to.z - from.z};
+  const double height = length(way);
+  if (!(height > 0)) throw Error("the ends of the cylinder, p0 and p1, are the same", e.at);
+  if (!(radius > 0)) throw Error("the radius of a cylinder must be more than 0", e.location_of("radius"));
+  // The frame of Duff et al. 2017, "Building an orthonormal basis, revisited", as there: u begins where it points.
+  const DoubleVector3 n{way.x / height, way.y / height, way.z / height};
+  const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  const DoubleVector3 s{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, t{b, sign + n.y * n.y * a, -n.y};
+  const Transform frame(Transform::DoubleMatrix{s.x, t.x, n.x, from.x, s.y, t.y, n.y, from.y, s.z, t.z, n.z, from.z});
+  Ref<Component> cylinder = make("Cylinder", e);
+  set_member(*cylinder, "radius", radius, e.at);
+  set_member(*cylinder, "height", height, e.at);
+  set_member(*cylinder, "caps", false, e.at);
+  TransformValue placed = e.transform();
+  placed.transform = placed.transform * AnimatedTransform(frame * Transform::translate({0, 0, height / 2}));
+  set_transform(*cylinder, placed, e.location_of("to_world"));
+  return cylinder;
+}
+
+Ref<Component> Converter::cube(const Element& e) {
+  if (!textured(e)) {
+    Ref<Component> box = make("Box", e);
+    set_member(*box, "size", three(2, 2, 2), e.at);
+    set_transform(*box, e.transform(), e.location_of("to_world"));
+    return box;
+  }
+  // The faces of a Box have other coordinates for textures than those of Mitsuba's cube.
+  Ref<Component> mesh = make("TriangleMesh", e);
+  static constexpr int corners[6][4] = {{4, 5, 1, 0}, {6, 2, 3, 7}, {4, 6, 7, 5}, {5, 7, 3, 1}, {1, 3, 2, 0}, {6, 4, 0, 2}};
+  Numbers positions{{}, 3, Dimension::none}, uvs{{}, 2, Dimension::none}, triangles{{}, 1, Dimension::none};
+  for (int face = 0; face < 6; ++face) {
+    for (const int corner : corners[face])
+      for (const int bit : {4, 2, 1}) positions.values.push_back(corner & bit ? 1 : -1);
+    for (const double x : {0., 1., 1., 1., 1., 0., 0., 0.}) uvs.values.push_back(x);
+    for (const int i : {0, 1, 2, 3, 0, 2}) triangles.values.push_back(4 * face + i);
+  }
+  set_member(*mesh, "positions", positions, e.at);
+  set_member(*mesh, "uvs", uvs, e.at);
+  set_member(*mesh, "triangles", triangles, e.at);
+  set_transform(*mesh, e.transform(), e.location_of("to_world"));
+  return mesh;
+}
+
+bool Converter::textured(const Element& e) {
+  if (const auto [known, is_new] = textured_.emplace(&e, false); !is_new) return known->second;
+  for (const Property& p : e.properties) {
+    const auto* nested = std::get_if<Nested>(&p.value);
+    if (!nested) continue;
+    const Element& inner = *nested->element;
+    if ((inner.tag == "texture" && inner.type != "mesh_attribute" && inner.type != "vertexcolors") || textured(inner))
+      return textured_[&e] = true;
+  }
+  return false;
+}
+
+void Converter::set_surface(Component& object, const Element& e, Uv uv) {
+  bool flipped = e.boolean("flip_normals", false);
+  if (e.type == "sphere" && mirrors(e.transform())) flipped = !flipped;
+  const std::vector<const Element*> bsdfs = e.all("bsdf"), emitters = e.all("emitter");
+  if (bsdfs.size() > 1) importing_.inexact("a shape has one bsdf: the first counts", bsdfs[1]->at);
+  if (!e.all("subsurface").empty()) inexact(e, "subsurface scattering of Mitsuba 0.5 is left out: the bsdf alone counts");
+  if (!e.all("sensor").empty()) inexact(e, "a sensor on a shape is left out");
+
+  const Element* const interior = e.nested("interior");
+  Surface looks;
+  if (!bsdfs.empty()) {
+    looks = surface(*bsdfs.front(), textured(*bsdfs.front()) ? uv : Uv::as_is);
+  } else if (e.old && emitters.empty() && (interior || e.nested("exterior"))) {
+    looks = {make("PassThrough", e, ""), true};  // what bounds a medium and nothing else
+  } else if (emitters.empty()) {
+    looks = {make("Lambertian", e, ""), false};  // half of the light is reflected, as there
+  }
+  if (looks.shader) set_member(object, "shader", looks.shader, e.at);
+  const char* const front = flipped ? "back" : "front";
+  if (looks.shader && !looks.both_sides) set_member(object, "sides", front, e.at);
+  if (flipped && looks.both_sides && looks.shader && looks.shader->class_info().name == "Dielectric")
+    inexact(e, "the normals of a transparent body are not turned round: its index is inside");
+  if (!emitters.empty()) {
+    Ref<Component> emission = area_emission(*emitters.front(), uv);
+    if (flipped) set_member(*emission, "sides", "back", e.at);
+    set_member(object, "emission", emission, e.at);
+  }
+  if (interior)
+    if (const Ref<Component> inside = medium(*interior, object)) set_member(object, "interior", inside, e.location_of("interior"));
+  if (const Element* exterior = e.nested("exterior"); exterior && !exterior->being_read)
+    importing_.inexact("a medium around a shape is not expressed: the body it is inside of has to name it as its interior",
+                       e.location_of("exterior"));
+  e.ignore({"silhouette_sampling_weight"});
+}
+
+}  // namespace etendue::mitsuba

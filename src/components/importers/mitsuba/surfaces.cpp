@@ -1,0 +1,213 @@
+// Surfaces: which of Mitsuba's bsdfs is which shader, and those that hold others.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "converter.h"
+
+namespace etendue::mitsuba {
+
+namespace {
+
+const std::vector<std::string> known_bsdfs = {"diffuse",
+                                              "roughdiffuse",
+                                              "dielectric",
+                                              "thindielectric",
+                                              "roughdielectric",
+                                              "conductor",
+                                              "roughconductor",
+                                              "plastic",
+                                              "roughplastic",
+                                              "coating",
+                                              "roughcoating",
+                                              "mask",
+                                              "twosided",
+                                              "blendbsdf",
+                                              "mixturebsdf",
+                                              "bumpmap",
+                                              "normalmap",
+                                              "phong",
+                                              "ward",
+                                              "difftrans",
+                                              "principled",
+                                              "principledthin",
+                                              "null",
+                                              "hair",
+                                              "measured",
+                                              "hk",
+                                              "irawan",
+                                              "pplastic",
+                                              "polarizer",
+                                              "retarder",
+                                              "circular",
+                                              "measured_polarized"};
+
+}  // namespace
+
+Converter::Surface Converter::surface(const Element& e, Uv uv) {
+  if (!textured(e)) uv = Uv::as_is;
+  if (const auto known = surfaces_.find({&e, uv}); known != surfaces_.end()) return known->second;
+  const Reading reading(e);
+  const Surface made = make_surface(e, uv, e.id);
+  surfaces_[{&e, uv}] = made;
+  return made;
+}
+
+Converter::Surface Converter::make_surface(const Element& e, Uv uv, const std::string& name) {
+  const std::string& type = e.type;
+  if (type == "diffuse" || type == "roughdiffuse" || type == "difftrans") return matte(e, uv, name);
+  if (type == "dielectric" || type == "roughdielectric" || type == "thindielectric") return dielectric(e, uv, name);
+  if (type == "conductor" || type == "roughconductor") return conductor(e, uv, name);
+  if (type == "plastic" || type == "roughplastic") return plastic(e, uv, name);
+  if (type == "coating" || type == "roughcoating") return coating(e, uv, name);
+  if (type == "blendbsdf" || type == "mixturebsdf") return mixture(e, uv, name);
+  if (type == "mask") return mask(e, uv, name);
+  if (type == "bumpmap" || type == "normalmap") return tilted(e, uv, name);
+  if (type == "phong" || type == "ward") return classic(e, uv, name);
+  if (type == "principled" || type == "principledthin") return principled(e, uv, name);
+  if (type == "hair") return fibre(e, name);
+  if (type == "null") return {make("PassThrough", e, name), true};
+  if (type == "measured") {
+    Ref<Component> shader = make("RglShader", e, name);
+    set_member(*shader, "file", file(e), e.location_of("filename"));
+    return {shader, false};
+  }
+  if (type == "twosided") {
+    const std::vector<const Element*> inner = e.all("bsdf");
+    if (inner.empty()) throw Error("'twosided' needs a bsdf", e.at);
+    if (inner.size() > 1) inexact(e, "both sides look like the first bsdf of 'twosided'");
+    if (!inner.front()->id.empty() || name.empty()) return {surface(*inner.front(), uv).shader, true};
+    const Reading reading(*inner.front());
+    return {make_surface(*inner.front(), uv, name).shader, true};
+  }
+  if (std::ranges::find(known_bsdfs, type) == known_bsdfs.end()) fail_unknown(e, known_bsdfs);
+  inexact(e, fmt::format("bsdf '{}' has no counterpart here: a matt grey stands for it", type));
+  return {make("Lambertian", e, name), false};
+}
+
+Converter::Surface Converter::inner_surface(const Element& e, Uv uv, size_t number) {
+  const std::vector<const Element*> inner = e.all("bsdf");
+  if (inner.size() <= number)
+    throw Error(fmt::format("'{}' needs {} bsdf{} inside", e.type, number + 1, number > 0 ? "s" : ""), e.at);
+  return surface(*inner[number], uv);
+}
+
+Converter::Surface Converter::mask(const Element& e, Uv uv, const std::string& name) {
+  const Surface inner = inner_surface(e, uv);
+  Ref<Component> shader = make("MaskShader", e, name);
+  set_member(*shader, "shader", inner.shader, e.at);
+  set(*shader, "opacity", scalar(e, "opacity", 0.5, uv));
+  return {shader, inner.both_sides};
+}
+
+Converter::Surface Converter::mixture(const Element& e, Uv uv, const std::string& name) {
+  const size_t count = e.all("bsdf").size();
+  if (count == 0) throw Error(fmt::format("'{}' needs bsdfs inside", e.type), e.at);
+  std::vector<Surface> parts;
+  bool differ = false, any = false;
+  for (size_t i = 0; i < count; ++i) {
+    parts.push_back(inner_surface(e, uv, i));
+    differ = differ || parts[i].both_sides != parts[0].both_sides;
+    any = any || parts[i].both_sides;
+  }
+  if (differ) inexact(e, "what is black from behind in one part of a mixture is seen from both sides here");
+  const auto mixed = [&](const Ref<Component>& first, const Ref<Component>& second, Value amount, const std::string& called) {
+    Ref<Component> mix = make("MixShader", e, called);
+    if (first) set_member(*mix, "first", first, e.at);
+    set_member(*mix, "second", second, e.at);
+    set(*mix, "amount", amount);
+    return mix;
+  };
+  if (e.type == "blendbsdf") {
+    if (count != 2) throw Error(fmt::format("'blendbsdf' needs two bsdfs inside, not {}", count), e.at);
+    return {mixed(parts[0].shader, parts[1].shader, scalar(e, "weight", 0.5, uv), name), any};
+  }
+  // Each of the first i parts has its share of what these make up; what is missing to 1 is black.
+  const std::string text = e.string("weights", "");
+  std::vector<double> weights = parse_numbers({text, e.location_of("weights")});
+  if (weights.size() != count)
+    throw Error(fmt::format("{} weights for {} bsdfs", weights.size(), count), e.location_of("weights"));
+  double sum = 0;
+  for (const double w : weights) {
+    if (!(w >= 0)) throw Error("weights must not be negative", e.location_of("weights"));
+    sum += w;
+  }
+  if (!(sum > 0)) throw Error("the weights are all 0", e.location_of("weights"));
+  if (sum > 1) {
+    importing_.inexact("the weights are more than 1 together: they are scaled down to 1", e.location_of("weights"));
+    for (double& w : weights) w /= sum;
+  }
+  Ref<Component> so_far;
+  double share = std::max(1 - sum, 0.0);  // of black
+  for (size_t i = 0; i < count; ++i) {
+    share += weights[i];
+    if (weights[i] == 0) continue;
+    so_far = weights[i] == share
+                 ? parts[i].shader
+                 : mixed(so_far, parts[i].shader, Value(Number{weights[i] / share}, e.at), i + 1 == count ? name : "");
+  }
+  return {so_far, any};
+}
+
+Converter::Surface Converter::coating(const Element& e, Uv uv, const std::string& name) {
+  const Surface inner = inner_surface(e, uv);
+  Ref<Component> top = make("Dielectric", e, "");
+  set_member(*top, "ior", index(e, "int_ior", "bk7") / index(e, "ext_ior", "air"), e.at);
+  if (e.type == "roughcoating") set_roughness(*top, e, uv, 0.1);
+  if (e.has("specular_reflectance")) set(*top, "reflection_tint", color(e, "specular_reflectance", 1, uv));
+  Ref<Component> layered = make("LayeredShader", e, name);
+  set_member(*layered, "top", top, e.at);
+  set_member(*layered, "bottom", inner.shader, e.at);
+  if (e.has("sigma_a")) {
+    Ref<Component> medium = make("HomogeneousVolume", e, "");
+    set_member(*medium, "absorption", spectrum_of(e, "sigma_a", 0), e.location_of("sigma_a"));
+    set_member(*layered, "medium", medium, e.at);
+    set_member(*layered, "thickness", e.number("thickness", 1), e.location_of("thickness"));
+  } else {
+    e.ignore({"thickness"});
+  }
+  inexact(e, fmt::format("'{}' here has the light too that goes back and forth between coat and body more than once", e.type));
+  e.ignore({"specular_sampling_weight"});
+  return {layered, inner.both_sides};
+}
+
+Converter::Surface Converter::tilted(const Element& e, Uv uv, const std::string& name) {
+  const Surface inner = inner_surface(e, uv);
+  std::string map_name;
+  for (const Property& p : e.properties)
+    if (const auto* nested = std::get_if<Nested>(&p.value); nested && nested->element->tag == "texture") map_name = p.name;
+  const Element* const map = e.nested(map_name);
+  if (!map || map->tag != "texture") throw Error(fmt::format("'{}' needs a texture", e.type), e.at);
+  Ref<Component> shader;
+  if (e.type == "bumpmap") {
+    shader = make("BumpShader", e, name);
+    set(*shader, "height", texture(*map, uv));
+    set_member(*shader, "scale", e.number("scale", 1), e.location_of("scale"));
+  } else {
+    const Reading reading(*map);
+    if (map->type == "rawconstant") {
+      const DoubleVector3 n = map->vector("value", {0.5, 0.5, 1});
+      if (n.x == 0.5 && n.y == 0.5) return inner;  // straight up: it changes nothing
+      inexact(*map, "a normal map of one normal is left out");
+      return inner;
+    }
+    if (map->type != "bitmap") {
+      inexact(*map, "a normal map is an image: this texture is left out");
+      return inner;
+    }
+    const Transform::DoubleMatrix t = to_uv(*map).exact();
+    if (t[1] != 0 || t[4] != 0 || t[3] != 0 || t[7] != 0)
+      importing_.inexact("a normal map is laid over the surface by a scale alone, neither turned nor moved",
+                         map->location_of("to_uv"));
+    shader = make("NormalMapShader", e, name);
+    set_member(*shader, "file", file(*map), map->location_of("filename"));
+    set_member(*shader, "repeat", Numbers{{t[0], uv == Uv::as_is ? -t[5] : t[5]}, 1, Dimension::none}, map->at);
+    map->ignore({"raw", "wrap_mode", "filter_type", "gamma"});
+  }
+  set_member(*shader, "shader", inner.shader, e.at);
+  e.ignore({"flip_invalid_normals", "use_shadowing_function"});
+  return {shader, inner.both_sides};
+}
+
+}  // namespace etendue::mitsuba

@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""Imports scenes of other programs, renders them and compares with the pictures those programs made.
+
+    tests/references/references.py --program build/etendue --data ../shared/validation --quick
+    tests/references/references.py --program build/etendue --data ../shared/validation --report docs/results/references.md
+
+A picture agrees when, in each of X, Y and Z, the mean of the whole is within three standard errors + 0.2 % of the reference's,
+and no tile of 8 x 8 pixels is further than four standard errors + 1 % (of the tile, or of a hundredth of the whole's mean). Standard
+errors are those of both pictures: of the reference by its published variance at 32000 samples a pixel, of the render by the
+variance layer of the film, which is of Y; X and Z have it times the ratio in which renders with different seeds scatter.
+Where the reference's errors are not known (Tungsten's pictures), the bounds are 1 % and, of tiles of 64 x 64 pixels, 5 %.
+"""
+
+import argparse
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from scenes import SCENES
+
+REFERENCE_SAMPLES = 32000
+SEEDS = 4
+SAMPLES_OF_ALL_PIXELS = 2_000_000
+
+
+def run(command):
+    result = subprocess.run(command, capture_output=True, text=True)
+    if result.returncode != 0:
+        raise RuntimeError(f"{' '.join(map(str, command))}\n{result.stdout}{result.stderr}")
+    return result.stderr
+
+
+def xyz(program, picture, folder):
+    """A picture's X, Y, Z."""
+    out = Path(folder) / "picture.npy"
+    run([program, "image", "tonemap", picture, out, "--tone-map", "NoToneMap {}"])
+    return np.load(out).astype(float)
+
+
+def render(program, scene, data, samples, seed, folder, extra):
+    out = Path(folder) / "render.npy"
+    command = [program, "render", Path(data) / scene.file, "--allow-path", data, "--quiet", "--samples", samples, "--seed", seed,
+               "--set", f'outputs=[NpyOutput {{ file: "{out}", layers: true }}]', "--set", 'image.layers=["variance"]',
+               *scene.options, *extra]
+    if scene.size:
+        command += ["--size", f"{scene.size[0]}x{scene.size[1]}"]
+    notes = run([str(c) for c in command])
+    return np.load(out).astype(float), notes
+
+
+def tiles(picture, size):
+    """Means over squares; what does not fill a square at the right and below is left out."""
+    h, w = picture.shape[0] // size * size, picture.shape[1] // size * size
+    return picture[:h, :w].reshape(h // size, size, w // size, size, -1).mean((1, 3))
+
+
+def compare(program, scene, data, effort, extra=()):
+    with tempfile.TemporaryDirectory() as folder:
+        reference = xyz(program, Path(data) / scene.reference, folder)
+        pixels = reference.shape[0] * reference.shape[1]
+        if scene.size:
+            pixels = scene.size[0] * scene.size[1]
+        samples = max(4, int(SAMPLES_OF_ALL_PIXELS * effort / pixels / SEEDS) * (8 if scene.size else 1))
+        renders = [render(program, scene, data, samples, seed, folder, extra) for seed in range(1, SEEDS + 1)]
+        notes = renders[0][1]
+        stack = np.array([picture for picture, _ in renders])
+        known = bool(scene.variance)
+        reference_variance = xyz(program, Path(data) / scene.variance, folder) / REFERENCE_SAMPLES if known else 0 * reference
+    ours = stack[..., :3].mean(0)
+    scatter = np.sqrt(np.mean(stack[..., :3].var(0, ddof=1), axis=(0, 1)))
+    ratio = (scatter / max(scatter[1], 1e-30)).clip(1, 4)
+    variance = stack[..., 3].mean(0)[..., None] / SEEDS * ratio**2
+    if scene.size:  # a tile of the reference is a smaller one here
+        factor = reference.shape[1] // scene.size[0]
+        reference, reference_variance = tiles(reference, factor), tiles(reference_variance, factor)
+    size = scene.tile // (factor if scene.size else 1)
+    n, in_tile = ours.shape[0] * ours.shape[1], size * size
+    # A filter wider than a pixel makes neighbours alike, so that means are less certain than of independent pixels.
+    alike = 4 if "texture_interp" in scene.file else 1
+    error = np.sqrt((variance.sum((0, 1)) * alike + np.abs(reference_variance).sum((0, 1))) / n**2)
+    mean, wanted = ours.mean((0, 1)), reference.mean((0, 1))
+    off = np.abs(mean - wanted)
+    whole_bound = 3 * error + (0.002 if known else 0.01) * wanted
+    t_ours, t_wanted = tiles(ours, size), tiles(reference, size)
+    t_error = np.sqrt((tiles(variance, size) * alike + tiles(np.abs(reference_variance), size)) / in_tile)
+    t_bound = 4 * t_error + (0.01 if known else 0.05) * np.maximum(t_wanted, wanted / 100)
+    over = np.abs(t_ours - t_wanted) / t_bound
+    if scene.skip_above:
+        h, w = t_ours.shape[:2]
+        brightest = reference[:h * size, :w * size, 1].reshape(h, size, w, size).max((1, 3))
+        over[brightest > scene.skip_above] = 0
+    worst = np.unravel_index(np.argmax(over.max(-1)), over.shape[:2])
+    return {
+        "scene": scene, "samples": samples * SEEDS, "mean": mean, "wanted": wanted, "difference": mean / wanted - 1,
+        "error": error / wanted, "whole": bool((off <= whole_bound).all()), "tiles": bool((over <= 1).all()),
+        "bad_tiles": int((over.max(-1) > 1).sum()), "count": over.shape[0] * over.shape[1], "worst": worst,
+        "worst_difference": (t_ours / np.maximum(t_wanted, 1e-9) - 1)[worst], "worst_over": over[worst].max(), "notes": notes,
+        "ours": ours, "reference": reference,
+    }
+
+
+def verdict(r):
+    agrees = r["whole"] and r["tiles"]
+    if agrees:
+        return "agrees"
+    return "differs, explained" if r["scene"].reason else "DIFFERS"
+
+
+def line(r):
+    d, e = 100 * r["difference"], 100 * r["error"]
+    return (f"{r['scene'].file.split('/')[-2 if 'bitterli' in r['scene'].file else -1]:55} {verdict(r):18} "
+            f"X {d[0]:+.2f} Y {d[1]:+.2f} Z {d[2]:+.2f} % (error {e[1]:.2f} %)  tiles over {r['bad_tiles']}/{r['count']}, worst "
+            f"{tuple(int(i) for i in r['worst'])} {np.round(100 * r['worst_difference'], 1)} % = {r['worst_over']:.2f} of the bound")
+
+
+def report(results):
+    text = ["# References", "",
+            "Generated by `tests/references/references.py --report`; the bounds are told at its top. Differences are of the whole "
+            "picture's X, Y and Z from the reference's; the standard error is that of both, of Y.", "",
+            "| scene | samples a pixel | X | Y | Z | standard error | tiles beyond the bound | |", "|---|---|---|---|---|---|---|---|"]
+    for r in results:
+        d = 100 * r["difference"]
+        text.append(f"| {r['scene'].file} | {r['samples']} | {d[0]:+.2f} % | {d[1]:+.2f} % | {d[2]:+.2f} % | "
+                    f"{100 * r['error'][1]:.2f} % | {r['bad_tiles']} of {r['count']} | {verdict(r)} |")
+    reasons = [r for r in results if r["scene"].reason]
+    if reasons:
+        text += ["", "## Why some differ", ""]
+        text += [f"- **{r['scene'].file}**: {r['scene'].reason}" for r in reasons]
+    return "\n".join(text) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--data", required=True, help="the folder of validation data")
+    parser.add_argument("--quick", action="store_true", help="few samples of the scenes that take least")
+    parser.add_argument("--effort", type=float, default=1.0, help="factor of the number of samples")
+    parser.add_argument("--only", default="", help="scenes whose file name holds this")
+    parser.add_argument("--report", help="where to write the table")
+    parser.add_argument("--keep", help="a folder for both pictures of each scene, as .npy")
+    options = parser.parse_args()
+    if not Path(options.data, "mitsuba").is_dir():
+        print(f"skipped: there is no validation data in {options.data}")
+        return 0
+    scenes = [s for s in SCENES if options.only in s.file and (s.quick or not options.quick)]
+    results, failed = [], 0
+    for scene in scenes:
+        try:
+            r = compare(options.program, scene, options.data, options.effort / (20 if options.quick else 1))
+        except RuntimeError as error:
+            print(f"{scene.file} FAILED\n{error}", flush=True)
+            failed += 1
+            continue
+        print(line(r), flush=True)
+        if verdict(r) == "DIFFERS":
+            failed += 1
+        if options.keep:
+            name = scene.file.replace("/", "_")
+            np.save(Path(options.keep) / f"{name}.ours.npy", r["ours"])
+            np.save(Path(options.keep) / f"{name}.reference.npy", r["reference"])
+        results.append(r)
+    if options.report:
+        Path(options.report).write_text(report(results))
+    print(f"{len(scenes) - failed} of {len(scenes)} agree or differ for a reason that is told")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

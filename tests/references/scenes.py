@@ -1,0 +1,58 @@
+"""Scenes with published pictures, how they are rendered to be compared, and what is known of their differences."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Scene:
+    file: str  # below the folder of validation data
+    reference: str
+    variance: str = ""  # of one sample of the reference; "": not known
+    options: list = field(default_factory=list)  # of `etendue render`
+    size: tuple = ()  # of the render, when it is not the reference's
+    tile: int = 8  # [pixels of the reference]
+    skip_above: float = 0.0  # tiles with a brighter pixel [Y] hold the edge of a light; 0: none is left out
+    quick: bool = False  # also in the short run of the test suite
+    reason: str = ""  # why the picture differs; "" when it must agree
+
+
+MITSUBA = "mitsuba/tests/scenes/"
+
+
+def mitsuba(path, **more):
+    folder, file = path.rsplit("/", 1)
+    name = file.rsplit("_", 1)[0]
+    references = f"{MITSUBA}{folder}/refs/{name}_ref_spectral"
+    return Scene(f"{MITSUBA}{path}.xml", f"{references}.exr", f"{references}_var.exr", **more)
+
+
+def bitterli(name, width, height, depth, **more):
+    return Scene(f"bitterli/{name}/scene.xml", f"bitterli/{name}/TungstenRender.exr", size=(width // 4, height // 4), tile=64,
+                 options=["--set", f"renderer.max_depth={depth}"], **more)
+
+
+SCENES = [
+    mitsuba("bsdf_spheres/test_arealight_path"),
+    mitsuba("bsdf_spheres/test_constant_path", quick=True),
+    mitsuba("bsdf_spheres/test_envmap_path"),
+    mitsuba("bsdf_spheres/test_normalmap_identity_roughconductor_path"),
+    mitsuba("bsdf_spheres/test_pointlight_path"),
+    mitsuba("bsdf_spheres/test_roughplastic_linear_path"),
+    mitsuba("bsdf_spheres/test_textured_diffuse_path", quick=True),
+    mitsuba("floating_sphere/test_directional_direct", quick=True),
+    mitsuba("infinite_mirrors/scene_path"),
+    mitsuba("instancing/test_instancing_path", quick=True),
+    mitsuba("mesh_attributes/test_mesh_attributes_1_face_direct"),
+    mitsuba("mesh_attributes/test_mesh_attributes_3_vertex_direct", quick=True),
+    mitsuba("orthographic_sensor/test_orthographic_path", quick=True),
+    mitsuba("participating_media/test_hetero_sigmat_volpath"),
+    mitsuba("participating_media/test_homo_area_light_volpath"),
+    mitsuba("participating_media/test_homo_null_envmap_volpath"),
+    mitsuba("participating_media/test_surf_area_light_volpath"),
+    mitsuba("spot_light/test_spot_direct"),
+    mitsuba("texture_interp/test_texture_interp_direct"),
+    bitterli("cornell-box", 1024, 1024, 64, skip_above=2),
+    bitterli("veach-mis", 1280, 720, 2, skip_above=8),
+    bitterli("material-testball", 1280, 720, 64),
+    bitterli("staircase2", 1024, 1024, 64, skip_above=10),
+]
