@@ -4,6 +4,7 @@
 #include "etendue/core/transform.h"
 #include "etendue/describe/color.h"
 #include "etendue/emission_shader.h"
+#include "etendue/object_map.h"
 #include "support/component_test_support.h"
 #include "support/image_file.h"
 
@@ -288,6 +289,94 @@ TEST(ProjectorEmission, SamplesFollowDensityAndTheImage) {
   EXPECT_GT(test::chi_square(counts, expected), 1e-3);
   EXPECT_NEAR(sum, double(e->power(*point, w)[0]), 0.02 * sum);
   EXPECT_LT(squares - sum * sum, 0.5 * sum * sum);
+}
+
+TEST(ProjectorEmission, AMapIsAsGoodAsAnImage) {
+  // The same checks as an image of 2 x 2 pixels that are not blurred, and as a map, whose v grows upwards.
+  std::vector<float> values(64 * 32);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 64; ++x) values[size_t(y * 64 + x)] = (x < 32) == (y < 16) ? 3.0f : 1.0f;
+  const ImageFile file("checks.exr", 64, 32, grey(values));
+  const Ref<ObjectMap> image = create<ObjectMap>("ImageMap", {{"file", file.path}, {"wrap", "clamp"}});
+  const auto of_file = create<EmissionShader>("ProjectorEmission", {{"file", file.path}, {"scale", 2.0}});
+  const auto of_map = create<EmissionShader>("ProjectorEmission", {{"picture", image}, {"scale", 2.0}, {"aspect", 2.0}});
+  const Ref<SceneObject> point = projecting_point();
+  const SurfacePoint p = point->sample_area({0.5f, 0.5f}, 0).point;
+  const Wavelengths w = test::wavelengths();
+  for (int i = 0; i < 100; ++i) {
+    const Vector3 d = normalize(Vector3{0.36f * (float(i % 10) / 4.5f - 1), 0.18f * (float(i / 10) / 4.5f - 1), -1});
+    const float wanted = of_file->radiance(p, d, w)[0];
+    EXPECT_NEAR(of_map->radiance(p, d, w)[0], wanted, 1e-4f * wanted + 1e-6f) << i;
+  }
+  EXPECT_NEAR(of_map->power(*point, w)[0], of_file->power(*point, w)[0], 2e-3f * of_file->power(*point, w)[0]);
+  test::Random random(15);
+  double sum = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const DirectionSample s = of_map->sample(p, random.pair());
+    ASSERT_GT(s.density, 0);
+    sum += double(of_map->radiance(p, s.direction, w)[0] / s.density) / 20000;
+  }
+  EXPECT_NEAR(sum, double(of_file->power(*point, w)[0]), 0.01 * sum);
+  EXPECT_THROW(create<EmissionShader>("ProjectorEmission"), Error);
+}
+
+// ---- RGB as light without a white --------------------------------------------------------------------------------------
+
+TEST(ReadAsMap, EqualPartsOfLightAreTheSameAtEveryWavelength) {
+  const ImageFile file("grey.exr", 2, 2, grey({3, 3, 3, 3}));
+  const Ref<ObjectMap> image = create<ObjectMap>("ImageMap", {{"file", file.path}});
+  const Ref<ObjectMap> flat = create<ObjectMap>("ReadAsMap", {{"map", image}}),
+                       light = create<ObjectMap>("ReadAsMap", {{"map", image}, {"as", "radiance"}});
+  const Color d65 = rgb_space("srgb").illuminant;
+  for (const float hero : {400.0f, 500.0f, 640.0f}) {
+    const Wavelengths w = test::wavelengths(hero);
+    for (const ColorUse use : {ColorUse::reflectance, ColorUse::radiance, ColorUse::coefficient})
+      for (int i = 0; i < spectrum_size; ++i) {
+        EXPECT_NEAR(flat->color({}, w, use)[i], 3, 3e-3f);
+        EXPECT_NEAR(light->color({}, w, use)[i], 3 * d65->at(w[i], ColorUse::radiance), 1e-2f);
+      }
+  }
+}
+
+TEST(EnvironmentEmission, WithoutItsWhiteAnImageOfGreyIsFlat) {
+  const ImageFile file("flat-sky.exr", 4, 2, grey(std::vector<float>(8, 2)));
+  const auto e = create<EmissionShader>("EnvironmentEmission", {{"file", file.path}});
+  set(*e, "illuminant", Value(false));
+  e->prepare();
+  const Wavelengths w = test::wavelengths();
+  for (int i = 0; i < spectrum_size; ++i) EXPECT_NEAR(seen(*e, {0, 0.6f, 0.8f}, w)[i], 2, 2e-3f);
+  set(*e, "illuminance", Value(Number{100}));
+  EXPECT_THROW(e->prepare(), Error);
+}
+
+TEST(EnvironmentEmission, RowsMayReachThePoles) {
+  // Rows of 1, 4, 10 at v = 0, 1/2, 1, linear between: light of a + b v, whose mean over the sphere is known.
+  const ImageFile file("rows.exr", 2, 3, grey({1, 1, 4, 4, 10, 10}));
+  const auto e = create<EmissionShader>("EnvironmentEmission", {{"file", file.path}, {"rows", "poles"}}),
+             one = create<EmissionShader>(
+                 "EnvironmentEmission",
+                 {{"radiance", create<ObjectMap>("ConstantMap", {{"value", rgb_color("srgb", 1, 1, 1)}})}});
+  const Wavelengths w = test::wavelengths();
+  const auto value = [&](double v) { return double(seen(*e, towards(180 * v, 20), w)[0] / seen(*one, {0, 1, 0}, w)[0]); };
+  EXPECT_NEAR(value(0), 1, 1e-3);
+  EXPECT_NEAR(value(0.25), 2.5, 1e-3);
+  EXPECT_NEAR(value(0.5), 4, 1e-3);
+  EXPECT_NEAR(value(0.75), 7, 1e-3);
+  EXPECT_NEAR(value(1), 10, 1e-3);
+  test::Random random(16);
+  double sum = 0, total = 0;
+  constexpr int n = 40000;
+  for (int i = 0; i < n; ++i) {
+    const DirectionSample s = e->sample_incident(random.pair());
+    ASSERT_GT(s.density, 0);
+    EXPECT_NEAR(e->incident_density(s.direction), s.density, 1e-3f * s.density);
+    sum += double(seen(*e, s.direction, w)[0] / seen(*one, {0, 1, 0}, w)[0] / s.density) / n;
+    total += double(e->incident_density(towards(std::acos(1 - 2 * double(random())) / degree, 33))) * 4 * M_PI / n;
+  }
+  // Integral over theta of (1 + 6 theta/pi | 4 + 12 (theta/pi - 1/2)) sin(theta) 2 pi, with v = theta / pi:
+  // upper half: 1 + 6/pi (sin - theta cos) at pi/2 = 1 + 6/pi; lower: -2 * 1 + 12/pi (pi - 1) = 10 - 12/pi.
+  EXPECT_NEAR(sum, 2 * M_PI * (11 - 6 / M_PI), 0.01 * sum);
+  EXPECT_NEAR(total, 1, 0.01);
 }
 
 }  // namespace

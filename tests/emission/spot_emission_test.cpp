@@ -11,11 +11,22 @@ namespace {
 
 struct Cone {
   double inner, outer;
+  bool linear = false;
 };
-constexpr Cone cones[] = {{20, 30}, {0, 45}, {40, 40}, {0.05, 0.1}, {60, 130}, {180, 180}, {0, 180}};
+constexpr Cone cones[] = {{20, 30},          {0, 45},         {40, 40},       {0.05, 0.1},   {60, 130},
+                          {180, 180},        {0, 180},        {15, 20, true}, {0, 45, true}, {40, 40, true},
+                          {0.05, 0.1, true}, {60, 130, true}, {0, 180, true}, {1, 2.5, true}};
+
+/// The integral of the profile over all directions: for a linear edge 2 pi (1 - (sin b - sin a) / (b - a)), by parts.
+double solid_angle(const Cone& c) {
+  const double a = c.inner * M_PI / 180, b = c.outer * M_PI / 180;
+  if (!c.linear || a == b) return M_PI * (one_minus_cosine(c.inner) + one_minus_cosine(c.outer));
+  return 2 * M_PI * (1 - (std::sin(b) - std::sin(a)) / (b - a));
+}
 
 std::string spot(const Cone& c, const std::string& more = "") {
-  return "SpotEmission { inner_angle: " + std::to_string(c.inner) + ", outer_angle: " + std::to_string(c.outer) + more + " }";
+  return "SpotEmission { inner_angle: " + std::to_string(c.inner) + ", outer_angle: " + std::to_string(c.outer) +
+         (c.linear ? ", edge: linear" : "") + more + " }";
 }
 
 TEST(SpotEmission, FallsOffBetweenItsAngles) {
@@ -37,6 +48,45 @@ TEST(SpotEmission, FallsOffBetweenItsAngles) {
   EXPECT_EQ(at_cosine(-1), 0);
 }
 
+TEST(SpotEmission, ALinearEdgeFallsWithTheAngle) {
+  const Ref<SceneObject> lamp = prepared_as<SceneObject>(
+      "Point { emission: SpotEmission { radiance: 3, inner_angle: 15, outer_angle: 20, edge: linear } }");
+  const SurfacePoint p = lamp->sample_area({}, 0).point;
+  for (const double angle : {0.0, 14.99, 15.5, 16.0, 17.5, 19.0, 19.9, 20.01, 100.0}) {
+    const double a = angle * M_PI / 180, wanted = 3 * std::clamp((20 - angle) / 5, 0.0, 1.0);
+    const Vector3 d{float(std::sin(a) * 0.6), float(std::sin(a) * 0.8), float(std::cos(a))};
+    EXPECT_NEAR(double(lamp->emission->radiance(p, d, wavelengths())[0]), wanted, 1e-5) << angle;
+  }
+}
+
+TEST(SpotEmission, APictureSpansTheOuterAngle) {
+  // u = 0 and 1 where the angle to the axis is 30 degrees towards -x and +x; the picture's halves along u let 0.2 and 0.7
+  // through, and, along v, all of it: half the light of each.
+  const std::string halves = "CheckerMap { repeat: [2, 0.5, 1], first: 0.2, second: 0.7 }";
+  const Ref<SceneObject>
+      plain = prepared_as<SceneObject>("Point { emission: SpotEmission { radiance: 2 } }"),
+      lamp = prepared_as<SceneObject>("Point { emission: SpotEmission { radiance: 2, picture: " + halves + " } }"),
+      quarters = prepared_as<SceneObject>(
+          "Point { emission: SpotEmission { radiance: 2, picture: CheckerMap { repeat: [4, 0.5, 1], first: 0.2, "
+          "second: 0.7 } } }");
+  const Wavelengths w = wavelengths();
+  const SurfacePoint p = lamp->sample_area({}, 0).point;
+  const auto seen = [&](const Ref<SceneObject>& l, double x, double y) {
+    const Vector3 d = normalize(Vector3{float(x), float(y), 1});
+    return double(l->emission->radiance(p, d, w)[0] / plain->emission->radiance(p, d, w)[0]);
+  };
+  EXPECT_NEAR(seen(lamp, -0.01, 0.1), 0.2, 1e-6);
+  EXPECT_NEAR(seen(lamp, 0.01, -0.1), 0.7, 1e-6);
+  const double quarter = std::tan(30 * M_PI / 180) / 2;  // from the axis, on a plane at distance 1
+  EXPECT_NEAR(seen(quarters, -1.02 * quarter, 0), 0.2, 1e-6);
+  EXPECT_NEAR(seen(quarters, -0.98 * quarter, 0), 0.7, 1e-6);
+  EXPECT_NEAR(seen(quarters, 0.98 * quarter, 0), 0.2, 1e-6);
+  EXPECT_NEAR(seen(quarters, 1.02 * quarter, 0), 0.7, 1e-6);
+  EXPECT_NEAR(double(lamp->emission->power(*lamp, w)[0]), 0.45 * double(plain->emission->power(*plain, w)[0]), 1e-3);
+  expect_refused("SpotEmission { picture: 0.5, outer_angle: 90 deg }", "picture", "less than 90");
+  expect_refused("SpotEmission { picture: 0.5, axis: [1, 0, 0] }", "picture", "+z");
+}
+
 TEST(SpotEmission, PowerOfAPointIsItsIntensityOverAllDirections) {
   const Wavelengths w = wavelengths();
   // A stretched object's cone stays round around the stretched axis.
@@ -53,7 +103,7 @@ TEST(SpotEmission, PowerOfAPointIsItsIntensityOverAllDirections) {
                                               [&](const Vector3& d) { return double(lamp->emission->radiance(p, d, w)[0]); });
       const double power = double(lamp->emission->power(*lamp, w)[0]);
       EXPECT_NEAR(power, emitted, 2e-3 * emitted) << c.inner << " " << c.outer << " " << watts;
-      const double omega = M_PI * (one_minus_cosine(c.inner) + one_minus_cosine(c.outer));
+      const double omega = solid_angle(c);
       EXPECT_NEAR(power, watts > 0 ? watts / 470 : 2 * omega, 1e-5 * power);
     }
 }

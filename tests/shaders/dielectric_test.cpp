@@ -135,6 +135,69 @@ TEST(Dielectric, TakesTheIndexOutsideFromTheMedia) {
   EXPECT_NEAR(scatter.sample(at_angle(scatter.frame(), 180), 0.9f, {})->eta, 1.33 / 1.5, 1e-6);
 }
 
+TEST(Dielectric, AnExteriorIndexStandsWhateverIsAround) {
+  test::TestSquare glass, water;
+  const Ref<Shader> shader = create<Shader>("Dielectric", {{"ior", 1.5}, {"exterior", flat_spectrum(1.33f)}}),
+                    water_shader = create<Shader>("Dielectric", {{"ior", 2.0}});
+  glass.reference();
+  water.reference();
+  glass.shader = shader;
+  water.shader = water_shader;
+  MediumStack media;
+  media.enter(water);
+  SurfacePoint p = test::surface_point();
+  Arena arena;
+  const double normal = std::pow((1.5 - 1.33) / (1.5 + 1.33), 2);
+  EXPECT_NEAR(reflectance(*shader->bind(p, test::wavelengths(), arena), 0), normal, 1e-6);
+  p.object = &glass;
+  p.media = &media;
+  const Scatter& scatter = *shader->bind(p, test::wavelengths(), arena);
+  EXPECT_NEAR(reflectance(scatter, 0), normal, 1e-6);
+  EXPECT_NEAR(reflectance(scatter, 180), normal, 1e-6);
+  EXPECT_NEAR(scatter.sample(at_angle(scatter.frame(), 180), 0.9f, {})->eta, 1.33 / 1.5, 1e-6);
+  EXPECT_THROW(create<Shader>("Dielectric", {{"exterior", flat_spectrum(0)}}), Error);
+}
+
+TEST(Dielectric, TintsMultiplyEachPart) {
+  const Color half = table_spectrum({360, 830}, {0.9f, 0.3f}), most = table_spectrum({360, 830}, {0.5f, 0.8f});
+  const Wavelengths w = test::wavelengths();
+  Arena arena;
+  for (const char* name : {"Dielectric", "ThinDielectric"})
+    for (const double angle : {20.0, 70.0, 160.0}) {
+      const Scatter &plain = *create<Shader>(name)->bind(test::surface_point(), w, arena),
+                    &tinted = *create<Shader>(name, {{"reflection_tint", half}, {"transmission_tint", most}})
+                                   ->bind(test::surface_point(), w, arena);
+      const Vector3 out = at_angle(plain.frame(), angle);
+      Spectrum means[2][2];  // plain and tinted, reflected and transmitted, of all that is drawn
+      constexpr int n = 4000;
+      for (int i = 0; i < n; ++i)
+        for (const bool colour : {false, true})
+          if (const auto s = (colour ? tinted : plain).sample(out, (float(i) + 0.5f) / n, {}))
+            means[colour][s->transmitted()] += s->weight / float(n);
+      for (const bool through : {false, true}) {
+        const Lobes lobes = through ? transmission_lobes : reflection_lobes;
+        for (int i = 0; i < spectrum_size; ++i) {
+          const float factor = (through ? most : half)->at(w[i], ColorUse::reflectance), whole = means[0][through][i];
+          EXPECT_NEAR(means[1][through][i], factor * whole, 2e-3f * whole + 1e-5f) << name << angle;
+          EXPECT_NEAR(tinted.albedo(out, lobes)[i], factor * plain.albedo(out, lobes)[i], 1e-5f) << name << angle;
+        }
+      }
+    }
+  // Rough, each direction's value is.
+  const Scatter &plain = *create<Shader>("Dielectric", {{"roughness", 0.4}})->bind(test::surface_point(), w, arena),
+                &tinted =
+                    *create<Shader>("Dielectric", {{"roughness", 0.4}, {"reflection_tint", half}, {"transmission_tint", most}})
+                         ->bind(test::surface_point(), w, arena);
+  const Vector3 out = at_angle(plain.frame(), 40);
+  for (const double angle : {10.0, 60.0, 120.0, 170.0}) {
+    const Vector3 in = at_angle(plain.frame(), angle, 3);
+    const Spectrum a = plain.evaluate(out, in), b = tinted.evaluate(out, in);
+    for (int i = 0; i < spectrum_size; ++i)
+      EXPECT_NEAR(b[i], a[i] * (angle > 90 ? most : half)->at(w[i], ColorUse::reflectance), 1e-5f * a[i]);
+    EXPECT_EQ(plain.density(out, in), tinted.density(out, in));
+  }
+}
+
 TEST(Dielectric, RefusesWhatIsNoIndex) {
   EXPECT_THROW(create<Shader>("Dielectric", {{"ior", 0.0}}), Error);
   EXPECT_THROW(create<Shader>("Dielectric", {{"ior", complex_index(flat_spectrum(1), flat_spectrum(2))}}), Error);

@@ -1,5 +1,7 @@
 // Microfacet shaders: distributions, Fresnel's equations, energy, against closed forms and quadrature.
 
+#include <complex>
+
 #include "components/shaders/microfacet/microfacet.h"
 
 #include "components/shaders/fresnel.h"
@@ -174,6 +176,39 @@ TEST(Conductor, SmoothIsAMirrorOfTheMetalsColour) {
   EXPECT_NEAR(s.sample(at_angle(s.frame(), 0), 0.5f, {})->weight[0], 0.923068, 1e-6);
   EXPECT_NEAR(s.sample(at_angle(s.frame(), 180), 0.5f, {})->weight[0], 0.923068, 1e-6);
   EXPECT_THROW(create<Shader>("Conductor", {{"roughness", 1.5}}), Error);
+}
+
+// Copper as renderers of three channels have it (Bitterli's scenes): what it reflects has, under its white, the red, green and
+// blue that Fresnel's equations give for each.
+TEST(Conductor, OfThreeChannelsReflectsTheirColourAtEachAngle) {
+  const std::vector<double> n{0.200438, 0.924033, 1.10221}, k{3.91295, 2.45285, 2.14219};
+  const Ref<Shader> shader = create<Shader>("Conductor", {{"index", "rgb"}, {"rgb_n", n}, {"rgb_k", k}, {"roughness", 0.0}});
+  const RgbSpace& space = rgb_space("srgb");
+  Arena arena;
+  for (const double angle : {0.0, 60.0, 80.0}) {
+    Xyz sum{};
+    for (int lambda = 360; lambda <= 830; ++lambda) {
+      Wavelengths w;
+      for (int i = 0; i < spectrum_size; ++i) w.place(i, float(lambda), 1 / 470.0f);
+      const Scatter& s = *shader->bind(test::surface_point(), w, arena);
+      const double reflected = double(s.albedo(at_angle(s.frame(), angle))[0]) *
+                               double(space.illuminant->at(float(lambda), ColorUse::radiance)) / observer_y_integral();
+      const Xyz o = observer(float(lambda));
+      sum = {sum.x + reflected * o.x, sum.y + reflected * o.y, sum.z + reflected * o.z};
+    }
+    for (size_t c = 0; c < 3; ++c) {
+      // Born & Wolf, by complex numbers and not as the shader has it.
+      const std::complex<double> m(n[c], k[c]), cosine = std::cos(angle * M_PI / 180),
+                                                inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (m * m));
+      const double wanted = (std::norm((cosine - m * inside) / (cosine + m * inside)) +
+                             std::norm((m * cosine - inside) / (m * cosine + inside))) /
+                            2;
+      const double seen = space.from_xyz[3 * c] * sum.x + space.from_xyz[3 * c + 1] * sum.y + space.from_xyz[3 * c + 2] * sum.z;
+      EXPECT_NEAR(seen, wanted, 2e-3) << angle << " " << c;
+    }
+  }
+  EXPECT_THROW(create<Shader>("Conductor", {{"index", "rgb"}, {"rgb_n", std::vector<double>{1, 0, 1}}}), Error);
+  EXPECT_THROW(create<Shader>("Conductor", {{"index", "rgb"}, {"rgb_k", std::vector<double>{1, -1, 1}}}), Error);
 }
 
 TEST(Dielectric, RoughAndCompensatedLosesNothing) {

@@ -13,7 +13,8 @@ namespace {
 
 // Directions are in the coordinates of the object that carries this emission; y is up. Longitude and latitude:
 // u = atan2(x, -z) / (2 pi), wrapped to [0, 1), and v = acos(y) / pi from the top; texels are squares of that plane, row 0 at
-// the top, and the radiance is bilinear between their centres (beyond the first and last row it is that row).
+// the top, and the radiance is bilinear between their centres (beyond the first and last row it is that row). With `rows:
+// poles` the middle of the first row is the top and that of the last the bottom: row j of h lies at v = j / (h - 1).
 //
 // Importance sampling: a density that is constant over each texel's solid angle
 //   Omega_row = (2 pi / width) (cos(theta_top) - cos(theta_bottom)),
@@ -44,7 +45,16 @@ class EnvironmentEmission final : public EmissionShader {
                                                    rgb_space_names(), when("file"))
         .member<&EnvironmentEmission::transfer>("transfer", "",
                                                 "how its numbers are encoded; auto: srgb for integers, linear for floats",
-                                                image_transfer_names(), when("file"));
+                                                image_transfer_names(), when("file"))
+        .member<&EnvironmentEmission::rows>("rows", "",
+                                            "where the middles of the image's rows lie; centres: half a row below the top, and "
+                                            "so on, as pixels do; poles: of the first at the top, of the last at the bottom",
+                                            choices("centres", "poles"), when("file"))
+        .member<&EnvironmentEmission::illuminant>(
+            "illuminant", "",
+            "whether RGB is light of the colour space's white, so that equal parts look white; off: it is a spectrum of that "
+            "value, so that equal parts are the same at every wavelength",
+            when("file"));
   }
 
   void prepare() override {
@@ -66,6 +76,8 @@ class EnvironmentEmission final : public EmissionShader {
     }
     check_pixels();
     build();
+    if (lux > 0 && !illuminant)
+      fail("illuminance", "is known only of an image in its colour space's white; use a scale, or leave `illuminant` on");
     if (lux > 0) ask_for(image_illuminance());
   }
 
@@ -73,7 +85,7 @@ class EnvironmentEmission final : public EmissionShader {
     const Vector3 towards = p.object_position - Point3{};
     if (!image_.rgb.empty()) {
       const std::array<float, 3> rgb = look_up(place(towards));
-      return rgb_spectrum(*space_, factor_ * rgb[0], factor_ * rgb[1], factor_ * rgb[2], ColorUse::radiance, w);
+      return rgb_spectrum(*space_, factor_ * rgb[0], factor_ * rgb[1], factor_ * rgb[2], image_use(), w);
     }
     if (constant_map_) return map->color(p, w, ColorUse::radiance) * factor_;
     return map_radiance(p, towards, w);
@@ -92,7 +104,7 @@ class EnvironmentEmission final : public EmissionShader {
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
     const float sphere_times_disc = pi * object.area();
     if (!image_.rgb.empty())
-      return rgb_spectrum(*space_, factor_ * mean_[0], factor_ * mean_[1], factor_ * mean_[2], ColorUse::radiance, w) *
+      return rgb_spectrum(*space_, factor_ * mean_[0], factor_ * mean_[1], factor_ * mean_[2], image_use(), w) *
              sphere_times_disc;
     if (constant_map_) return map->color({}, w, ColorUse::radiance) * (factor_ * sphere_times_disc);
     constexpr int side = 32;
@@ -124,7 +136,7 @@ class EnvironmentEmission final : public EmissionShader {
     if (!(total_ > 0)) return 0;
     const Point2 p = place(towards);
     const int x = std::min(int(p.x * float(image_.width)), image_.width - 1);
-    const int y = std::min(int(p.y * float(image_.height)), image_.height - 1);
+    const int y = clamp_row(int(row_at(p.y) + 0.5f));
     return float(double(importance_[size_t(y) * size_t(image_.width) + size_t(x)]) / total_);
   }
 
@@ -133,8 +145,23 @@ class EnvironmentEmission final : public EmissionShader {
   float scale = 1;
   double lux = 0;
   std::string color_space = "srgb", transfer = automatic_transfer;
+  enum class Rows : std::uint8_t { centres, poles };
+  Rows rows = Rows::centres;
+  bool illuminant = true;
 
  private:
+  ColorUse image_use() const { return illuminant ? ColorUse::radiance : ColorUse::coefficient; }
+
+  bool rows_at_poles() const { return rows == Rows::poles && image_.height > 1; }
+  /// The row whose middle lies at v.
+  float row_at(float v) const { return rows_at_poles() ? v * float(image_.height - 1) : v * float(image_.height) - 0.5f; }
+  int clamp_row(int y) const { return std::clamp(y, 0, image_.height - 1); }
+  /// v of the upper border of row y: half-way between the middles.
+  double border(size_t y, size_t h) const {
+    if (!rows_at_poles()) return double(y) / double(h);
+    return std::clamp((double(y) - 0.5) / double(h - 1), 0.0, 1.0);
+  }
+
   static double lerp(double t, double a, double b) { return (1 - t) * a + t * b; }
 
   /// (u, v) of a direction, v from the top.
@@ -161,8 +188,7 @@ class EnvironmentEmission final : public EmissionShader {
   }
 
   std::array<float, 3> look_up(Point2 at) const {
-    const float x = at.x * float(image_.width) - 0.5f,
-                y = clamp(at.y * float(image_.height) - 0.5f, 0, float(image_.height - 1));
+    const float x = at.x * float(image_.width) - 0.5f, y = clamp(row_at(at.y), 0, float(image_.height - 1));
     const float left = std::floor(x);
     const int x0 = left < 0 ? image_.width - 1 : int(left), x1 = x0 + 1 == image_.width ? 0 : x0 + 1;
     const int y0 = int(y), y1 = std::min(y0 + 1, image_.height - 1);
@@ -250,7 +276,7 @@ class EnvironmentEmission final : public EmissionShader {
     }
 
     row_cosines_.resize(h + 1);
-    for (size_t y = 0; y <= h; ++y) row_cosines_[y] = std::cos(3.14159265358979323846 * double(y) / double(h));
+    for (size_t y = 0; y <= h; ++y) row_cosines_[y] = std::cos(3.14159265358979323846 * border(y, h));
     std::vector<double> row_sums(h);
     columns_.resize(w * h);
     std::array<double, 3> sums{};

@@ -28,35 +28,37 @@ class ProjectorEmission final : public ShapedEmission {
          "leaves along +z, with the image's top towards +y and its right towards -x, as seen from behind; look_at() points it. "
          "On a screen across its axis a white image is evenly white. Outside of the image is no light.")
         .group("Image")
-        .member<&ProjectorEmission::file>("file", "", "the image", required)
+        .member<&ProjectorEmission::file>("file", "", "the image; none: `picture` is projected")
+        .member<&ProjectorEmission::picture>(
+            "picture", "1", "a map instead of an image file: its unit square is projected, (0, 0) at the lower left",
+            Meaning::radiance, unless("file"))
+        .member<&ProjectorEmission::aspect>("aspect", "1", "width over height of that picture", more_than(0), soft(0.5, 2),
+                                            unless("file"))
         .member<&ProjectorEmission::fov>("fov", "deg", "angle across the image", Range{0, 170, true})
         .member<&ProjectorEmission::fov_axis>("fov_axis", "", "the side of the image the angle is measured across",
                                               choices("smaller", "larger", "width", "height"))
         .member<&ProjectorEmission::image_scale>(
             "scale", "1", "multiplies the image; 1: white is an intensity of 1 in the axis", at_least(0), soft(0.01, 1000),
             logarithmic, unless("power"), unless("luminous_flux"), unless("luminous_intensity"), unless("illuminance"))
-        .member<&ProjectorEmission::color_space>("color_space", "", "primaries and white of the image's RGB", rgb_space_names())
-        .member<&ProjectorEmission::transfer>(
-            "transfer", "", "how its numbers are encoded; auto: srgb for integers, linear for floats", image_transfer_names());
+        .member<&ProjectorEmission::color_space>("color_space", "", "primaries and white of the image's RGB", rgb_space_names(),
+                                                 when("file"))
+        .member<&ProjectorEmission::transfer>("transfer", "",
+                                              "how its numbers are encoded; auto: srgb for integers, linear for floats",
+                                              image_transfer_names(), when("file"));
     describe_amounts(d);
   }
 
   void prepare() override {
     space_ = &rgb_space(color_space);
-    try {
-      image_ = read_linear_image(file.resolved(), transfer);
-    } catch (const Error& e) {
-      fail("file", e.what());
-    }
-    for (float& value : image_.rgb) {
-      if (!std::isfinite(value)) fail("file", "'" + file.resolved() + "' holds values that are infinite or not a number");
-      value = std::max(value, 0.0f);
-    }
-    const float aspect = float(image_.width) / float(image_.height), half = std::tan(radians(fov) / 2);
+    if (file.empty() && !picture) fail("file", "an image file is needed, or a map as the `picture`");
+    of_map_ = file.empty();
+    if (of_map_ && !std::isfinite(aspect)) fail("aspect", "must be finite");
+    of_map_ ? look_at_picture() : read_image();
+    const float shape = of_map_ ? aspect : float(image_.width) / float(image_.height), half = std::tan(radians(fov) / 2);
     const bool across_width =
-        fov_axis == Axis::width || (fov_axis == Axis::smaller && aspect <= 1) || (fov_axis == Axis::larger && aspect > 1);
-    half_width_ = across_width ? half : half * aspect;
-    half_height_ = across_width ? half / aspect : half;
+        fov_axis == Axis::width || (fov_axis == Axis::smaller && shape <= 1) || (fov_axis == Axis::larger && shape > 1);
+    half_width_ = across_width ? half : half * shape;
+    half_height_ = across_width ? half / shape : half;
     if (!(half_width_ > 0 && half_height_ > 0 && std::isfinite(half_width_) && std::isfinite(half_height_)))
       fail("fov", "is too small or too large to count with");
     build();
@@ -71,8 +73,8 @@ class ProjectorEmission final : public ShapedEmission {
     Point2 at;
     float cosine = 0;
     if (!find(p, direction, at, cosine) || !emits(p, direction)) return {};
-    const std::array<float, 3> rgb = look_up(at);
-    return colour(rgb, w) * (factor(p.object, p.time) / (cosine * square(cosine)));
+    const Spectrum seen = of_map_ ? pictured(at, p.time, w) : colour(look_up(at), w);
+    return seen * (factor(p.object, p.time) / (cosine * square(cosine)));
   }
 
   DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
@@ -81,7 +83,7 @@ class ProjectorEmission final : public ShapedEmission {
     const size_t y = choose_interval(rows_.data(), height, u.y), x = choose_interval(columns_.data() + y * width, width, u.x);
     const Point2 at{(float(x) + u.x) / float(width), (float(y) + u.y) / float(height)};
     const Vector3 local = normalize(Vector3{(2 * at.x - 1) * half_width_, (1 - 2 * at.y) * half_height_, 1});
-    const Vector3 direction = frame(p).to_world(local);
+    const Vector3 direction = picture_frame(p).to_world(local);
     return {direction, density(p, direction)};
   }
   float density(const SurfacePoint& p, const Vector3& direction) const override {
@@ -96,16 +98,17 @@ class ProjectorEmission final : public ShapedEmission {
   /// Of the image's mean colour: on a Point exactly its mean, on others as if it were the same all over the image [W/nm].
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
     if (object.infinite()) fail("file", "a projector belongs on a Point or on a surface, not at infinity");
-    SurfacePoint p;
-    const Spectrum white = map->color(p, w, ColorUse::radiance);
-    const Spectrum of_white = ShapedEmission::power(object, w);
-    Spectrum result = colour(mean_, w) * (amount_asked() ? 1 : image_scale);
-    for (int i = 0; i < spectrum_size; ++i) result.set(i, white[i] > 0 ? result[i] * of_white[i] / white[i] : 0);
-    return result;
+    // A white image's power over its radiance in the axis is the same at all wavelengths; not at all of them is there a white.
+    Wavelengths middle;
+    for (int i = 0; i < spectrum_size; ++i) middle.place(i, 555, 1 / (wavelength_high - wavelength_low));
+    const float share = ShapedEmission::power(object, middle)[0] / map->color({}, middle, ColorUse::radiance)[0];
+    return (of_map_ ? mean_of_picture(w) : colour(mean_, w)) * (amount_asked() ? share : share * image_scale);
   }
 
   enum class Axis : std::uint8_t { smaller, larger, width, height };
   FilePath file;
+  Ref<ObjectMap> picture;
+  float aspect = 1;
   float fov = 40, image_scale = 1;
   Axis fov_axis = Axis::width;
   std::string color_space = "srgb", transfer = automatic_transfer;
@@ -121,7 +124,7 @@ class ProjectorEmission final : public ShapedEmission {
   /// integral of |n . w| dA over the part of the image towards the sides that emit: 64 x 64 midpoints.
   double surface_share(const SurfacePoint& p) const override {
     constexpr int steps = 64;
-    const Frame f = frame(p);
+    const Frame f = picture_frame(p);
     double sum = 0;
     for (int i = 0; i < steps * steps; ++i) {
       const float x = 2 * (float(i % steps) + 0.5f) / steps - 1, y = 2 * (float(i / steps) + 0.5f) / steps - 1;
@@ -133,18 +136,55 @@ class ProjectorEmission final : public ShapedEmission {
   Vector3 own_axis(const SurfacePoint& p) const override { return turned(p, {0, 0, 1}); }
 
  private:
-  /// Right and up in the image as seen from behind, and the axis, in the scene.
-  static Frame frame(const SurfacePoint& p) {
-    const Vector3 a = turned(p, {0, 0, 1});
-    Vector3 r = normalize(cross(a, turned(p, {0, 1, 0})));
-    const Vector3 up = cross(r, a);
-    if (dot(r, turned(p, {-1, 0, 0})) < 0) r = -r;  // a mirrored object's image is mirrored
-    return {r, up, Normal3(a)};
+  void read_image() {
+    try {
+      image_ = read_linear_image(file.resolved(), transfer);
+    } catch (const Error& e) {
+      fail("file", e.what());
+    }
+    for (float& value : image_.rgb) {
+      if (!std::isfinite(value)) fail("file", "'" + file.resolved() + "' holds values that are infinite or not a number");
+      value = std::max(value, 0.0f);
+    }
+  }
+
+  // Of a map the density knows the means over 2 x 2 points in each cell of a grid. What is narrower may be missed, so a tenth
+  // of the mean is added everywhere, and directions are never drawn more than 11 times too rarely for an even picture.
+  static constexpr int picture_cells = 128;
+  void look_at_picture() {
+    image_ = {};
+    image_.width = image_.height = picture_cells;
+    image_.rgb.resize(size_t(picture_cells) * picture_cells * 3);
+    double sum = 0;
+    for (int i = 0; i < picture_cells * picture_cells; ++i) {
+      float value = 0;
+      for (int k = 0; k < 4; ++k) {
+        const Point2 uv{(float(i % picture_cells) + 0.25f + 0.5f * float(k % 2)) / picture_cells,
+                        1 - (float(i / picture_cells) + 0.25f + 0.5f * float(k / 2)) / picture_cells};
+        const float here = picture->scalar(picture_point(uv, 0));
+        if (!(here >= 0 && std::isfinite(here))) fail("picture", "must be neither negative nor infinite");
+        value += here / 4;
+      }
+      for (size_t c = 0; c < 3; ++c) image_.rgb[3 * size_t(i) + c] = value;
+      sum += double(value);
+    }
+    const float more = sum > 0 ? float(0.1 * sum / (picture_cells * picture_cells)) : 1;
+    for (float& value : image_.rgb) value += more;
+  }
+  Spectrum pictured(Point2 at, float time, const Wavelengths& w) const {
+    return picture->color(picture_point({at.x, 1 - at.y}, time), w, ColorUse::radiance);
+  }
+  Spectrum mean_of_picture(const Wavelengths& w) const {
+    constexpr int side = 64;
+    Spectrum sum;
+    for (int i = 0; i < side * side; ++i)
+      sum += pictured({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}, 0, w);
+    return sum / float(side * side);
   }
 
   /// Where in the image, from its upper left corner, a direction goes; false: beside it.
   bool find(const SurfacePoint& p, const Vector3& direction, Point2& at, float& cosine) const {
-    const Vector3 local = frame(p).to_local(direction);
+    const Vector3 local = picture_frame(p).to_local(direction);
     cosine = local.z;
     if (!(cosine > 0)) return false;
     at = {(local.x / (cosine * half_width_) + 1) / 2, (1 - local.y / (cosine * half_height_)) / 2};
@@ -212,6 +252,7 @@ class ProjectorEmission final : public ShapedEmission {
   }
 
   const RgbSpace* space_ = nullptr;
+  bool of_map_ = false;
   LinearImage image_;
   float half_width_ = 1, half_height_ = 1;  // of the image at distance 1
   std::array<float, 3> mean_{};

@@ -93,6 +93,23 @@ class ShapedEmission : public EmissionShader {
       return normalize(t.at(p.time)(v));
     return t.still().identity() ? v : normalize(t.still()(v));
   }
+  /// Of a picture that lies across the object's z axis: right and up as seen from behind, and the axis, in the scene. Right is
+  /// towards the object's -x.
+  static Frame picture_frame(const SurfacePoint& p) {
+    const Vector3 a = turned(p, {0, 0, 1});
+    Vector3 r = normalize(cross(a, turned(p, {0, 1, 0})));
+    const Vector3 up = cross(r, a);
+    if (dot(r, turned(p, {-1, 0, 0})) < 0) r = -r;  // a mirrored object's picture is mirrored
+    return {r, up, Normal3(a)};
+  }
+  /// What a picture's map is asked at: it knows no place but that in the picture.
+  static SurfacePoint picture_point(Point2 uv, float time) {
+    SurfacePoint p;
+    p.uv = uv;
+    p.time = time;
+    p.normal = p.shading_normal = p.object_normal = Normal3(0, 0, 1);
+    return p;
+  }
   void objects_changed() override { measured_.forget(); }
   bool amount_asked() const { return amount_ > 0; }
   /// The member that gives the amount.

@@ -12,15 +12,22 @@ constexpr double pi_exactly = 3.14159265358979323846;
 // where h_i and h_o belong to the inner and outer angle. As t^2 (3 - 2t) has the mean 1/2, the solid angle it counts for is
 //     Omega = integral of f dw = 2 pi (h_i + (h_o - h_i) / 2) = pi (h_i + h_o).
 //
+// A linear edge falls with the angle itself, f = (theta_o - theta) / (theta_o - theta_i), as lamps of some other renderers do;
+// by parts,  Omega = 2 pi (1 - (sin theta_o - sin theta_i) / (theta_o - theta_i)).
+//
 // Directions are drawn with density f / Omega: h is uniform up to h_i with probability h_i / (h_i + (h_o - h_i) / 2); else t
 // has the density 2 t^2 (3 - 2t) and the distribution G(t) = 2 t^3 - t^4. G is convex and G(cbrt(v)) >= v, so Newton's method
-// for G(t) = v comes down to the solution from cbrt(v) and never passes it.
+// for G(t) = v comes down to the solution from cbrt(v) and never passes it. On a linear edge the distribution is that of
+// (theta_o - theta) sin(theta), in closed form; what has no inverse there is found by Newton's method between bounds.
+//
+// A picture (a gobo) lets through what its map says as a transmittance. It lies across the axis and its unit square spans the
+// outer angle. Directions are drawn as without it.
 class SpotEmission final : public AxialEmission {
  public:
   static void describe(Description<SpotEmission>& d) {
     d.summary(
-         "Light that leaves within a cone: full up to an inner angle, falling smoothly to nothing at an outer one, by "
-         "t^2 (3 - 2t) with t linear in the cosine. On a Point a spotlight; on a surface the radiance's profile, to which the "
+         "Light that leaves within a cone: full up to an inner angle, falling to nothing at an outer one. On a Point a "
+         "spotlight; on a surface the radiance's profile, to which the "
          "surface adds its cosine; on an Environment a sun with a soft edge.")
         .group("Light")
         .member<&SpotEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
@@ -35,7 +42,18 @@ class SpotEmission final : public AxialEmission {
         .member<&SpotEmission::inner_angle>("inner_angle", "deg", "from the axis to where the light begins to fall off",
                                             range(0, 180))
         .member<&SpotEmission::outer_angle>("outer_angle", "deg", "from the axis to where there is none any more",
-                                            Range{0, 180, true});
+                                            Range{0, 180, true})
+        .member<&SpotEmission::edge>("edge", "",
+                                     "how light falls off between the angles; smooth: as t^2 (3 - 2t) with t linear in the "
+                                     "cosine; linear: linearly in the angle",
+                                     choices("smooth", "linear"))
+        .member<&SpotEmission::picture>(
+            "picture", "1",
+            "what the light is multiplied by, a transmittance, such as a slide's; (u, v) = (1/2, 1/2) lies in the axis, u "
+            "grows "
+            "towards +x and v towards +y of the object, and the outer angle is reached at 0 and 1; amounts are those of the "
+            "cone without it; none: all passes",
+            Meaning::reflectance);
   }
 
   void prepare() override {
@@ -49,17 +67,43 @@ class SpotEmission final : public AxialEmission {
     h_outer_ = one_minus_cosine(outer_angle);
     if (!(h_outer_ > 0)) fail("outer_angle", "is too small to count with");
     solid_angle_ = pi * (h_inner_ + h_outer_);
-    inner_share_ = h_inner_ / (h_inner_ + (h_outer_ - h_inner_) / 2);
+    if (edge == Edge::linear && outer_angle > inner_angle) prepare_linear_edge();
+    inner_share_ = 2 * pi * h_inner_ / solid_angle_;
+    if (picture) prepare_picture();
     prepare_axis();
     prepare_amounts("radiance");
   }
 
+  Spectrum radiance(const SurfacePoint& p, const Vector3& direction, const Wavelengths& w) const override {
+    const Spectrum all = AxialEmission::radiance(p, direction, w);
+    return !picture || all.black() ? all : all * seen_through(p.time, picture_frame(p).to_local(direction), w);
+  }
+
+  /// With a picture: times its mean over the cone, which is exact for a Point and a good guess for surfaces.
+  Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
+    const Spectrum all = AxialEmission::power(object, w);
+    if (!picture) return all;
+    constexpr int side = 32;
+    Spectrum sum;
+    for (int i = 0; i < side * side; ++i) {
+      const float h = draw((float(i / side) + 0.5f) / side, false), r = safe_sqrt(h * (2 - h));
+      float sine = 0, cosine = 0;
+      sin_cos_turn((float(i % side) + 0.5f) / side, sine, cosine);
+      sum += seen_through(0, {r * cosine, r * sine, 1 - h}, w);
+    }
+    return all * sum / float(side * side);
+  }
+
+  enum class Edge : std::uint8_t { smooth, linear };
   float inner_angle = 20, outer_angle = 30;
+  Edge edge = Edge::smooth;
+  Ref<ObjectMap> picture;
 
  protected:
   float fall_off(float h) const override {
     if (h <= h_inner_) return 1;
     if (h >= h_outer_) return 0;
+    if (edge == Edge::linear) return float((theta_outer_ - angle(h)) / (theta_outer_ - theta_inner_));
     const float t = (h_outer_ - h) / (h_outer_ - h_inner_);
     return t * t * (3 - 2 * t);
   }
@@ -70,6 +114,7 @@ class SpotEmission final : public AxialEmission {
   float draw(float u, bool) const override {
     if (u < inner_share_) return h_inner_ * (u / inner_share_);
     const float v = (1 - u) / (1 - inner_share_);  // inner_share_ = 1 lies beyond all u
+    if (edge == Edge::linear) return draw_linear_edge(double(v));
     float t = std::cbrt(v);
     for (int i = 0; i < 6 && t > 0; ++i) t -= (t * t * t * (2 - t) - v) / (t * t * (6 - 4 * t));
     return h_outer_ - clamp(t, 0, 1) * (h_outer_ - h_inner_);
@@ -77,9 +122,65 @@ class SpotEmission final : public AxialEmission {
   float drawn(float h, bool) const override { return fall_off(h) / solid_angle_; }
 
  private:
-  float h_inner_ = 0, h_outer_ = 0;  // 1 - cos of the angles
-  float solid_angle_ = 0;            // Omega [sr]
-  float inner_share_ = 0;            // probability that a direction lies within the inner angle
+  static double angle(float h) { return 2 * std::asin(std::min(std::sqrt(double(h) / 2), 1.0)); }
+
+  void prepare_linear_edge() {
+    theta_inner_ = double(inner_angle) * (pi_exactly / 180);
+    theta_outer_ = double(outer_angle) * (pi_exactly / 180);
+    // (sin b - sin a) / (b - a) = cos(m) sin(x) / x with m = (a + b) / 2 and x = (b - a) / 2, without cancellation.
+    const double middle = (theta_inner_ + theta_outer_) / 2, x = (theta_outer_ - theta_inner_) / 2;
+    const double missing = x < 1e-2 ? x * x / 6 - x * x * x * x / 120 : 1 - std::sin(x) / x;
+    const double s = std::sin(middle / 2);
+    solid_angle_ = float(2 * pi_exactly * (2 * s * s + std::cos(middle) * missing));
+  }
+
+  /// The integral of (theta_o - t) sin(t) dt from theta to theta_o. In narrow cones sin(t) is t - t^3 / 6, as what it is the
+  /// difference of would cancel.
+  double beyond(double theta) const {
+    const double d = theta_outer_ - theta;
+    if (theta_outer_ > 0.05) return d * std::cos(theta) + std::sin(theta) - std::sin(theta_outer_);
+    // The integral of (b - t) t is d^2 (b + 2 a) / 6, that of (b - t) t^3 is (b^5 - 5 b a^4 + 4 a^5) / 20.
+    const double a = theta, b = theta_outer_, a4 = a * a * a * a;
+    return d * d * (b + 2 * a) / 6 - (b * b * b * b * b - 5 * b * a4 + 4 * a * a4) / 120;
+  }
+
+  /// h where the share v of the edge's light lies beyond.
+  float draw_linear_edge(double v) const {
+    const double wanted = v * beyond(theta_inner_);
+    double low = theta_inner_, high = theta_outer_, theta = theta_outer_ - std::sqrt(v) * (theta_outer_ - theta_inner_);
+    for (int i = 0; i < 40; ++i) {
+      const double over = beyond(theta) - wanted;
+      (over > 0 ? low : high) = theta;
+      const double slope = (theta_outer_ - theta) * std::sin(theta);
+      double next = slope > 0 ? theta + over / slope : low;
+      if (!(next > low && next < high)) next = (low + high) / 2;
+      if (std::abs(next - theta) < 1e-9 * theta_outer_) break;
+      theta = next;
+    }
+    const double s = std::sin(theta / 2);
+    return clamp(float(2 * s * s), h_inner_, h_outer_);
+  }
+
+  void prepare_picture() {
+    if (!(outer_angle < 90)) fail("picture", "outer_angle must be less than 90 degrees for a picture across the axis");
+    if (!(axis.x == 0 && axis.y == 0 && axis.z > 0))
+      fail("picture", "needs the axis to be the object's +z; the object's transform turns both");
+    if (const Color color = picture->constant(); color && !(range_of(*color, ColorUse::reflectance).least >= 0))
+      fail("picture", "must not be negative");
+    picture_scale_ = float(0.5 / std::tan(double(outer_angle) * (pi_exactly / 180)));
+  }
+  /// What the picture lets through in a direction given in picture_frame().
+  Spectrum seen_through(float time, const Vector3& local, const Wavelengths& w) const {
+    if (!(local.z > 0)) return {};
+    const Point2 uv{0.5f - picture_scale_ * local.x / local.z, 0.5f + picture_scale_ * local.y / local.z};
+    return picture->reflectance(picture_point(uv, time), w);
+  }
+
+  float h_inner_ = 0, h_outer_ = 0;           // 1 - cos of the angles
+  float solid_angle_ = 0;                     // Omega [sr]
+  double theta_inner_ = 0, theta_outer_ = 0;  // of a linear edge [rad]
+  float picture_scale_ = 0;                   // from a plane at distance 1 to (u, v)
+  float inner_share_ = 0;                     // probability that a direction lies within the inner angle
 };
 
 const Register<SpotEmission> registered;

@@ -17,8 +17,19 @@ namespace {
 /// A conductor's index over that of what is in front of it.
 struct RelativeIndex {
   Spectrum n, k;
-  Spectrum reflectance(float cosine) const { return fresnel_conductor(cosine, n, k); }
-  Spectrum mean_reflectance() const { return mean_fresnel_conductor(n, k); }
+  const RgbSpace* space = nullptr;  ///< not null: n and k hold those of red, green and blue
+  Wavelengths wavelengths{};
+
+  Spectrum reflectance(float cosine) const { return seen(fresnel_conductor(cosine, n, k)); }
+  Spectrum mean_reflectance() const { return seen(mean_fresnel_conductor(n, k)); }
+
+ private:
+  // Renderers of three channels take Fresnel's reflectance of each for the colour of what is reflected, and that is what such
+  // numbers were chosen for. So the colour becomes a spectrum, at each angle, and not the index, of which it is no linear
+  // function.
+  Spectrum seen(const Spectrum& r) const {
+    return space ? rgb_coefficients(*space, r[0], r[1], r[2]).evaluate(wavelengths) : r;
+  }
 };
 
 class PolishedConductor final : public ScatterModel<PolishedConductor> {
@@ -127,7 +138,17 @@ class Conductor final : public Shader {
               "Walter et al. 2007, Microfacet models for refraction through rough surfaces; Heitz 2014, Understanding the "
               "masking-shadowing function; Kulla & Conty 2017, Revisiting physically based shading at Imageworks")
         .group("Metal")
-        .member<&Conductor::ior>("ior", "1", "complex index of refraction: metal(\"Au\"), or complex(n, k)", Meaning::index)
+        .member<&Conductor::index>(
+            "index", "",
+            "what tells the index; spectral: `ior`; rgb: n and k of red, green and blue, as renderers of "
+            "three channels have them: the colour these give at each angle becomes a reflectance",
+            choices("spectral", "rgb"))
+        .member<&Conductor::ior>("ior", "1", "complex index of refraction: metal(\"Au\"), or complex(n, k)", Meaning::index,
+                                 when("index", "spectral"))
+        .member<&Conductor::rgb_n>("rgb_n", "1", "n of red, green and blue", when("index", "rgb"))
+        .member<&Conductor::rgb_k>("rgb_k", "1", "k of red, green and blue", when("index", "rgb"))
+        .member<&Conductor::color_space>("color_space", "", "whose red, green and blue", rgb_space_names(),
+                                         when("index", "rgb"))
         .member<&Conductor::color>("color", "1", "what the reflectance is multiplied by, per wavelength", Meaning::reflectance)
         .group("Roughness")
         .member<&Conductor::roughness>("roughness", "1",
@@ -144,6 +165,11 @@ class Conductor final : public Shader {
   }
 
   void prepare() override {
+    space_ = index == Index::rgb ? &rgb_space(color_space) : nullptr;
+    for (int i = 0; i < 3 && space_; ++i) {
+      if (!(rgb_n[i] > 0 && rgb_n[i] < 100)) fail("rgb_n", "each must be more than 0 and less than 100");
+      if (!(rgb_k[i] >= 0 && rgb_k[i] < 100)) fail("rgb_k", "each must be at least 0 and less than 100");
+    }
     if (!ior) fail("ior", "an index of refraction is needed");
     const Color k = ior->imaginary();
     for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
@@ -162,17 +188,16 @@ class Conductor final : public Shader {
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     const Spectrum tint = reflectance_at(*color, p, w);
     if (tint.black()) return nullptr;
-    const Color imaginary = ior->imaginary();
-    RelativeIndex index{ior->evaluate(w, ColorUse::coefficient),
-                        imaginary ? imaginary->evaluate(w, ColorUse::coefficient) : Spectrum()};
+    RelativeIndex relative = own_index(w);
     if (const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr) {
-      const Spectrum n = MediumStack::index(outside, w);
-      index = {index.n / n, index.k / n};
+      const Spectrum around = MediumStack::index(outside, w), n = space_ ? Spectrum(around.average()) : around;
+      relative.n = relative.n / n;
+      relative.k = relative.k / n;
     }
     const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
-    if (d.smooth()) return arena.make<PolishedConductor>(p, index, tint);
+    if (d.smooth()) return arena.make<PolishedConductor>(p, relative, tint);
     const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
-    return arena.make<RoughConductor>(p, frame, d, index, tint, multiple_scattering);
+    return arena.make<RoughConductor>(p, frame, d, relative, tint, multiple_scattering);
   }
   Lobes possible_lobes() const override {
     const Color x = roughness->constant(), y = roughness_v ? roughness_v->constant() : x;
@@ -186,6 +211,29 @@ class Conductor final : public Shader {
   Ref<ObjectMap> color = constant(1.0f), roughness = constant(0.2f), roughness_v, rotation = constant(0.0f);
   MicrofacetDistribution::Kind distribution = MicrofacetDistribution::ggx;
   bool multiple_scattering = true;
+  enum class Index : std::uint8_t { spectral, rgb };
+  Index index = Index::spectral;
+  Vector3 rgb_n{1.44f, 0.86f, 0.60f}, rgb_k{7.74f, 6.40f, 5.39f};  // aluminium, at 645, 526 and 444 nm
+  std::string color_space = "srgb";
+
+ private:
+  RelativeIndex own_index(const Wavelengths& w) const {
+    RelativeIndex own;
+    if (space_) {
+      own.space = space_;
+      own.wavelengths = w;
+      for (int i = 0; i < spectrum_size; ++i) {
+        own.n.set(i, rgb_n[std::min(i, 2)]);
+        own.k.set(i, rgb_k[std::min(i, 2)]);
+      }
+      return own;
+    }
+    own.n = ior->evaluate(w, ColorUse::coefficient);
+    if (const Color imaginary = ior->imaginary()) own.k = imaginary->evaluate(w, ColorUse::coefficient);
+    return own;
+  }
+
+  const RgbSpace* space_ = nullptr;
 };
 
 const Register<Conductor> registered;

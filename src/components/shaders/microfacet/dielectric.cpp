@@ -1,6 +1,7 @@
 // Dielectric: the boundary of glass, water and the like, smooth or rough.
 
 #include "components/shaders/fresnel.h"
+#include "components/shaders/reflectance.h"
 #include "components/shaders/tangent_frame.h"
 #include "etendue/scatter_model.h"
 #include "etendue/transport/medium_stack.h"
@@ -18,8 +19,13 @@ namespace {
 class DielectricScatter final : public ScatterModel<DielectricScatter> {
  public:
   /// eta: index inside over index outside.
-  DielectricScatter(const SurfacePoint& p, Spectrum eta, bool varies, bool dispersive)
-      : ScatterModel(p, specular_reflection | specular_transmission), eta_(eta), varies_(varies), dispersive_(dispersive) {
+  DielectricScatter(const SurfacePoint& p, Spectrum eta, bool varies, bool dispersive, const BoundaryTint& tint)
+      : ScatterModel(p, specular_reflection | specular_transmission),
+        eta_(eta),
+        tint_(tint),
+        varies_(varies),
+        dispersive_(dispersive),
+        tinted_(!tint.none()) {
     has_captives_ = true;
     if (dispersive) dispersed_ = specular_transmission;
   }
@@ -31,13 +37,13 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
     float cosine_behind = 0;
     const Spectrum reflected = reflectance(out, cosine_behind);
     const float hero = reflected[0];
-    float reflect_probability = hero;
+    float reflect_probability = tinted_ ? tint_.probability(hero) : hero;
     if (!(which & specular_transmission)) reflect_probability = 1;
     if (!(which & specular_reflection)) reflect_probability = 0;
 
     if (choice < reflect_probability) {
       s.in = {-out.x, -out.y, out.z};
-      s.value = reflected;
+      s.value = tint_.reflected * reflected;
       s.density = reflect_probability;
       s.lobe = specular_reflection;
       return true;
@@ -46,6 +52,7 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
     const float eta = towards(out, eta_[0]);
     s.in = {-out.x / eta, -out.y / eta, out.z > 0 ? -cosine_behind : cosine_behind};
     s.value = varies_ ? Spectrum(1 - hero) : Spectrum(1.0f) - reflected;
+    s.value *= tint_.transmitted;
     s.density = 1 - reflect_probability;
     s.lobe = specular_transmission;
     s.eta = eta;
@@ -62,8 +69,8 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
     float unused = 0;
     const Spectrum reflected = reflectance(out, unused);
     Spectrum sum;
-    if (which & specular_reflection) sum += reflected;
-    if (which & specular_transmission) sum += Spectrum(1.0f) - reflected;
+    if (which & specular_reflection) sum += tint_.reflected * reflected;
+    if (which & specular_transmission) sum += tint_.transmitted * (Spectrum(1.0f) - reflected);
     return sum;
   }
 
@@ -83,7 +90,8 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
   }
 
   Spectrum eta_;
-  bool varies_, dispersive_;
+  BoundaryTint tint_;
+  bool varies_, dispersive_, tinted_;
 };
 
 class Dielectric final : public Shader {
@@ -95,6 +103,17 @@ class Dielectric final : public Shader {
               "after Schmidt & Budge 2002")
         .member<&Dielectric::ior>(
             "ior", "1", "index of refraction inside the object: a number, glass(\"N-BK7\"), or a spectrum", Meaning::index)
+        .member<&Dielectric::exterior>(
+            "exterior", "1",
+            "index of refraction on the front side, for surfaces that are one of several boundaries of one body; by default "
+            "that of what the path is in",
+            Meaning::index)
+        .member<&Dielectric::reflection_tint>(
+            "reflection_tint", "1", "what reflected light is multiplied by; real boundaries have 1", Meaning::reflectance)
+        .member<&Dielectric::transmission_tint>(
+            "transmission_tint", "1",
+            "what refracted light is multiplied by at each passage; coloured glass is rather a medium inside",
+            Meaning::reflectance)
         .member<&Dielectric::roughness>("roughness", "1",
                                         "the alpha of the distribution of facets, along the surface's u direction unless "
                                         "rotated (not its square root); below 0.001 smooth",
@@ -111,28 +130,28 @@ class Dielectric final : public Shader {
 
   void prepare() override {
     if (!ior) fail("ior", "an index of refraction is needed");
-    if (ior->imaginary()) fail("ior", "a dielectric's index is real; this one is complex (a metal's)");
-    for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
-      const float n = ior->at(lambda, ColorUse::coefficient);
-      if (!(n > 0 && n < 100))
-        fail("ior", "an index of refraction lies between 0 and 100, and this is " + std::to_string(n) + " at " +
-                        std::to_string(int(lambda)) + " nm");
-    }
+    check_index("ior", *ior);
+    if (exterior) check_index("exterior", *exterior);
+    require_reflectance(*this, "reflection_tint", reflection_tint);
+    require_reflectance(*this, "transmission_tint", transmission_tint);
     require_roughness(*this, roughness, roughness_v);
     if (!rotation) fail("rotation", "a map or a number is needed");
   }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
-    const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr;
+    const SceneObject* outside = p.media && p.object && !exterior ? p.media->outside_of(*p.object) : nullptr;
     Spectrum eta = interior_index(w);
+    if (exterior) eta = eta / exterior->evaluate(w, ColorUse::coefficient);
     if (outside) eta = eta / MediumStack::index(outside, w);
+    BoundaryTint tint;
+    if (tinted()) tint = {reflectance_at(*reflection_tint, p, w), reflectance_at(*transmission_tint, p, w)};
     const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
     if (!RoughDielectric::smooth(d, eta)) {
       const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
-      return arena.make<RoughDielectric>(p, frame, d, eta, multiple_scattering, w.single());
+      return arena.make<RoughDielectric>(p, frame, d, eta, multiple_scattering, w.single(), tint);
     }
     const bool varies = eta.minimum() != eta.maximum();
-    return arena.make<DielectricScatter>(p, eta, varies, varies && !w.single());
+    return arena.make<DielectricScatter>(p, eta, varies, varies && !w.single(), tint);
   }
   Lobes possible_lobes() const override {
     constexpr Lobes smooth = specular_reflection | specular_transmission, rough = glossy_reflection | glossy_transmission;
@@ -140,12 +159,25 @@ class Dielectric final : public Shader {
   }
   Spectrum interior_index(const Wavelengths& w) const override { return ior->evaluate(w, ColorUse::coefficient); }
   /// Rough, it loses up to a hundredth at some angles: tables are as exact as that.
-  bool lossless() const override { return !(possible_lobes() & glossy_lobes); }
+  bool lossless() const override { return !(possible_lobes() & glossy_lobes) && !tinted(); }
 
-  Color ior = flat_spectrum(1.5f);
+  Color ior = flat_spectrum(1.5f), exterior;
+  Ref<ObjectMap> reflection_tint = constant(1.0f), transmission_tint = constant(1.0f);
   Ref<ObjectMap> roughness = constant(0.0f), roughness_v, rotation = constant(0.0f);
   MicrofacetDistribution::Kind distribution = MicrofacetDistribution::ggx;
   bool multiple_scattering = true;
+
+ private:
+  void check_index(const char* member, const SpectralFunction& index) const {
+    if (index.imaginary()) fail(member, "a dielectric's index is real; this one is complex (a metal's)");
+    for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
+      const float n = index.at(lambda, ColorUse::coefficient);
+      if (!(n > 0 && n < 100))
+        fail(member, "an index of refraction lies between 0 and 100, and this is " + std::to_string(n) + " at " +
+                         std::to_string(int(lambda)) + " nm");
+    }
+  }
+  bool tinted() const { return !everywhere(reflection_tint, 1) || !everywhere(transmission_tint, 1); }
 };
 
 const Register<Dielectric> registered;

@@ -8,11 +8,25 @@
 
 namespace etendue {
 
+/// What a boundary's reflected and refracted light are multiplied by, which no clear body does: for looks, and for files of
+/// programs that have such factors.
+struct BoundaryTint {
+  Spectrum reflected = Spectrum(1.0f), transmitted = Spectrum(1.0f);
+
+  bool none() const { return reflected.minimum() == 1 && transmitted.minimum() == 1; }
+  /// The probability of reflection, in proportion to what is left of both.
+  float probability(float fresnel) const {
+    const float r = fresnel * reflected.average(), t = (1 - fresnel) * transmitted.average();
+    return r + t > 0 ? r / (r + t) : fresnel;
+  }
+};
+
 // With m the facet that reflects or refracts `out` into `in`, and eta the index on the side of `in` over that on the side of
 // `out`, in the convention of importance (Walter et al. 2007, eq. 20 and 21):
 //   f = F D(m) G2 / (4 |out.z in.z|)                                                                      in reflection,
 //   f = (1 - F) D(m) G2' |out.m in.m| eta^2 / ((out.m + eta in.m)^2 |out.z in.z|)   [1/sr]                in refraction.
-// To this comes what is scattered more than once (see MultipleRefraction) where that is asked for.
+// To this comes what is scattered more than once (see MultipleRefraction) where that is asked for. A tint multiplies what
+// leaves on either side, once.
 //
 // Sampling: with the probability 1 - E(out) light is scattered more than once, to either side by their shares, by the
 // cosine. Else a visible normal is drawn, which reflects with the probability F.
@@ -29,11 +43,12 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
   /// eta: index below (z < 0) over that above. `multiple`: whether light scattered more than once is counted, where it is
   /// known. `single`: the path has only its hero left.
   RoughDielectric(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution, Spectrum eta,
-                  bool multiple, bool single)
+                  bool multiple, bool single, const BoundaryTint& tint)
       : JointScatter(p, frame, glossy_reflection | glossy_transmission),
         distribution_(distribution),
         multiple_refraction_({distribution.kind, std::sqrt(distribution.alpha_x * distribution.alpha_y)}, eta[0]),
         eta_(eta),
+        tint_(tint),
         multiple_(multiple && MultipleRefraction::known(distribution, eta[0])),
         varies_(eta.minimum() != eta.maximum()),
         choosing_(varies_ && !single ? spectrum_size : 1) {}
@@ -54,6 +69,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       r.value += side_factor(out, in) * more;
       r.density = lerp(missing, r.density, side * std::abs(in.z) * inverse_pi);
     }
+    r.value *= out.z * in.z > 0 ? tint_.reflected : tint_.transmitted;
     return r;
   }
 
@@ -101,10 +117,11 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     add(along, x2);
     if (along < 1) add(1 - along, 1 - x2);
     const float back = multiple_ ? missing * (1 - multiple_refraction_.transmitted_share(out)) : 0;
-    float sum = 0;
-    if (which & glossy_reflection) sum += reflected + back;
-    if (which & glossy_transmission) sum += std::max(1 - (multiple_ ? 0 : missing) - reflected - back, 0.0f);
-    return Spectrum(sum);
+    Spectrum sum;
+    if (which & glossy_reflection) sum += tint_.reflected * (reflected + back);
+    if (which & glossy_transmission)
+      sum += tint_.transmitted * std::max(1 - (multiple_ ? 0 : missing) - reflected - back, 0.0f);
+    return sum;
   }
   Spectrum relative_index(const Vector3& out, const Vector3& in) const override {
     if (out.z * in.z > 0) return Spectrum(1.0f);
@@ -166,6 +183,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
   MicrofacetDistribution distribution_;
   MultipleRefraction multiple_refraction_;
   Spectrum eta_;
+  BoundaryTint tint_;
   bool multiple_, varies_;
   int choosing_;  ///< how many of the path's wavelengths may choose the direction
 };

@@ -4,6 +4,7 @@
 #include "components/shaders/reflectance.h"
 #include "etendue/scatter_model.h"
 #include "etendue/transport/medium_stack.h"
+#include "rough_dielectric.h"
 #include "roughness.h"
 
 namespace etendue {
@@ -18,10 +19,11 @@ namespace {
 class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
  public:
   /// eta: index of the slab over that around it; `passage`: what is left after one passage along the normal.
-  ThinDielectricScatter(const SurfacePoint& p, Spectrum eta, Spectrum passage)
+  ThinDielectricScatter(const SurfacePoint& p, Spectrum eta, Spectrum passage, const BoundaryTint& tint)
       : ScatterModel(p, specular_reflection | pass_through),
         eta_(eta),
         passage_(passage),
+        tint_(tint),
         clear_(passage.minimum() >= 1),
         flat_(eta.minimum() == eta.maximum() && passage.minimum() == passage.maximum()) {}
 
@@ -29,7 +31,7 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 
   bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
-    const Slab slab = slab_at(std::abs(out.z));
+    const Slab slab = tinted(slab_at(std::abs(out.z)));
     const float reflected = (which & specular_reflection) ? slab.reflected.average() : 0;
     const float transmitted = (which & pass_through) ? slab.transmitted.average() : 0;
     if (!(reflected + transmitted > 0)) return false;
@@ -49,7 +51,7 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    const Slab slab = slab_at(std::abs(out.z));
+    const Slab slab = tinted(slab_at(std::abs(out.z)));
     Spectrum sum;
     if (which & specular_reflection) sum += slab.reflected;
     if (which & pass_through) sum += slab.transmitted;
@@ -60,6 +62,7 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
   struct Slab {
     Spectrum reflected, transmitted;
   };
+  Slab tinted(const Slab& slab) const { return {slab.reflected * tint_.reflected, slab.transmitted * tint_.transmitted}; }
   Slab slab_at(float cosine) const {
     Slab slab;
     for (int i = 0; i < (flat_ ? 1 : spectrum_size); ++i) {
@@ -84,6 +87,7 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
   }
 
   Spectrum eta_, passage_;
+  BoundaryTint tint_;
   bool clear_, flat_;
 };
 
@@ -99,7 +103,13 @@ class ThinDielectric final : public Shader {
         .member<&ThinDielectric::ior>("ior", "1", "index of refraction: a number, glass(\"N-BK7\"), or a spectrum",
                                       Meaning::index)
         .member<&ThinDielectric::color>("color", "1", "fraction of light left after one passage along the normal",
-                                        Meaning::reflectance);
+                                        Meaning::reflectance)
+        .member<&ThinDielectric::reflection_tint>(
+            "reflection_tint", "1", "what all that the pane reflects is multiplied by; real panes have 1", Meaning::reflectance)
+        .member<&ThinDielectric::transmission_tint>(
+            "transmission_tint", "1",
+            "what all that the pane lets through is multiplied by, whatever the angle; glass that absorbs has a `color`",
+            Meaning::reflectance);
   }
 
   void prepare() override {
@@ -112,20 +122,26 @@ class ThinDielectric final : public Shader {
                         std::to_string(int(lambda)) + " nm");
     }
     require_reflectance(*this, "color", color);
+    require_reflectance(*this, "reflection_tint", reflection_tint);
+    require_reflectance(*this, "transmission_tint", transmission_tint);
   }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     Spectrum eta = ior->evaluate(w, ColorUse::coefficient);
     if (const SceneObject* around = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
       eta = eta / MediumStack::index(around, w);
-    return arena.make<ThinDielectricScatter>(p, eta, reflectance_at(*color, p, w));
+    return arena.make<ThinDielectricScatter>(
+        p, eta, reflectance_at(*color, p, w),
+        BoundaryTint{reflectance_at(*reflection_tint, p, w), reflectance_at(*transmission_tint, p, w)});
   }
   Lobes possible_lobes() const override { return specular_reflection | pass_through; }
   bool transmits() const override { return false; }
-  bool lossless() const override { return everywhere(color, 1); }
+  bool lossless() const override {
+    return everywhere(color, 1) && everywhere(reflection_tint, 1) && everywhere(transmission_tint, 1);
+  }
 
   Color ior = flat_spectrum(1.5f);
-  Ref<ObjectMap> color = constant(1.0f);
+  Ref<ObjectMap> color = constant(1.0f), reflection_tint = constant(1.0f), transmission_tint = constant(1.0f);
 };
 
 const Register<ThinDielectric> registered;

@@ -1,0 +1,37 @@
+// What a map's RGB stands for, whoever asks.
+
+#include "etendue/object_map.h"
+
+namespace etendue {
+namespace {
+
+// A colour given as RGB becomes a spectrum according to who asks (docs/decisions/003). Files of other programs sometimes mean
+// another one: a picture as light whose white is the same at every wavelength and not the white of its colour space.
+class ReadAsMap final : public ObjectMap {
+ public:
+  static void describe(Description<ReadAsMap>& d) {
+    d.summary(
+         "A map whose RGB is read as something else than what it is asked for. As a coefficient, light has RGB without the "
+         "white of its colour space: equal parts are the same at every wavelength.")
+        .member<&ReadAsMap::map>("map", "1", "the map")
+        .member<&ReadAsMap::use>("as", "",
+                                 "what its RGB becomes; reflectance: a spectrum within [0, 1]; radiance: light of the colour "
+                                 "space's white; coefficient: any number per wavelength",
+                                 choices("reflectance", "radiance", "coefficient"));
+  }
+
+  void prepare() override {
+    if (!map) fail("map", "a map is needed");
+  }
+  Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse) const override { return map->color(p, w, use); }
+  float scalar(const SurfacePoint& p) const override { return map->scalar(p); }
+  float largest() const override { return map->largest(); }
+
+  Ref<ObjectMap> map = etendue::constant(1);
+  ColorUse use = ColorUse::coefficient;
+};
+
+const Register<ReadAsMap> registered;
+
+}  // namespace
+}  // namespace etendue

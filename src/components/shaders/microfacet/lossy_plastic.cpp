@@ -1,0 +1,215 @@
+// LossyPlastic: a diffuse body under a dielectric coat of facets, with the losses that a widely used model has.
+
+#include <memory>
+
+#include "components/shaders/fresnel.h"
+#include "components/shaders/joint_scatter.h"
+#include "components/shaders/reflectance.h"
+#include "etendue/core/warp.h"
+#include "microfacet_quadrature.h"
+#include "roughness.h"
+
+namespace etendue {
+namespace {
+
+// The model of the `roughplastic` and `plastic` of Mitsuba 3 (Jakob et al. 2022), for scenes that were made with it:
+//   f = ks F D(m) G1(out) G1(in) / (4 |out.z in.z|) + T(out) T(in) rho / (pi eta^2 (1 - rho' R))  [1/sr]
+// with rho' = rho if `nonlinear`, else 1. It differs from Plastic in three ways. Masking of the two directions is independent,
+// and Beckmann's is the rational fit of Walter et al. 2007, eq. 27. T(v), what the coat lets through, counts only what a single
+// facet refracts and none hides on the way in:
+//   T(v) = mean over the normals m seen from v of (1 - F(v.m)) G1(t),  t the refracted direction.
+// And R, what the coat throws back to the body, likewise counts what a single facet reflects. What meets more facets is lost:
+// with a white body under GGX 9 % at alpha 0.1, 41 % at 0.4. T is linear between 64 values at mu = i / 63 and R is 2 / 64 times
+// the sum over these of mu times the reflectance from inside, which is 1.6 % low; a smooth coat has neither, and loses nothing.
+struct LossyCoat {
+  static constexpr int count = 64;
+
+  MicrofacetDistribution distribution;
+  float eta;  ///< of the coat over that in front
+  float inside = 0, through_mean = 0;
+  std::array<float, count> through{}, reflected{};  ///< of a rough coat, by the cosine
+
+  LossyCoat(const MicrofacetDistribution& d, float index) : distribution(d), eta(index) {
+    if (d.smooth()) {
+      inside = mean_fresnel_dielectric(1 / eta);
+      through_mean = 1 - mean_fresnel_dielectric(eta);
+      return;
+    }
+    const albedo::Slopes slopes(d.kind, 96, 64, pi);
+    double sum = 0, mean = 0;
+    for (int i = 0; i < count; ++i) {
+      const float mu = std::max(float(i) / (count - 1), 1e-6f);
+      const Vector3 v{safe_sqrt(1 - mu * mu), 0, mu};
+      through[size_t(i)] = float(once(slopes, v, eta, true));
+      reflected[size_t(i)] = float(once(slopes, v, eta, false));
+      sum += once(slopes, v, 1 / eta, false) * double(mu);
+      mean += double(through[size_t(i)]) * double(mu) * (i == 0 || i == count - 1 ? 0.5 : 1);
+    }
+    inside = float(2 * sum / count);
+    through_mean = float(2 * mean / (count - 1));
+  }
+
+  bool smooth() const { return distribution.smooth(); }
+  float at(const std::array<float, count>& table, const Vector3& v) const {
+    const float x = std::min(std::abs(v.z), 1.0f) * (count - 1);
+    const size_t i = size_t(std::min(int(x), count - 2));
+    return lerp(x - float(i), table[i], table[i + 1]);
+  }
+  float lets_through(const Vector3& v) const { return smooth() ? 1 - fresnel_dielectric(std::abs(v.z), eta) : at(through, v); }
+  float throws_back(const Vector3& v) const { return smooth() ? fresnel_dielectric(std::abs(v.z), eta) : at(reflected, v); }
+
+  float G1(const Vector3& v) const {
+    const float slope2 = square(distribution.alpha_x) * (v.x * v.x + v.y * v.y), z2 = v.z * v.z;
+    if (distribution.kind == MicrofacetDistribution::ggx) return 2 / (1 + std::sqrt(1 + slope2 / z2));
+    if (!(slope2 > 0) || z2 >= 1.6f * 1.6f * slope2) return 1;
+    const float a = std::sqrt(z2 / slope2);
+    return (3.535f * a + 2.181f * a * a) / (1 + 2.276f * a + 2.577f * a * a);
+  }
+
+ private:
+  /// What a single facet reflects, or refracts, of light along v > 0; by slopes as microfacet_quadrature.cpp has them.
+  double once(const albedo::Slopes& slopes, const Vector3& v, float index, bool refracted) const {
+    const float alpha = distribution.alpha_x;
+    double sum = 0, seen = 0;
+    for (size_t i = 0; i < slopes.x.size(); ++i) {
+      const float x = alpha * slopes.x[i], y = alpha * slopes.y[i], projected = v.z - v.x * x;
+      if (!(projected > 0)) continue;
+      const Vector3 m = Vector3{-x, -y, 1} / std::sqrt(1 + x * x + y * y);
+      float behind = 0;
+      const float cosine = dot(v, m), f = fresnel_dielectric(cosine, index, behind);
+      const double weight = double(slopes.weight[i] * projected);
+      seen += weight;
+      const Vector3 leaving = refracted ? refract(v, m, index, behind) : reflect(v, m);
+      if (refracted ? f < 1 && leaving.z < 0 : leaving.z > 0) sum += weight * double((refracted ? 1 - f : f) * G1(leaving));
+    }
+    return sum / seen;  // normals are drawn as they are seen, exactly, whatever the fit of G1(v)
+  }
+};
+
+class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
+ public:
+  LossyPlasticScatter(const SurfacePoint& p, const LossyCoat& coat, Spectrum body, Spectrum shine, bool nonlinear)
+      : JointScatter(p, Lobes((body.black() ? 0 : diffuse_reflection) |
+                              (shine.black() ? 0 : (coat.smooth() ? specular_reflection : glossy_reflection)))),
+        coat_(coat),
+        shine_(shine) {
+    const Spectrum kept = nonlinear ? Spectrum(1.0f) - body * coat.inside : Spectrum(1 - coat.inside);
+    body_ = body / (kept * square(coat.eta));
+    body_weight_ = (body_ * coat.through_mean).average();
+    shine_weight_ = shine.average();
+  }
+
+  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+    if (!(out.z * in.z > 0)) return {};
+    const float through = coat_.lets_through(out), coat_probability = probability_of_coat(out, through, which);
+    ScatterValue r;
+    if (which & diffuse_reflection) {
+      r.value = body_ * (through * coat_.lets_through(in) * inverse_pi);
+      r.density = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
+    }
+    if (which & glossy_reflection) {
+      const MicrofacetDistribution& d = coat_.distribution;
+      const Vector3 m = reflection_half_vector(out, in);
+      const float cosine = std::abs(dot(out, m));
+      r.value += shine_ *
+                 (fresnel_dielectric(cosine, coat_.eta) * d.D(m) * coat_.G1(out) * coat_.G1(in) / (4 * std::abs(out.z * in.z)));
+      r.density += coat_probability * d.visible_density(out, m) * reflection_jacobian(cosine);
+    }
+    return r;
+  }
+
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    const float through = coat_.lets_through(out), coat_probability = probability_of_coat(out, through, which);
+    if (choice < coat_probability) {
+      if (which & specular_reflection) {
+        s.in = {-out.x, -out.y, out.z};
+        s.value = shine_ * coat_.throws_back(out);
+        s.density = coat_probability;
+        s.lobe = specular_reflection;
+        return true;
+      }
+      s.in = reflect(out, coat_.distribution.sample_visible(out, u));
+      s.lobe = glossy_reflection;
+    } else {
+      s.in = warp::cosine_hemisphere(u);
+      if (out.z < 0) s.in.z = -s.in.z;
+      s.lobe = diffuse_reflection;
+    }
+    const ScatterValue both = local_value_and_density(out, s.in, which);
+    s.value = both.value * std::abs(s.in.z);
+    s.density = both.density;
+    return s.density > 0;
+  }
+
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    Spectrum sum;
+    if (which & diffuse_reflection) sum += body_ * (coat_.lets_through(out) * coat_.through_mean);
+    if (which & (glossy_reflection | specular_reflection)) sum += shine_ * coat_.throws_back(out);
+    return sum;
+  }
+
+ private:
+  float probability_of_coat(const Vector3& out, float through, Lobes which) const {
+    if (!(which & diffuse_reflection)) return 1;
+    if (!(which & (glossy_reflection | specular_reflection))) return 0;
+    const float coat = std::max(coat_.throws_back(out), 0.01f) * shine_weight_;
+    return coat / (coat + through * body_weight_);
+  }
+
+  const LossyCoat& coat_;
+  Spectrum body_;  ///< f of the body times pi / (T(out) T(in))
+  Spectrum shine_;
+  float body_weight_, shine_weight_;
+};
+
+class LossyPlastic final : public Shader {
+ public:
+  static void describe(Description<LossyPlastic>& d) {
+    d.summary(
+         "A diffuse body under a dielectric coat, with the losses of Mitsuba's plastic and roughplastic, to reproduce pictures "
+         "made with those. Plastic loses nothing.",
+         "Jakob et al. 2022, Mitsuba 3 renderer; Walter et al. 2007, Microfacet models for refraction through rough surfaces")
+        .member<&LossyPlastic::color>("color", "1", "fraction of light the body under the coat reflects, per wavelength",
+                                      Meaning::reflectance)
+        .member<&LossyPlastic::reflection_tint>("reflection_tint", "1",
+                                                "what light that the coat reflects is multiplied by; real coats have 1",
+                                                Meaning::reflectance)
+        .member<&LossyPlastic::ior>("ior", "1", "index of refraction of the coat over that in front", Range{0.25, 4},
+                                    soft(1, 2.5))
+        .member<&LossyPlastic::roughness>(
+            "roughness", "1", "the alpha of the distribution of the coat's facets (not its square root); below 0.001 polished",
+            range(0, 1))
+        .member<&LossyPlastic::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
+        .member<&LossyPlastic::nonlinear>(
+            "nonlinear", "",
+            "whether light that the coat throws back to the body takes on its colour again, which makes colours deeper");
+  }
+
+  void prepare() override {
+    require_reflectance(*this, "color", color);
+    require_reflectance(*this, "reflection_tint", reflection_tint);
+    coat_ = std::make_unique<const LossyCoat>(MicrofacetDistribution(distribution, roughness), ior);
+  }
+
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    return arena.make<LossyPlasticScatter>(p, *coat_, reflectance_at(*color, p, w), reflectance_at(*reflection_tint, p, w),
+                                           nonlinear);
+  }
+  Lobes possible_lobes() const override {
+    return Lobes(diffuse_reflection |
+                 (MicrofacetDistribution(distribution, roughness).smooth() ? specular_reflection : glossy_reflection));
+  }
+
+  Ref<ObjectMap> color = constant(0.5f), reflection_tint = constant(1.0f);
+  float ior = 1.49f, roughness = 0.1f;
+  MicrofacetDistribution::Kind distribution = MicrofacetDistribution::beckmann;
+  bool nonlinear = false;
+
+ private:
+  std::unique_ptr<const LossyCoat> coat_;
+};
+
+const Register<LossyPlastic> registered;
+
+}  // namespace
+}  // namespace etendue
