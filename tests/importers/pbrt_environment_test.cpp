@@ -26,14 +26,14 @@ std::array<double, 2> towards(const TemporaryFolder& folder, bool v4, const std:
   const Imported i = import_text(folder, std::string(look) + "Camera \"perspective\" \"float fov\" 0.1\nFilm \"" + film +
                                              "\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\nLightSource "
                                              "\"infinite\" \"string " +
-                                             (v4 ? "filename" : "mapname") + "\" \"map.pfm\"\n");
+                                             (v4 ? "filename" : "mapname") + "\" \"map.exr\"\n");
   const Xyz c = seen(i, 8192);
   return {3.240479 * c.x - 1.53715 * c.y - 0.498535 * c.z, -0.969256 * c.x + 1.875991 * c.y + 0.041556 * c.z};
 }
 
 TEST(PbrtEnvironment, EqualAreasOfVersion4) {
   const TemporaryFolder folder;
-  test::write_image(folder / "map.pfm", {size, size, 3, NumberType::single}, ramps(size, size));
+  test::write_image(folder / "map.exr", {size, size, 3, NumberType::single}, ramps(size, size));
   // Clarberg's mapping the other way, from the square to the sphere.
   for (const auto& [u, v] : {std::pair(0.5, 0.5), {0.3, 0.4}, {0.6, 0.35}, {0.8, 0.55}, {0.1, 0.2}, {0.85, 0.9}, {0.4, 0.9}}) {
     const double a = 2 * u - 1, b = 2 * v - 1, distance = 1 - (std::abs(a) + std::abs(b)), r = 1 - std::abs(distance);
@@ -48,7 +48,7 @@ TEST(PbrtEnvironment, EqualAreasOfVersion4) {
 
 TEST(PbrtEnvironment, LongitudeAndLatitudeOfVersion3) {
   const TemporaryFolder folder;
-  test::write_image(folder / "map.pfm", {2 * size, size, 3, NumberType::single}, ramps(2 * size, size));
+  test::write_image(folder / "map.exr", {2 * size, size, 3, NumberType::single}, ramps(2 * size, size));
   // u = phi / (2 pi) from +x towards +y, v = theta / pi from +z.
   for (const auto& [u, v] : {std::pair(0.125, 0.5), {0.25, 0.4}, {0.5, 0.7}, {0.75, 0.25}, {0.9, 0.5}}) {
     const double phi = 2 * M_PI * u, theta = M_PI * v;

@@ -1,454 +1,14 @@
 // The directives of a pbrt file, one after the other.
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
-#include "files/regular_file.h"
-#include "reader.h"
+#include "directives.h"
 
 namespace etendue::pbrt {
 
 namespace {
-
-constexpr size_t most_nested = 100'000, most_included = 10'000, most_deep = 64, most_errors = 20;
-
-/// A file that is being read.
-struct Source {
-  std::string path, folder;
-  std::shared_ptr<FileContents> contents;
-  std::unique_ptr<Lexer> lexer;
-  bool import = false;  ///< v4's Import: what it sets is forgotten at its end
-  size_t nested = 0;    ///< how many states were kept when it began
-};
-
-class Directives {
- public:
-  explicit Directives(Reader& reader) : r(reader) { r.state.space = &rgb_space("srgb"); }
-
-  void read(std::string_view text) {
-    Source first;
-    first.path = r.importing.path();
-    first.folder = std::filesystem::path(first.path).parent_path().string();
-    first.lexer = std::make_unique<Lexer>(text, intern(first.path));
-    sources_.push_back(std::move(first));
-    r.materials[0].type = r.version == 4 ? "diffuse" : "matte";
-    r.materials[0].parameters.of = "the material that is there when none is given";
-    r.materials[0].parameters.at = r.importing.at();
-    while (!sources_.empty() && errors_.size() < most_errors) step();
-    if (errors_.empty() && !world_) errors_.emplace_back("there is no WorldBegin: the file holds no scene", r.importing.at());
-    if (errors_.empty() && !kept_.empty())
-      errors_.emplace_back(fmt::format("this {}Begin has no end", kept_.back().what), kept_.back().at);
-    if (!errors_.empty()) throw Errors(std::move(errors_));
-  }
-
- private:
-  using Handler = void (Directives::*)();
-  struct Directive {
-    const char* name;
-    Handler handler;
-  };
-  static const std::vector<Directive>& table();
-  static Handler handler_of(std::string_view name) {
-    for (const Directive& d : table())
-      if (name == d.name) return d.handler;
-    return nullptr;
-  }
-
-  Lexer& lexer() { return *sources_.back().lexer; }
-
-  void step() {
-    bool lexing = true;
-    try {
-      token_ = lexer().next();
-      lexing = false;
-      if (token_.end()) {
-        end_source();
-        return;
-      }
-      at_ = lexer().place(token_);
-      const Handler handler = token_.is(Token::Kind::word) ? handler_of(token_.text) : nullptr;
-      if (!handler) throw Error(unknown(), at_);
-      (this->*handler)();
-    } catch (const Error& e) {
-      errors_.push_back(e.location.known() ? e : Error(e.what(), at_));
-      recover(lexing);
-    } catch (const Errors& e) {
-      errors_.insert(errors_.end(), e.errors.begin(), e.errors.end());
-      recover(lexing);
-    }
-  }
-
-  std::string unknown() const {
-    std::vector<std::string> known;
-    for (const Directive& d : table()) known.emplace_back(d.name);
-    const std::string given(token_.text.substr(0, 60));
-    return fmt::format("there is no directive '{}'{}", given, suggestion(given, known));
-  }
-
-  /// Goes on at the next directive, if the text can still be taken apart.
-  void recover(bool lexing) {
-    try {
-      while (!lexing) {
-        const Token& next = lexer().peek();
-        if (next.end() || (next.is(Token::Kind::word) && handler_of(next.text))) return;
-        lexer().next();
-      }
-    } catch (const Error&) {
-      lexing = true;
-    }
-    if (lexing) sources_.clear();
-  }
-
-  void end_source() {
-    const bool import = sources_.back().import;
-    const size_t nested = sources_.back().nested;
-    sources_.pop_back();
-    if (!import) return;
-    if (kept_.size() != nested + 1) throw Error("the imported file ends within something it began", at_);
-    r.state = std::move(kept_.back().state);
-    kept_.pop_back();
-  }
-
-  // Words and numbers that follow a directive.
-  template <size_t count>
-  std::array<double, count> numbers() {
-    const bool list = lexer().peek().is(Token::Kind::open);
-    if (list) lexer().next();
-    std::array<double, count> all{};
-    for (double& n : all) {
-      const Token t = lexer().next();
-      if (!t.is(Token::Kind::word) || !parse_number(t.text, n))
-        throw Error(fmt::format("{} needs {} numbers", token_.text, count), t.end() ? at_ : lexer().place(t));
-    }
-    if (list && !lexer().next().is(Token::Kind::close))
-      throw Error(fmt::format("{} needs {} numbers", token_.text, count), at_);
-    return all;
-  }
-  std::string text() {
-    const Token t = lexer().next();
-    if (!t.is(Token::Kind::string))
-      throw Error(fmt::format("{} needs a text in quotes", token_.text), t.end() ? at_ : lexer().place(t));
-    return Lexer::unescaped(t.text);
-  }
-  Parameters parameters(const std::string& type, int target = -1) {
-    Parameters p = Parameters::read(lexer(), fmt::format("{} \"{}\"", token_.text, type), at_);
-    p.folder = sources_.back().folder;
-    p.space = r.state.space;
-    if (target >= 0) p.defaults = r.state.defaults[size_t(target)];
-    return p;
-  }
-  void need_world() {
-    if (!world_) throw Error(fmt::format("{} must stand after WorldBegin", token_.text), at_);
-  }
-  void need_options() {
-    if (world_) throw Error(fmt::format("{} must stand before WorldBegin", token_.text), at_);
-  }
-
-  // Transforms.
-  void apply(const Transform& t) {
-    for (size_t i = 0; i < 2; ++i)
-      if (r.state.active & (1u << i)) r.state.ctm[i] = r.state.ctm[i] * t;
-  }
-  void put(const std::array<Transform, 2>& to) {
-    for (size_t i = 0; i < 2; ++i)
-      if (r.state.active & (1u << i)) r.state.ctm[i] = to[i];
-  }
-  Transform matrix() {
-    const auto m = numbers<16>();
-    // By columns. The last row must leave points what they are.
-    if (std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) > 1e-9 * std::abs(m[15]) || m[15] == 0)
-      throw Error("a matrix with a perspective is not possible here", at_);
-    const double w = m[15];
-    Transform::DoubleMatrix rows{m[0], m[4], m[8], m[12], m[1], m[5], m[9], m[13], m[2], m[6], m[10], m[14]};
-    for (double& x : rows) x /= w;
-    return checked(Transform(rows));
-  }
-  Transform checked(const Transform& t) {
-    if (!t.valid()) throw Error(fmt::format("the transform of {} cannot be inverted", token_.text), at_);
-    return t;
-  }
-  void identity() { put({}); }
-  void translate() {
-    const auto n = numbers<3>();
-    apply(Transform::translate({n[0], n[1], n[2]}));
-  }
-  void scale() {
-    const auto n = numbers<3>();
-    apply(checked(Transform::scale({n[0], n[1], n[2]})));
-  }
-  void rotate() {
-    const auto n = numbers<4>();
-    if (n[1] == 0 && n[2] == 0 && n[3] == 0) throw Error("an axis of rotation cannot be zero", at_);
-    apply(Transform::rotate(n[0] * 3.14159265358979323846 / 180, {n[1], n[2], n[3]}));
-  }
-  void look_at() {
-    const auto n = numbers<9>();
-    const DoubleVector3 way{n[3] - n[0], n[4] - n[1], n[5] - n[2]}, up{n[6], n[7], n[8]}, side = cross(up, way);
-    const auto length = [](const DoubleVector3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); };
-    if (!(length(side) > 1e-12 * length(up) * length(way)))
-      throw Error("LookAt needs two different points and an up direction that is not along the view", at_);
-    // The same matrix as ours, though pbrt's +x is to the right in the picture and ours to the left.
-    apply(Transform::look_at({n[0], n[1], n[2]}, {n[3], n[4], n[5]}, up).inverse());
-  }
-  void transform() {
-    const Transform t = matrix();
-    put({t, t});
-  }
-  void concat_transform() { apply(matrix()); }
-  void coordinate_system() { named_systems_[text()] = r.state.ctm; }
-  void coordinate_system_transform() {
-    const std::string name = text();
-    const auto found = named_systems_.find(name);
-    if (found == named_systems_.end()) throw Error(fmt::format("there is no coordinate system '{}'", name), at_);
-    put(found->second);
-  }
-  void transform_times() {
-    need_options();
-    const auto n = numbers<2>();
-    r.times = n;
-  }
-  void active_transform() {
-    const Token t = lexer().next();
-    const std::string_view which = t.text;
-    if (which == "StartTime")
-      r.state.active = 1;
-    else if (which == "EndTime")
-      r.state.active = 2;
-    else if (which == "All")
-      r.state.active = 3;
-    else
-      throw Error("ActiveTransform is of StartTime, EndTime or All", t.end() ? at_ : lexer().place(t));
-  }
-
-  // States.
-  struct Kept {
-    State state;
-    const char* what;
-    Location at;
-  };
-  void keep(const char* what) {
-    if (kept_.size() >= most_nested) throw Error(fmt::format("states nest more than {} deep", most_nested), at_);
-    kept_.push_back({r.state, what, at_});
-  }
-  void give_back(const char* what, bool transform_only) {
-    if (kept_.empty() || (sources_.size() > 1 && sources_.back().import && kept_.size() <= sources_.back().nested + 1))
-      throw Error(fmt::format("{}End without {}Begin", what, what), at_);
-    if (std::string_view(kept_.back().what) != what)
-      throw Error(fmt::format("{}End ends the {}Begin of line {}", what, kept_.back().what, kept_.back().at.line), at_);
-    if (transform_only) {
-      r.state.ctm = kept_.back().state.ctm;
-      r.state.active = kept_.back().state.active;
-    } else {
-      r.state = std::move(kept_.back().state);
-    }
-    kept_.pop_back();
-  }
-  void attribute_begin() { keep("Attribute"); }
-  void attribute_end() { give_back("Attribute", false); }
-  void transform_begin() { keep("Transform"); }
-  void transform_end() { give_back("Transform", true); }
-  void object_begin() {
-    need_world();
-    r.begin_object(text(), at_);
-    keep("Object");
-  }
-  void object_end() {
-    give_back("Object", false);
-    r.end_object(at_);
-  }
-  void object_instance() {
-    need_world();
-    r.instance(text(), at_);
-  }
-  void reverse_orientation() { r.state.reversed = !r.state.reversed; }
-  void attribute() {
-    const std::string target = text();
-    const auto found = std::ranges::find(attribute_targets, target);
-    if (found == attribute_targets.end())
-      throw Error(fmt::format("Attribute is of shape, light, material, medium or texture, not '{}'", target), at_);
-    Parameters p = parameters(target);
-    auto& list = r.state.defaults[size_t(found - attribute_targets.begin())];
-    // The newest first: it is what is found.
-    if (list) p.own.insert(p.own.end(), list->begin(), list->end());
-    list = std::make_shared<const std::vector<Parameter>>(std::move(p.own));
-  }
-
-  // Settings.
-  void set(Setting& setting) {
-    need_options();
-    if (setting.given) r.importing.inexact(fmt::format("{} is given again: the last one counts", token_.text), at_);
-    setting.type = text();
-    setting.parameters = parameters(setting.type);
-    setting.given = true;
-  }
-  void camera() {
-    set(r.camera);
-    std::array<Transform, 2> inverse;
-    for (size_t i = 0; i < 2; ++i) inverse[i] = r.state.ctm[i].inverse();
-    named_systems_["camera"] = inverse;
-    std::swap(r.state.ctm, inverse);
-    r.camera_to_world = r.to_world(Transform());
-    std::swap(r.state.ctm, inverse);
-    if (!r.state.outside.empty())
-      r.importing.inexact(fmt::format("the medium '{}' around the camera is left out", r.state.outside), at_);
-  }
-  void film() { set(r.film); }
-  void filter() { set(r.filter); }
-  void sampler() { set(r.sampler); }
-  void integrator() { set(r.integrator); }
-  void without_effect() {
-    // What finds intersections and how: the same picture.
-    const std::string type = text();
-    parameters(type).forget();
-  }
-  void left_out() {
-    const std::string type = text();
-    parameters(type).forget();
-    r.importing.inexact(fmt::format("{} \"{}\" is of an older pbrt, and left out", token_.text, type), at_);
-  }
-  void option() {
-    need_options();
-    const Parameters p = Parameters::read(lexer(), "Option", at_);
-    for (const Parameter& o : p.own)
-      if (o.name != "seed" && o.name != "rendercoordsys" && o.name != "msereferenceimage" && o.name != "msereferenceout")
-        r.importing.inexact(fmt::format("the option '{}' is left out", o.name), o.at);
-  }
-  void color_space() {
-    const std::string name = text();
-    const std::pair<const char*, const char*> spaces[] = {
-        {"srgb", "srgb"}, {"rec2020", "rec2020"}, {"aces2065-1", "aces2065-1"}, {"dci-p3", "display_p3"}};
-    for (const auto& [pbrt, ours] : spaces)
-      if (name == pbrt) {
-        r.state.space = &rgb_space(ours);
-        return;
-      }
-    throw Error(
-        fmt::format("there is no colour space '{}'{}", name, suggestion(name, {"srgb", "rec2020", "aces2065-1", "dci-p3"})),
-        at_);
-  }
-  void world_begin() {
-    need_options();
-    world_ = true;
-    r.state.ctm = {};
-    r.state.active = 3;
-    named_systems_["world"] = r.state.ctm;
-    r.exposure = imaging_ratio(r);
-  }
-  void world_end() {
-    need_world();
-    // Nothing else counts: v3 takes what follows for another scene.
-    while (!lexer().peek().end()) {
-      const Token t = lexer().next();
-      if (!told_rest_) r.importing.inexact("what stands after WorldEnd is left out", lexer().place(t));
-      told_rest_ = true;
-    }
-  }
-
-  // What is in the world.
-  void material() {
-    Material m;
-    m.type = text();
-    m.parameters = parameters(m.type, 2);
-    r.state.material = r.materials.size();
-    r.state.named_material.clear();
-    r.materials.push_back(std::move(m));
-  }
-  void make_named_material() {
-    Material m;
-    m.name = text();
-    m.parameters = parameters(m.name, 2);
-    m.type = m.parameters.text("type");
-    if (m.type.empty()) throw Error(fmt::format("the material '{}' needs its \"string type\"", m.name), at_);
-    r.named_materials[m.name] = r.materials.size();
-    r.materials.push_back(std::move(m));
-  }
-  void named_material() {
-    r.state.named_material = text();
-    // v3 may give a name to another material later; v4 may give it for the first time.
-    if (const auto found = r.named_materials.find(r.state.named_material); found != r.named_materials.end()) {
-      r.state.material = found->second;
-      if (r.version == 3) r.state.named_material.clear();
-    }
-  }
-  void texture() {
-    const std::string name = text(), kind = text(), type = text();
-    make_texture(r, name, kind, type, parameters(type, 4));
-  }
-  void shape() {
-    need_world();
-    const std::string type = text();
-    r.shape(type, parameters(type, 0));
-  }
-  void light_source() {
-    need_world();
-    const std::string type = text();
-    Parameters p = parameters(type, 1);
-    if (r.in_object()) throw Error("an object that is instanced cannot hold lights", at_);
-    make_light(r, type, std::move(p));
-  }
-  void area_light_source() {
-    auto light = std::make_shared<AreaLight>();
-    light->type = text();
-    light->parameters = parameters(light->type, 1);
-    if (light->type != "diffuse" && light->type != "area")
-      throw Error(fmt::format("there is no area light '{}', but 'diffuse'", light->type), at_);
-    r.state.light = std::move(light);
-  }
-  void make_named_medium() {
-    const std::string name = text();
-    make_medium(r, name, parameters(name, 3));
-  }
-  void medium_interface() {
-    r.state.inside = r.state.outside = text();
-    if (lexer().peek().is(Token::Kind::string)) r.state.outside = text();
-  }
-
-  // Other files.
-  void include_file(bool import) {
-    const Token named = lexer().peek();
-    const std::string name = text();
-    const Location at = lexer().place(named);
-    if (sources_.size() >= most_deep) throw Error(fmt::format("files include each other more than {} deep", most_deep), at);
-    if (++included_ > most_included) throw Error(fmt::format("more than {} files are included", most_included), at);
-    Source source;
-    source.path = r.importing.file(name, at, sources_.back().folder);
-    if (source.path.ends_with(".gz"))
-      throw Error("compressed files are not read: unpack it with gunzip and take .gz from its name", at);
-    std::error_code error;
-    for (const Source& outer : sources_)
-      if (std::filesystem::equivalent(outer.path, source.path, error))
-        throw Error(fmt::format("'{}' includes itself", name), at);
-    source.folder = std::filesystem::path(source.path).parent_path().string();
-    try {
-      source.contents = std::make_shared<FileContents>(source.path);
-    } catch (const Error& e) {
-      throw Error(fmt::format("cannot read '{}': {}", name, e.what()), at);
-    }
-    source.lexer = std::make_unique<Lexer>(source.contents->text(), intern(source.path));
-    source.import = import;
-    source.nested = kept_.size();
-    if (import) keep("Import");
-    sources_.push_back(std::move(source));
-  }
-  void include() { include_file(false); }
-  void import() {
-    need_world();
-    include_file(true);
-  }
-
-  Reader& r;
-  std::vector<Source> sources_;
-  std::vector<Kept> kept_;
-  std::map<std::string, std::array<Transform, 2>, std::less<>> named_systems_;
-  std::vector<Error> errors_;
-  Token token_;
-  Location at_;
-  size_t included_ = 0;
-  bool world_ = false, told_rest_ = false;
-};
+constexpr size_t most_errors = 20;
+}  // namespace
 
 const std::vector<Directives::Directive>& Directives::table() {
   using D = Directives;
@@ -502,7 +62,98 @@ const std::vector<Directives::Directive>& Directives::table() {
   return all;
 }
 
-}  // namespace
+void Directives::read(std::string_view text) {
+  Source first;
+  first.path = r.importing.path();
+  first.folder = std::filesystem::path(first.path).parent_path().string();
+  first.lexer = std::make_unique<Lexer>(text, intern(first.path));
+  sources_.push_back(std::move(first));
+  r.materials[0].type = r.version == 4 ? "diffuse" : "matte";
+  r.materials[0].parameters.of = "the material that is there when none is given";
+  r.materials[0].parameters.at = r.importing.at();
+  while (!sources_.empty() && errors_.size() < most_errors) step();
+  if (errors_.empty() && !world_) errors_.emplace_back("there is no WorldBegin: the file holds no scene", r.importing.at());
+  if (errors_.empty() && !kept_.empty())
+    errors_.emplace_back(fmt::format("this {}Begin has no end", kept_.back().what), kept_.back().at);
+  if (!errors_.empty()) throw Errors(std::move(errors_));
+}
+
+Lexer& Directives::lexer() { return *sources_.back().lexer; }
+
+void Directives::step() {
+  bool lexing = true;
+  try {
+    token_ = lexer().next();
+    lexing = false;
+    if (token_.end()) {
+      end_source();
+      return;
+    }
+    at_ = lexer().place(token_);
+    const Handler handler = token_.is(Token::Kind::word) ? handler_of(token_.text) : nullptr;
+    if (!handler) throw Error(unknown(), at_);
+    (this->*handler)();
+  } catch (const Error& e) {
+    errors_.push_back(e.location.known() ? e : Error(e.what(), at_));
+    recover(lexing);
+  } catch (const Errors& e) {
+    errors_.insert(errors_.end(), e.errors.begin(), e.errors.end());
+    recover(lexing);
+  }
+}
+
+std::string Directives::unknown() const {
+  std::vector<std::string> known;
+  for (const Directive& d : table()) known.emplace_back(d.name);
+  const std::string given(token_.text.substr(0, 60));
+  return fmt::format("there is no directive '{}'{}", given, suggestion(given, known));
+}
+
+void Directives::recover(bool lexing) {
+  try {
+    while (!lexing) {
+      const Token& next = lexer().peek();
+      if (next.end() || (next.is(Token::Kind::word) && handler_of(next.text))) return;
+      lexer().next();
+    }
+  } catch (const Error&) {
+    lexing = true;
+  }
+  if (lexing) sources_.clear();
+}
+
+void Directives::end_source() {
+  const bool import = sources_.back().import;
+  const size_t nested = sources_.back().nested;
+  sources_.pop_back();
+  if (!import) return;
+  if (kept_.size() != nested + 1) throw Error("the imported file ends within something it began", at_);
+  r.state = std::move(kept_.back().state);
+  kept_.pop_back();
+}
+
+std::string Directives::text() {
+  const Token t = lexer().next();
+  if (!t.is(Token::Kind::string))
+    throw Error(fmt::format("{} needs a text in quotes", token_.text), t.end() ? at_ : lexer().place(t));
+  return Lexer::unescaped(t.text);
+}
+
+Parameters Directives::parameters(const std::string& type, int target) {
+  Parameters p = Parameters::read(lexer(), fmt::format("{} \"{}\"", token_.text, type), at_);
+  p.folder = sources_.back().folder;
+  p.space = r.state.space;
+  if (target >= 0) p.defaults = r.state.defaults[size_t(target)];
+  return p;
+}
+
+void Directives::need_world() {
+  if (!world_) throw Error(fmt::format("{} must stand after WorldBegin", token_.text), at_);
+}
+
+void Directives::need_options() {
+  if (world_) throw Error(fmt::format("{} must stand before WorldBegin", token_.text), at_);
+}
 
 void read_directives(Reader& reader, std::string_view text) { Directives(reader).read(text); }
 

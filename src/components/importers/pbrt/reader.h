@@ -143,10 +143,11 @@ void set_map(Component&, std::string_view member, Value, Location at);
 /// The image file of a parameter, as a member expects it; none and a note: it is missing.
 std::optional<FilePath> image_file(Reader&, const Parameters&, std::string_view name);
 
-// materials.cpp, materials_v3.cpp
+// materials.cpp, materials_v4.cpp, materials_v3.cpp
 Ref<Component> shader_of(Reader&, size_t material, Location used_at);
 Ref<Component> shader_named(Reader&, const std::string& name, Location used_at);
-/// Null: it is none of v3's materials.
+/// Null: it is none of v4's, or none of v3's materials.
+Ref<Component> make_v4_shader(Reader&, const Material&);
 Ref<Component> make_v3_shader(Reader&, const Material&);
 /// Sets the roughness of a microfacet shader by GGX's alpha from pbrt's parameters.
 void set_roughness(Reader&, Component& shader, const Parameters&, double otherwise, bool v3, const std::string& prefix = {});
