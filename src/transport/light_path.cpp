@@ -1,22 +1,45 @@
 #include "etendue/transport/light_path.h"
 
 #include "etendue/transport/mutation.h"
+#include "path_lobes.h"
 
 namespace etendue {
 namespace {
 
-float next(ChoiceNumbers& choices) { return std::min(float(choices.next()), one_minus_epsilon); }
-Point2 next_pair(ChoiceNumbers& choices) {
-  const float x = next(choices);
-  return {x, next(choices)};
+double squared_distance(const Point3& a, const Point3& b) {
+  const double x = double(a.x) - double(b.x), y = double(a.y) - double(b.y), z = double(a.z) - double(b.z);
+  return x * x + y * y + z * z;
 }
+double cosine(const PathVertex& v, const Vector3& direction) { return double(std::abs(dot(v.point.normal, direction))); }
+
+/// Whether two unit vectors are the same, up to what the places of vertices near each other are exact to.
+bool same(const Vector3& a, const Vector3& b) { return dot(a, b) > 0.999f; }
 
 }  // namespace
 
-float LightPath::solid_angle(int i) const {
-  const Vector3 way = x[size_t(i)].point.position - x[size_t(i) - 1].point.position;
-  const float squared = length_squared(way);
-  return std::abs(dot(x[size_t(i)].point.normal, way)) / (squared * std::sqrt(squared));
+int LightPath::smooth_before(int i) const {
+  for (--i; specular(i);) --i;
+  return i;
+}
+
+double LightPath::camera_angle(int i) const {
+  const PathVertex &v = x[size_t(i)], &to = x[size_t(i) + 1];
+  return cosine(v, v.out) / squared_distance(to.point.position, v.point.position);
+}
+
+double LightPath::light_angle(int i) const {
+  const PathVertex &b = x[size_t(i)], &before = x[size_t(i) - 1];
+  if (!before.specular) return cosine(b, before.out) / squared_distance(b.point.position, before.point.position);
+  const PathVertex& a = x[size_t(smooth_before(i))];
+  double J = cosine(b, before.out) / cosine(a, a.out);
+  for (int j = i - 1; specular(j); --j) J *= x[size_t(j)].beam;
+  return J * camera_angle(i - 1);
+}
+
+std::vector<Lobe> LightPath::lobes(int i, int j) const {
+  std::vector<Lobe> kinds;
+  for (const int step = i < j ? 1 : -1; i != j + step; i += step) kinds.push_back(x[size_t(i)].lobe);
+  return kinds;
 }
 
 void PathSpace::begin(LightPath& y, const LightPath& x, int vertices) const {
@@ -28,93 +51,76 @@ void PathSpace::begin(LightPath& y, const LightPath& x, int vertices) const {
 
 void PathSpace::move(LightPath& path, Arena& to) const {
   path.arena = &to;
-  for (KeptVertex& v : path.x)
-    if (v.on_surface()) v.scatter = scattering_at(v.point, v.out, path.wavelengths, to);
-}
-
-KeptVertex PathSpace::lens(const LightPath& y) const {
-  KeptVertex v;
-  v.kind = Vertex::Kind::camera;
-  v.point.position =
-      context.camera.ray({0.5f * float(context.image.width), 0.5f * float(context.image.height)}, y.lens, time).origin;
-  v.point.time = time;
-  return v;
-}
-
-bool PathSpace::follow(const KeptVertex& from, const Vector3& direction, LightPath& y, KeptVertex& to) const {
-  const Ray ray = leaving_ray(from, direction);
-  Hit hit;
-  if (!context.scene.nearest(ray, hit)) return false;
-  to = {};
-  context.scene.locate(ray, hit, to.point);
-  to.out = -direction;
-  to.lobes = smooth_lobes;
-  to.scatter = scattering_at(to.point, to.out, y.wavelengths, *y.arena);
-  return to.scatters_smoothly();
-}
-
-bool PathSpace::follow_camera(Point2 film, LightPath& y, KeptVertex& to) const {
-  const Ray ray = context.camera.ray(film, y.lens, time);
-  KeptVertex from;
-  from.kind = Vertex::Kind::camera;
-  from.point.position = ray.origin;
-  from.point.time = time;
-  return follow(from, ray.direction, y, to);
-}
-
-bool PathSpace::walk(std::vector<KeptVertex>& walk, int count, Transport transport, ChoiceNumbers& choices,
-                     LightPath& y) const {
-  for (; count > 0; --count) {
-    KeptVertex to;
-    if (walk.empty()) {
-      const LightChoice choice = lights.choose(next(choices));
-      if (!choice.luminaire || choice.luminaire->infinite() || choice.luminaire->delta()) return false;
-      const SurfaceSample s = choice.luminaire->sample_area(next_pair(choices), time);
-      if (!(s.density > 0)) return false;
-      to.kind = Vertex::Kind::luminaire;
-      to.point = s.point;
-    } else if (const KeptVertex& from = walk.back(); from.kind == Vertex::Kind::camera) {
-      const Point2 u = next_pair(choices);
-      if (!follow_camera({u.x * float(context.image.width), u.y * float(context.image.height)}, y, to)) return false;
-    } else if (from.kind == Vertex::Kind::luminaire) {
-      const DirectionSample d = from.point.object->emission->sample(from.point, next_pair(choices));
-      if (!(d.density > 0) || !follow(from, d.direction, y, to)) return false;
-    } else {
-      const Vector3 out = normalize(walk[walk.size() - 2].point.position - from.point.position);
-      const auto s = from.scatter->sample(out, next(choices), next_pair(choices), transport, smooth_lobes);
-      if (!s || !follow(from, s->direction, y, to)) return false;
+  for (PathVertex& v : path.x)
+    if (v.on_surface()) {
+      if (v.media) v.point.media = v.media = to.make<MediumStack>(*v.media);
+      v.scatter = scattering_at(v.point, v.out, path.wavelengths, to);
     }
-    walk.push_back(to);
+}
+
+/// Of a specular vertex: what it does to light either way. False: radiance does not come this way.
+bool PathSpace::fill_specular(LightPath& path, int i) const {
+  PathVertex& v = path.x[size_t(i)];
+  const Vector3 out = v.out, in = -path.x[size_t(i) - 1].out;
+  const auto radiance = follow_specular(v, out, Transport::radiance, v.lobe);
+  if (!radiance || !same(radiance->direction, in)) return false;
+  v.fraction = radiance->weight;
+  if (radiance->dispersive) v.fraction *= path.seen.drop_secondary();
+  v.lobe_from_camera = lobe_share(v, out, v.lobe);
+  v.lobe_from_light = v.beam = 0;
+  const auto importance = follow_specular(v, in, Transport::importance, v.lobe);
+  if (importance && same(importance->direction, out) && importance->weight[0] > 0) {
+    v.lobe_from_light = lobe_share(v, in, v.lobe);
+    v.beam = double(radiance->weight[0]) / double(importance->weight[0]);
   }
   return true;
 }
 
-bool PathSpace::visible(const LightPath& path, int i) const {
-  const KeptVertex &a = path.x[size_t(i)], &b = path.x[size_t(i) + 1];
-  if (b.kind != Vertex::Kind::camera) return !context.scene.any(connecting_ray(a, b));
-  const Vector3 way = b.point.position - a.point.position;
-  Ray ray = leaving_ray(a, normalize(way));
-  ray.maximum = length(way) * SurfacePoint::almost_there;
-  return !context.scene.any(ray);
+/// Multiplies f by what the camera makes of light that comes along a ray. False: nothing.
+bool PathSpace::weigh_camera(LightPath& path, const Ray& ray) const {
+  CameraRay sent;
+  Wavelengths left = path.wavelengths;
+  if (!context.camera.sample_ray(path.film, path.lens, time, left, sent)) return false;
+  if (left.single() != path.wavelengths.single() || !same(sent.ray.direction, ray.direction) ||
+      squared_distance(sent.ray.origin, ray.origin) >
+          1e-6 * squared_distance(path.x[path.x.size() - 2].point.position, ray.origin))
+    context.camera.fail({},
+                        "sends rays that depend on the wavelength, or from places that depend on the film point, which "
+                        "PathSpaceMetropolis cannot mutate");
+  path.f *= sent.weight;
+  return !path.f.black();
 }
 
 bool PathSpace::complete(LightPath& path) const {
-  std::vector<KeptVertex>& x = path.x;
+  std::vector<PathVertex>& x = path.x;
   const int k = path.length();
   path.f = {};
+  path.seen = path.wavelengths;
   if (k < 2) return false;
-  for (size_t i = 0; i < size_t(k); ++i) {
-    const Vector3 way = x[i + 1].point.position - x[i].point.position;
+  const auto at = [&](int i) -> PathVertex& { return x[size_t(i)]; };
+  for (int i = 0; i < k; ++i) {
+    const Vector3 way = at(i + 1).point.position - at(i).point.position;
     if (!(length_squared(way) > 0)) return false;
-    x[i].out = normalize(way);
+    at(i).out = normalize(way);
   }
-  const auto at = [&](int i) -> KeptVertex& { return x[size_t(i)]; };
+  for (int i = 1; i < k; ++i)
+    if (path.specular(i) && !fill_specular(path, i)) return false;
   // From the luminaire.
   const SceneObject& luminaire = *at(0).point.object;
-  at(0).forward = lights.probability(luminaire) * luminaire.area_density(at(0).point);
-  at(1).forward = luminaire.emission->density(at(0).point, at(0).out) * path.solid_angle(1);
-  for (int i = 2; i < k; ++i)
-    at(i).forward = scattering_density(at(i - 1), -at(i - 2).out, at(i - 1).out, Transport::importance) * path.solid_angle(i);
+  at(0).from_light = double(lights.probability(luminaire)) * double(luminaire.area_density(at(0).point));
+  for (int i = 1; i < k; ++i) {
+    const PathVertex& from = at(i - 1);
+    double p = 0;
+    if (from.specular) {
+      p = from.lobe_from_light;
+    } else if (i == 1) {
+      p = double(luminaire.emission->density(from.point, from.out));
+    } else {
+      const Vector3 before = -at(i - 2).out;
+      p = double(scattering_density(from, before, from.out, Transport::importance)) * lobe_share(from, before, smooth_lobes);
+    }
+    at(i).from_light = path.specular(i) ? p : p * path.light_angle(i);
+  }
   // From the camera.
   Ray ray;
   ray.origin = at(k).point.position;
@@ -123,44 +129,46 @@ bool PathSpace::complete(LightPath& path) const {
   const std::optional<Point2> film = context.camera.film_point(ray);
   if (!film) return false;
   path.film = *film;
-  const auto seen = [&](int i) {  // as solid_angle, from x_{i+1}
-    return std::abs(dot(at(i).point.normal, at(i).out)) / length_squared(at(i + 1).point.position - at(i).point.position);
-  };
-  at(k - 1).reverse = camera_direction_density(context.camera, ray) * seen(k - 1);
-  for (int i = 0; i < k - 1; ++i)
-    at(i).reverse = scattering_density(at(i + 1), at(i + 1).out, -at(i).out, Transport::radiance) * seen(i);
-
-  Spectrum f = luminaire.emission->radiance(at(0).point, at(0).out, path.wavelengths) * at(k - 1).reverse;
-  for (int i = 0; i < k - 1; ++i) {
-    f *= scattering(at(i + 1), at(i + 1).out, -at(i).out, Transport::radiance).value * seen(i);
+  at(k - 1).from_camera = double(camera_direction_density(context.camera, ray)) * path.camera_angle(k - 1);
+  path.scale = at(k - 1).from_camera;
+  Spectrum f = luminaire.emission->radiance(at(0).point, at(0).out, path.wavelengths);
+  for (int i = k - 2; i >= 0; --i) {
+    const PathVertex& from = at(i + 1);
+    if (from.specular) {
+      at(i).from_camera = from.lobe_from_camera;
+      f *= from.fraction;
+    } else {
+      const ScatterValue s = scattering(from, from.out, -at(i).out, Transport::radiance);
+      at(i).from_camera = double(s.density) * lobe_share(from, from.out, smooth_lobes) * path.camera_angle(i);
+      f *= s.value;
+      path.scale *= path.camera_angle(i);
+    }
     if (f.black()) return false;
   }
-  // Of vertices so near one another that squares of distances leave the range of floats nothing can be told.
-  if (!std::isfinite(f.maximum())) return false;
   path.f = f;
-  return true;
+  return std::isfinite(path.scale) && weigh_camera(path, ray);
 }
 
 double PathSpace::density(const LightPath& path, int l, int r) {
   double sum = 0;
-  const int fewest = l == 0 ? 1 : 0;
-  for (int b = fewest; b <= r; ++b) {
+  for (int b = 0; b <= r; ++b) {
+    // A walk that meets a luminaire is joined to nothing.
+    if ((l > 0 || b > 0) && (path.specular(l + b - 1) || path.specular(l + b))) continue;
     double product = 1;
-    for (int i = l; i < l + r; ++i) product *= double(i < l + b ? path.x[size_t(i)].forward : path.x[size_t(i)].reverse);
+    for (int i = l; i < l + r; ++i) product *= i < l + b ? path.x[size_t(i)].from_light : path.x[size_t(i)].from_camera;
     sum += product;
   }
-  return sum / (r + 1 - fewest);
+  return sum / (r + 1);
 }
 
-bool PathSpace::join(LightPath& y, const std::vector<KeptVertex>& rest, int r, ChoiceNumbers& choices) const {
-  const int fewest = y.x.empty() ? 1 : 0, b = fewest + int(choices.next() * (r + 1 - fewest));
-  if (!walk(y.x, b, Transport::importance, choices, y)) return false;
-  // The camera's walk comes against the order of vertices.
-  std::vector<KeptVertex> camera(rest.rbegin(), rest.rend());
-  if (!walk(camera, r - b, Transport::radiance, choices, y)) return false;
-  const int joint = int(y.x.size()) - 1;
-  y.x.insert(y.x.end(), camera.rbegin(), camera.rend());
-  return complete(y) && visible(y, joint);
+std::optional<Point2> moved_on_film(const PathSpace& space, Point2 from, float smallest, float largest,
+                                    ChoiceNumbers& choices) {
+  const auto width = float(space.context.image.width), height = float(space.context.image.height);
+  const float distance = small_change(choices.next(), std::min(smallest, largest * width), largest * width);
+  const auto angle = float(2 * M_PI * choices.next());
+  const Point2 film{from.x + distance * std::cos(angle), from.y + distance * std::sin(angle)};
+  if (!(film.x >= 0 && film.x < width && film.y >= 0 && film.y < height)) return {};
+  return film;
 }
 
 Vector3 turned(const Vector3& direction, float angle, double u) {

@@ -65,25 +65,36 @@ MutatedNumbers::Walk& MutatedNumbers::walk(std::uint64_t name) const {
   return *last_;
 }
 
+void MutatedNumbers::move(Coordinate& c, double time, float normal) {
+  const float moved = c.value + float(std::sqrt(time - c.changed)) * normal;
+  c.value = std::min(moved - std::floor(moved), one_minus_epsilon);
+  c.changed = time;
+}
+
 template <class Normal>
 float MutatedNumbers::proposed(Walk& walk, std::uint32_t dimension, const Normal& normal) const {
   Coordinate& c = walk[dimension];
   if (c.changed == time_) return c.value;
+  if (!large_) {
+    // First, where it stands in the state that this proposal is made of: since the last large step as that would have drawn it
+    // (one that was never asked for is such a one), then moved as often as it was left out. That belongs to the state, and
+    // stays when the proposal is rejected. Were it drawn afresh for the next proposal, states that leave numbers out would try
+    // those numbers again and again from where they once were good: they would be left too early, for states that ask for more.
+    if (c.changed < last_large_) {
+      c.value = draw();
+      c.changed = last_large_;
+    }
+    if (c.changed < time_before_) move(c, time_before_, normal_pair().x);
+  }
   c.before = c.value;
   c.changed_before = c.changed;
   touched_.emplace_back(&walk, dimension);
   if (large_) {
     c.value = draw();
+    c.changed = time_;
   } else {
-    // Since the last large step it stands as that would have drawn it. A coordinate that was never asked for is such a one.
-    if (c.changed < last_large_) {
-      c.value = draw();
-      c.changed = last_large_;
-    }
-    const float moved = c.value + float(std::sqrt(time_ - c.changed)) * normal();
-    c.value = std::min(moved - std::floor(moved), one_minus_epsilon);
+    move(c, time_, normal());
   }
-  c.changed = time_;
   return c.value;
 }
 

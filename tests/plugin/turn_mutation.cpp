@@ -21,12 +21,14 @@ class TurnMutation final : public Mutation {
     const int k = x.length(), moved = 1 + int(choices.next() * (k - 1));
     space.begin(y, x, moved);
     const float angle = small_change(choices.next(), largest / 1000, largest);
-    KeptVertex met;
+    PathVertex met;
+    if (x.specular(moved) || x.specular(moved - 1) || x.specular(moved + 1)) return {};
     if (!space.follow(y.x.back(), turned(x.x[size_t(moved - 1)].out, angle, choices.next()), y, met)) return {};
+    if (!met.scatters_smoothly()) return {};
     y.x.push_back(met);
     y.x.insert(y.x.end(), x.x.begin() + moved + 1, x.x.end());
     if (!space.complete(y) || !space.visible(y, moved)) return {};
-    return double(x.solid_angle(moved)) / double(y.solid_angle(moved));
+    return x.light_angle(moved) / y.light_angle(moved);
   }
 };
 

@@ -30,6 +30,10 @@ inline float small_change(double u, float smallest, float largest) {
   return largest * float(std::exp(-std::log(double(largest) / double(smallest)) * u));
 }
 
+/// A film point at such a distance [pixels] from another, to all sides alike; `largest` in widths of the film. Empty: it is
+/// none.
+std::optional<Point2> moved_on_film(const PathSpace&, Point2, float smallest, float largest, ChoiceNumbers&);
+
 /// A direction at such an angle [rad] from another, to all sides alike.
 Vector3 turned(const Vector3&, float angle, double u);
 

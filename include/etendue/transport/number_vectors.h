@@ -30,8 +30,9 @@ class RecordedNumbers final : public NumberSource {
 /// mutation strategy for the Metropolis light transport algorithm"). `large_step` and `small_step` propose another state, which
 /// the source then gives; `accept` keeps it, `reject` goes back. Both proposals are symmetric: a large step draws all numbers
 /// anew, a small one moves each by a normal deviate, on the circle of [0, 1). Numbers that a path did not ask for in some
-/// iterations are moved as often as they were left out, when they are asked for again. One for each chain, and one thread at a
-/// time: asking draws. SampleKey::sample does not count, so that one key serves the whole chain.
+/// iterations are moved as often as they were left out, when they are asked for again; where that puts them is part of the
+/// state from then on, whether or not the proposal is accepted. One for each chain, and one thread at a time: asking draws.
+/// SampleKey::sample does not count, so that one key serves the whole chain.
 class MutatedNumbers final : public NumberSource {
  public:
   explicit MutatedNumbers(std::uint64_t seed) : seed_(seed) {}
@@ -64,6 +65,8 @@ class MutatedNumbers final : public NumberSource {
   Walk& walk(std::uint64_t name) const;
   /// Two normal deviates of variance 1.
   Point2 normal_pair() const;
+  /// Moves it from where it stood to where it stands at `time`.
+  static void move(Coordinate&, double time, float normal);
   /// The coordinate as the proposal has it, of which `normal` is used where it is moved.
   template <class Normal>
   float proposed(Walk&, std::uint32_t dimension, const Normal& normal) const;

@@ -1,10 +1,12 @@
-// The multi-chain perturbation (Veach & Guibas 1997, section 5.3.4; Veach 1997, section 11.4.2), here for chains of surfaces
-// that scatter smoothly: the film point moves a little, the direction in which the path goes on from the first thing seen turns
-// a little, and where that leads is joined to the rest. Glossy surfaces seen in glossy ones change little then.
+// The multi-chain perturbation (Veach & Guibas 1997, section 5.3.4; Veach 1997, section 11.4.2): the film point moves a little,
+// which leads to a first place that scatters smoothly; the direction in which the path goes on from there turns a little, and
+// leads, by the same kinds of mirrors and clear surfaces as before, to the next; and so on until a place is followed by another
+// one directly, to which it is joined, or by the luminaire. Caustics that are seen in mirrors change little then, nor do glossy
+// surfaces that are seen in glossy ones.
 //
-// Both changes are alike likely to all sides, so
-//     T(y -> x) / T(x -> y) = E_{k-1}(x) w(x) / (E_{k-1}(y) w(y)),
-// w being the solid angle of an area at x_{k-2} seen from x_{k-1}, over the area.
+// All changes are alike likely to all sides, so
+//     T(y -> x) / T(x -> y) = E_{k-1}(x) prod w(x) / (E_{k-1}(y) prod w(y)),
+// w being, at each place where a direction turns, the solid angle of what comes next over its area.
 
 #include "etendue/transport/mutation.h"
 
@@ -15,7 +17,7 @@ class MultiChainMutation final : public Mutation {
 
  public:
   static void describe(Description<MultiChainMutation>& d) {
-    d.summary("Moves a path's place on the film, and turns its direction behind the first thing seen.",
+    d.summary("Moves a path's place on the film, and turns its direction behind each thing seen before mirrors and glass.",
               "Veach & Guibas 1997, section 5.3.4; Veach 1997, section 11.4.2")
         .member<&MultiChainMutation::smallest>("smallest", "1", "least distance on the film [pixels]", more_than(0),
                                                soft(0.01, 10), logarithmic)
@@ -30,27 +32,32 @@ class MultiChainMutation final : public Mutation {
   std::optional<double> propose(const PathSpace& space, const LightPath& x, LightPath& y,
                                 ChoiceNumbers& choices) const override {
     const int k = x.length();
-    if (k < 3) return {};
-    const auto width = float(space.context.image.width), height = float(space.context.image.height);
-    const float distance = small_change(choices.next(), std::min(smallest, largest * width), largest * width);
-    const auto across = float(2 * M_PI * choices.next());
-    const Point2 film{x.film.x + distance * std::cos(across), x.film.y + distance * std::sin(across)};
-    if (!(film.x >= 0 && film.x < width && film.y >= 0 && film.y < height)) return {};
-    const float angle = small_change(choices.next(), smallest_angle, largest_angle);
-    const Vector3 direction = turned(-x.x[size_t(k - 2)].out, angle, choices.next());
-    space.begin(y, x, k - 2);
-    KeptVertex seen, behind;
-    if (!space.follow_camera(film, y, seen) || !space.follow(seen, direction, y, behind)) return {};
-    for (const KeptVertex& v : {behind, seen, x.x.back()}) y.x.push_back(v);
-    if (!space.complete(y) || !space.visible(y, k - 3)) return {};
-    return weight(x) / weight(y);
-  }
-
- private:
-  static double weight(const LightPath& x) {
-    const KeptVertex &seen = x.x[x.x.size() - 2], &behind = x.x[x.x.size() - 3];
-    return double(seen.reverse) * double(std::abs(dot(behind.point.normal, behind.out))) /
-           double(length_squared(seen.point.position - behind.point.position));
+    // Where directions turn, and the last vertex that changes.
+    std::vector<int> turns;
+    int last = x.smooth_before(k);
+    while (last > 0 && (turns.empty() || x.specular(last - 1))) {
+      turns.push_back(last);
+      last = x.smooth_before(last);
+    }
+    if (turns.empty()) return {};
+    const std::optional<Point2> film = moved_on_film(space, x.film, smallest, largest, choices);
+    if (!film) return {};
+    space.begin(y, x, last);
+    PathSpace::Walk walk{x.x.back()};
+    if (!space.follow_from_camera(walk, *film, x, y)) return {};
+    for (const int turn : turns) {
+      const float angle = small_change(choices.next(), smallest_angle, largest_angle);
+      const Vector3 direction = turned(-x.x[size_t(turn - 1)].out, angle, choices.next());
+      const int next = x.smooth_before(turn);
+      std::vector<Lobe> lobes;
+      if (next + 1 < turn) lobes = x.lobes(turn - 1, next + 1);
+      if (!space.follow_chain(walk, direction, lobes, Transport::radiance, y, next == 0)) return {};
+    }
+    y.x.insert(y.x.end(), walk.rbegin(), walk.rend());
+    if (!space.complete(y) || (last > 0 && !space.visible(y, last - 1))) return {};
+    double ratio = x.x[size_t(k - 1)].from_camera / y.x[size_t(k - 1)].from_camera;
+    for (const int turn : turns) ratio *= x.camera_angle(turn - 1) / y.camera_angle(turn - 1);
+    return ratio;
   }
 };
 

@@ -42,9 +42,7 @@ class MultiplexedMetropolis final : public Renderer {
   }
 
   bool splats() const override { return true; }
-  // In media long paths come out too bright, by a tenth at seven segments and a quarter at nine (fog_with_spot.etd, 2048
-  // samples), for a reason not found yet: proposals that are all large steps give the right light, chains do not.
-  PathClasses finds() const override { return all_paths & ~(delta_caustics_in_mirrors | subsurface_light | scattering_media); }
+  PathClasses finds() const override { return all_paths & ~(delta_caustics_in_mirrors | subsurface_light); }
   Estimator estimator() const override { return Estimator::correlated; }
 
  private:

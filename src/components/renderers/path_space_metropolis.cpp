@@ -8,7 +8,8 @@
 // density is
 //     T(y) = P(k) D(y),
 // and F = f / T an estimate of the picture by itself. The pool that brightness is measured by, and that chains begin with, is
-// of such paths; states count as in all Metropolis renderers here (StateWeights), in terms of F.
+// of such paths; states count as in all Metropolis renderers here (StateWeights), in terms of F. Mirrors and clear surfaces
+// are vertices of paths like others (transport/light_path.h).
 //
 // What paths of one or two segments bring is found sample by sample, by a bidirectional path tracer.
 
@@ -49,7 +50,9 @@ class PathSpaceMetropolis final : public Renderer {
   }
 
   bool splats() const override { return true; }
-  PathClasses finds() const override { return seen_luminaires | area_light | diffuse_light | glossy_light; }
+  PathClasses finds() const override {
+    return seen_luminaires | specular_views | area_light | diffuse_light | glossy_light | area_caustics;
+  }
   Estimator estimator() const override { return Estimator::correlated; }
 
  private:
@@ -110,9 +113,10 @@ class PathSpaceProcess final : public RenderProcess, Chains {
   void contribution(const LightPath& y, bool found, Contribution& F) const {
     F.clear();
     if (!found) return;
-    const auto T = float(density(y));
-    if (!(T > 0) || !std::isfinite(T)) return;  // as in PathSpace::complete
-    F.add({y.film, y.f / T, y.wavelengths, y.length()}, {0, 0, context.image.width, context.image.height});
+    // Both are far out of the range of floats where vertices lie near one another, and their quotient is not.
+    const double of_f = y.scale / density(y);
+    const Spectrum light = map(y.f, [of_f](float f) { return float(double(f) * of_f); });
+    F.add({y.film, light, y.seen, y.length()}, {0, 0, context.image.width, context.image.height});
   }
   bool independent(const PathSpace& space, Arena& arena, ChoiceNumbers& choices, LightPath& y) const {
     LightPath none;

@@ -1,0 +1,191 @@
+// How paths are made: rays, walks, and what joins them.
+
+#include "etendue/transport/boundaries.h"
+#include "etendue/transport/visibility.h"
+#include "path_lobes.h"
+
+namespace etendue {
+namespace {
+
+float next(ChoiceNumbers& choices) { return std::min(float(choices.next()), one_minus_epsilon); }
+Point2 next_pair(ChoiceNumbers& choices) {
+  const float x = next(choices);
+  return {x, next(choices)};
+}
+
+/// Even media, and surfaces that only hide one another, ask for none.
+struct NoNumbers final : NumberSource {
+  float number(SampleKey, std::uint32_t) const override { return 0.5f; }
+  Point2 pair(SampleKey, std::uint32_t) const override { return {0.5f, 0.5f}; }
+};
+
+bool is_luminaire(const PathVertex& v) { return v.point.object->luminaire() && !v.point.object->delta(); }
+
+}  // namespace
+
+PathVertex PathSpace::lens(const LightPath& y) const {
+  PathVertex v;
+  v.kind = Vertex::Kind::camera;
+  v.point.position =
+      context.camera.ray({0.5f * float(context.image.width), 0.5f * float(context.image.height)}, y.lens, time).origin;
+  v.point.time = time;
+  return v;
+}
+
+Vector3 PathSpace::camera_direction(Point2 film, const LightPath& y) const {
+  return context.camera.ray(film, y.lens, time).direction;
+}
+
+bool PathSpace::follow(const PathVertex& from, const Vector3& direction, LightPath& y, PathVertex& to) const {
+  const Scene& scene = context.scene;
+  Ray ray = leaving_ray(from, direction);
+  MediumStack media;
+  const bool tracks = scene.has_interiors();
+  if (tracks) {
+    if (from.on_surface() && from.media)
+      media = *media_towards(from, direction, media);
+    else
+      media_at(scene, ray.origin, time, media);
+  }
+  to = {};
+  Hit hit;
+  for (int crossings = 0; crossings <= most_crossings; ++crossings) {
+    if (!scene.nearest(ray, hit)) return false;
+    scene.locate(ray, hit, to.point);
+    if (tracks) {
+      settle_coincident(scene, ray, hit, to.point, media);
+      if (hidden_by_priority(media, *to.point.object)) {
+        cross_boundary(media, *to.point.object, to.point.normal, direction);
+        ray.origin = to.point.exit(direction);
+        hit = {};
+        continue;
+      }
+      to.point.media = to.media = y.arena->make<MediumStack>(media);
+    }
+    to.out = -direction;
+    to.lobes = smooth_lobes;
+    to.scatter = scattering_at(to.point, to.out, y.wavelengths, *y.arena);
+    return true;
+  }
+  return false;
+}
+
+bool PathSpace::follow_chain(Walk& walk, const Vector3& direction, std::span<const Lobe> lobes, Transport transport,
+                             LightPath& y, bool to_luminaire) const {
+  Vector3 way = direction;
+  PathVertex to;
+  for (const Lobe lobe : lobes) {
+    if (!follow(walk.back(), way, y, to)) return false;
+    const auto s = follow_specular(to, to.out, transport, lobe);
+    if (!s) return false;
+    to.specular = true;
+    to.lobe = lobe;
+    way = s->direction;
+    walk.push_back(to);
+  }
+  if (!follow(walk.back(), way, y, to)) return false;
+  if (to_luminaire) {
+    if (!is_luminaire(to)) return false;
+    to.kind = Vertex::Kind::luminaire;
+  } else if (!to.scatters_smoothly()) {
+    return false;
+  }
+  walk.push_back(to);
+  return true;
+}
+
+bool PathSpace::follow_from_camera(Walk& walk, Point2 film, const LightPath& x, LightPath& y) const {
+  const int k = x.length(), seen = x.smooth_before(k);
+  std::vector<Lobe> lobes;
+  if (seen + 1 < k) lobes = x.lobes(k - 1, seen + 1);
+  return follow_chain(walk, camera_direction(film, y), lobes, Transport::radiance, y, seen == 0);
+}
+
+bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& choices, LightPath& y,
+                     bool to_luminaire) const {
+  const size_t given = walk.size();
+  for (; count > 0; --count) {
+    PathVertex to;
+    if (walk.empty()) {
+      const LightChoice choice = lights.choose(next(choices));
+      if (!choice.luminaire || choice.luminaire->infinite() || choice.luminaire->delta()) return false;
+      const SurfaceSample s = choice.luminaire->sample_area(next_pair(choices), time);
+      if (!(s.density > 0)) return false;
+      to.kind = Vertex::Kind::luminaire;
+      to.point = s.point;
+      walk.push_back(to);
+      continue;
+    }
+    PathVertex& from = walk.back();
+    Vector3 way;
+    if (from.kind == Vertex::Kind::camera) {
+      const Point2 u = next_pair(choices);
+      way = camera_direction({u.x * float(context.image.width), u.y * float(context.image.height)}, y);
+    } else if (from.kind == Vertex::Kind::luminaire) {
+      const DirectionSample d = from.point.object->emission->sample(from.point, next_pair(choices));
+      if (!(d.density > 0)) return false;
+      way = d.direction;
+    } else {
+      if (!from.scatter) return false;
+      const Vector3 out = normalize(walk[walk.size() - 2].point.position - from.point.position);
+      size_t chosen = 0;
+      double u = choices.next();
+      for (; chosen < std::size(lobe_groups); ++chosen)
+        if ((u -= lobe_share(from, out, lobe_groups[chosen])) < 0) break;
+      if (chosen == std::size(lobe_groups)) return false;  // nothing is sent on; or by rounding
+      const bool specular_one = lobe_groups[chosen] != smooth_lobes;
+      if (specular_one && walk.size() == given) return false;  // what was given stays smooth
+      const auto s = specular_one ? follow_specular(from, out, transport, Lobe(lobe_groups[chosen]))
+                                  : from.scatter->sample(out, next(choices), next_pair(choices), transport, smooth_lobes);
+      if (!s || enters_body(from.point, *s)) return false;
+      from.specular = specular_one;
+      from.lobe = Lobe(s->lobe);
+      way = s->direction;
+    }
+    if (!follow(from, way, y, to)) return false;
+    if (to_luminaire && count == 1) {
+      if (!is_luminaire(to)) return false;
+      to.kind = Vertex::Kind::luminaire;
+    } else if (!to.scatter || !to.scatter->has(vertex_lobes)) {
+      return false;
+    }
+    walk.push_back(to);
+  }
+  return true;
+}
+
+bool PathSpace::visible(const LightPath& path, int i) const {
+  const PathVertex &a = path.x[size_t(i)], &b = path.x[size_t(i) + 1];
+  const PathVertex &from = a.on_surface() ? a : b, &to = a.on_surface() ? b : a;
+  Ray ray;
+  if (to.kind == Vertex::Kind::camera) {
+    const Vector3 way = to.point.position - from.point.position;
+    ray = leaving_ray(from, normalize(way));
+    ray.maximum = length(way) * SurfacePoint::almost_there;
+  } else {
+    ray = connecting_ray(from, to);
+  }
+  if (!context.scene.has_interiors()) return !context.scene.any(ray);
+  MediumStack scratch;
+  const NoNumbers none;
+  NumberStream numbers(none, {});
+  return !visible_fraction(context.scene, ray, media_towards(from, ray.direction, scratch), path.wavelengths, numbers,
+                           *path.arena)
+              .black();
+}
+
+bool PathSpace::join(LightPath& y, const std::vector<PathVertex>& rest, int r, ChoiceNumbers& choices) const {
+  const int b = std::min(int(choices.next() * (r + 1)), r);
+  const bool meets = y.x.empty() && b == 0;
+  if (!walk(y.x, b, Transport::importance, choices, y)) return false;
+  // The camera's walk comes against the order of vertices.
+  std::vector<PathVertex> camera(rest.rbegin(), rest.rend());
+  if (!walk(camera, r - b, Transport::radiance, choices, y, meets)) return false;
+  const auto joins = [](const PathVertex& v) { return !v.on_surface() || v.scatters_smoothly(); };
+  if (!meets && !(joins(y.x.back()) && joins(camera.back()))) return false;
+  const int joint = int(y.x.size()) - 1;
+  y.x.insert(y.x.end(), camera.rbegin(), camera.rend());
+  return complete(y) && (meets || visible(y, joint));
+}
+
+}  // namespace etendue
