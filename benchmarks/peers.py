@@ -23,6 +23,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import resource
 import subprocess
 import sys
@@ -97,11 +98,10 @@ def compare_scene(scene, programs, options):
             results[name] = measure(render, scene, options.runs, options.samples)
         except RuntimeError as error:
             print(f"{scene.name}: {name} failed:\n{error}", file=sys.stderr)
-    reference = results.get("etendue")
+    mean = results["etendue"]["picture"].mean() if "etendue" in results else float("nan")
     for name, r in results.items():
-        r["mean_ratio"] = float(r["picture"].mean() / reference["picture"].mean()) if reference else float("nan")
+        r["mean_ratio"] = float(r.pop("picture").mean() / mean)
         r["efficiency"] = 1 / (r["error"] * r["sample"])
-        del r["picture"]
         print(f"{scene.name:18} {name:18} start {r['start']:6.2f} s, sample {r['sample'] * 1e3:8.2f} ms, relMSE {r['error']:8.3f} "
               f"({r['whole_error']:.3f} in all), mean {r['mean_ratio']:.4f}", flush=True)
     return results
@@ -170,9 +170,10 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path)
     options = parser.parse_args()
     if "DRJIT_LIBLLVM_PATH" not in os.environ:
-        found = sorted(pathlib.Path("/usr/lib").glob("*/libLLVM*.so*")) + sorted(pathlib.Path("/usr/lib").glob("llvm-*/lib/libLLVM*.so*"))
+        version = lambda path: max((int(n) for n in re.findall(r"\d+", path.name)), default=0)
+        found = [p for pattern in ("*/libLLVM*.so*", "llvm-*/lib/libLLVM*.so*") for p in pathlib.Path("/usr/lib").glob(pattern)]
         if found:
-            os.environ["DRJIT_LIBLLVM_PATH"] = str(found[-1])
+            os.environ["DRJIT_LIBLLVM_PATH"] = str(max(found, key=version))
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         programs = {"etendue": lambda *a: ours(options.program, options.renderer, *a, folder)}
