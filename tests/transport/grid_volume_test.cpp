@@ -63,6 +63,12 @@ TEST(GridVolume, IsLinearBetweenTheMiddlesOfCells) {
   EXPECT_NEAR(extinction(*v, {-7, 0.5f, 0.5f}), 2 * wanted({0.125f, 0.5f, 0.5f}), 1e-4f);
   EXPECT_NEAR(extinction(*v, {0.5f, 9, 1.2f}), 2 * wanted({0.5f, 5 / 6.0f, 0.75f}), 1e-4f);
   EXPECT_EQ(extinction(*volume("GridVolume { " + grid + ", outside: empty }"), {1.01f, 0.5f, 0.5f}), 0);
+  EXPECT_EQ(extinction(*volume("GridVolume { " + grid + ", outside: cut }"), {1.01f, 0.5f, 0.5f}), 0);
+  // In the border itself the cells outside count for half, or not at all.
+  EXPECT_NEAR(extinction(*volume("GridVolume { " + grid + ", outside: empty }"), {1, 0.5f, 0.5f}), wanted({0.875f, 0.5f, 0.5f}),
+              1e-4f);
+  EXPECT_NEAR(extinction(*volume("GridVolume { " + grid + ", outside: cut }"), {1, 0.5f, 0.5f}),
+              2 * wanted({0.875f, 0.5f, 0.5f}), 1e-4f);
   EXPECT_NEAR(extinction(*volume("GridVolume { " + grid + ", outside: repeat }"), {1.3f, -0.6f, 0.4f}),
               2 * wanted({0.3f, 0.4f, 0.4f}), 1e-4f);
   EXPECT_NEAR(extinction(*volume("GridVolume { " + grid + ", outside: mirror }"), {1.3f, -0.6f, 0.4f}),

@@ -39,8 +39,9 @@ class GridVolume final : public ColoredVolume {
         .member<&GridVolume::filter>("filter", "", "what is between the middles of cells", choices("nearest", "trilinear"))
         .member<&GridVolume::outside>(
             "outside", "",
-            "what lies outside the cube; clamp: as at its border; repeat and mirror: the grid again; empty: nothing",
-            choices("clamp", "repeat", "mirror", "empty"));
+            "what lies outside the cube; clamp: as at its border; repeat and mirror: the grid again; empty: nothing, "
+            "which the cells at the border already fade to; cut: nothing, from the border on",
+            choices("clamp", "repeat", "mirror", "empty", "cut"));
     describe_colors(d, " where the density is 1");
     d.group("Albedo of each cell")
         .member<&GridVolume::albedo_file>(
@@ -106,7 +107,7 @@ class GridVolume final : public ColoredVolume {
   Spectrum albedo_at(const Point3& unit, const Wavelengths& w) const {
     float v[3];
     // Where there is no density the albedo does not matter.
-    albedo_grid_.look_up(unit, filter, outside == Beyond::empty ? Beyond::clamp : outside, v);
+    albedo_grid_.look_up(unit, filter, outside == Beyond::empty || outside == Beyond::cut ? Beyond::clamp : outside, v);
     if (albedo_grid_.channels == 1) return Spectrum(std::min(v[0], 1.0f));
     return rgb_spectrum(*space_, v[0], v[1], v[2], ColorUse::reflectance, w);
   }

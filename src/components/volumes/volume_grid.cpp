@@ -20,7 +20,8 @@ constexpr std::uint64_t most_cells = std::uint64_t(1) << 31;
 int wrapped(int i, int n, Beyond beyond) {
   if (i >= 0 && i < n) return i;
   switch (beyond) {
-    case Beyond::clamp: return i < 0 ? 0 : n - 1;
+    case Beyond::clamp:
+    case Beyond::cut: return i < 0 ? 0 : n - 1;
     case Beyond::repeat: return ((i % n) + n) % n;
     case Beyond::mirror: {
       const int k = ((i % (2 * n)) + 2 * n) % (2 * n);
@@ -107,7 +108,7 @@ void VolumeGrid::look_up(const Point3& p, VoxelFilter filter, Beyond beyond, flo
   float fraction[3];
   for (int k = 0; k < 3; ++k) {
     const float n = float(size[size_t(k)]);
-    if (beyond == Beyond::empty && !(p[k] >= 0 && p[k] <= 1)) return;
+    if ((beyond == Beyond::empty || beyond == Beyond::cut) && !(p[k] >= 0 && p[k] <= 1)) return;
     // Far outside nothing is known of a float's place in a cell; within an int's reach it stays.
     const float at = std::clamp(p[k] * n, -1e9f, 1e9f) - (filter == VoxelFilter::trilinear ? 0.5f : 0);
     if (!std::isfinite(at)) return;

@@ -12,7 +12,7 @@ namespace etendue {
 
 /// What is between the middles of cells, and what lies outside the unit cube.
 enum class VoxelFilter : std::uint8_t { nearest, trilinear };
-enum class Beyond : std::uint8_t { clamp, repeat, mirror, empty };
+enum class Beyond : std::uint8_t { clamp, repeat, mirror, empty, cut };
 
 struct VolumeGrid {
   std::array<int, 3> size{1, 1, 1};    ///< cells along x, y and z
