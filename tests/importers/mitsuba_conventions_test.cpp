@@ -115,13 +115,13 @@ TEST(MitsubaSensor, AnOrthographicFilmIsTwoWideTimesItsScale) {
 
 TEST(MitsubaTexture, RowsOfImagesBeginWhereVIsZero) {
   const TemporaryFolder folder;
-  const std::string path = folder.write("rows.pfm", "");
+  const std::string path = folder.write("rows.exr", "");
   // Of two rows the upper one is bright.
   test::write_image(path, {1, 2, 3, NumberType::single}, {0.8f, 0.8f, 0.8f, 0.2f, 0.2f, 0.2f});
   folder.write("square.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
   const std::string picture =
       "<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" "
-      "value=\"rows.pfm\"/><string name=\"filter_type\" value=\"nearest\"/></texture></bsdf>";
+      "value=\"rows.exr\"/><string name=\"filter_type\" value=\"nearest\"/></texture></bsdf>";
   const auto upper_and_lower = [&](const std::string& shape) {
     // From +z, with +y up: the camera looks at (0, +-0.5, 0).
     std::vector<double> found;

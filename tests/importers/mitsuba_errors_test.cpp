@@ -24,14 +24,14 @@ TEST(MitsubaErrors, AreToldAtTheirPlace) {
   EXPECT_TRUE(tells("<shape type=\"sphre\"/>", "2:2: there is no shape 'sphre' in Mitsuba (did you mean 'sphere'?)"));
   EXPECT_TRUE(tells("<shpe type=\"sphere\"/>", "2:2: <shpe> is unknown (did you mean 'shape'?)"));
   EXPECT_TRUE(
-      tells("<shape type=\"sphere\"><float name=\"radius\" value=\"1x\"/></shape>", "2:51: a number is expected, not '1x'"));
+      tells("<shape type=\"sphere\"><float name=\"radius\" value=\"1x\"/></shape>", "2:50: a number is expected, not '1x'"));
   EXPECT_TRUE(tells("<shape type=\"sphere\"><string name=\"radius\" value=\"1\"/></shape>",
                     "'radius' of shape 'sphere' must be a number, not a string"));
   EXPECT_TRUE(tells("<shape type=\"sphere\"><float name=\"radius\" value=\"nan\"/></shape>", "finite"));
   EXPECT_TRUE(tells("<shape type=\"sphere\"><float name=\"radius\" value=\"1e999\"/></shape>", "finite"));
   EXPECT_TRUE(tells("<shape type=\"sphere\"><float name=\"radius\" value=\"-1\"/></shape>", "2:23: "));
   EXPECT_TRUE(tells("<shape type=\"sphere\"><ref id=\"whte\"/></shape><bsdf type=\"diffuse\" id=\"white\"/>",
-                    "2:32: there is nothing of the id 'whte' (did you mean 'white'?)"));
+                    "2:31: there is nothing of the id 'whte' (did you mean 'white'?)"));
   EXPECT_TRUE(tells("<bsdf type=\"diffuse\" id=\"a\"/><bsdf type=\"diffuse\" id=\"a\"/>", "there are two of the id 'a'"));
   EXPECT_TRUE(tells("<shape type=\"obj\"><string name=\"filename\" value=\"no.obj\"/></shape>", "there is no file 'no.obj'"));
   EXPECT_TRUE(tells("<shape type=\"obj\"><string name=\"filename\" value=\"/etc/passwd\"/></shape>", "--allow-path"));

@@ -114,9 +114,7 @@ Ref<Component> Converter::grid(const Element& e, const Element& volume, const Co
   if (wrap != "clamp" && wrap != "repeat" && wrap != "mirror")
     throw Error(fmt::format("there is no wrap mode '{}'{}", wrap, suggestion(wrap, {"clamp", "repeat", "mirror"})),
                 volume.location_of("wrap_mode"));
-  // There the medium ends with the box of its densities, whatever the shape around it.
-  set_member(*grid, "outside", "empty", volume.location_of("wrap_mode"));
-  inexact(volume, "the density of a grid fades away over half a cell at its border, where it ends abruptly in Mitsuba");
+  set_member(*grid, "outside", "cut", volume.at);  // the medium ends with the box of its densities, whatever is around it
   volume.ignore({"raw", "accel"});
   return grid;
 }
