@@ -51,8 +51,15 @@ SCENES = [
     mitsuba("participating_media/test_surf_area_light_volpath"),
     mitsuba("spot_light/test_spot_direct"),
     mitsuba("texture_interp/test_texture_interp_direct"),
-    bitterli("cornell-box", 1024, 1024, 64, skip_above=2),
+    bitterli("cornell-box", 1024, 1024, 64, skip_above=2,
+             reason="the reference is made of red, green and blue, and colours multiply otherwise as spectra where saturated light "
+             "(17, 12, 4) meets red and green walls several times. Mitsuba 3.9 has the same difference between its variants: means of "
+             "X, Y, Z of 0.1331, 0.1356, 0.0533 with llvm_ad_rgb (the reference: 0.1331, 0.1355, 0.0533) and of 0.1320, 0.1346, 0.0518 "
+             "with llvm_ad_spectral (here: 0.1320, 0.1346, 0.0519)."),
     bitterli("veach-mis", 1280, 720, 2, skip_above=8),
-    bitterli("material-testball", 1280, 720, 64),
+    bitterli("material-testball", 1280, 720, 64,
+             reason="Tungsten's floor has the two colours of its checkerboard exchanged: its rectangle counts v the other way, and 20 "
+             "squares turned over change places. Its coat, like Mitsuba's, leaves out light that goes back and forth under it, which "
+             "LayeredShader has."),
     bitterli("staircase2", 1024, 1024, 64, skip_above=10),
 ]

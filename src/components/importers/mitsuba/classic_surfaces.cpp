@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "converter.h"
 #include "etendue/describe/color.h"
 
@@ -52,22 +55,27 @@ Converter::Surface Converter::classic(const Element& e, Uv uv, const std::string
 
 Converter::Surface Converter::principled(const Element& e, Uv uv, const std::string& name) {
   const bool thin = e.type == "principledthin";
-  Ref<Component> shader = make("Principled", e, name);
-  const double specular = e.number("specular", 0.5);
-  const double eta = e.has("eta") ? e.number("eta", 1.5) : 2 / (1 - std::sqrt(0.08 * std::min(specular, 1.0))) - 1;
+  Ref<Component> shader = make(thin ? "DisneyThin" : "DisneyPrincipled", e, name);
   set(*shader, "base_color", color(e, "base_color", 0.5, uv));
-  set(*shader, "specular_roughness", scalar(e, "roughness", 0.5, uv));
-  set(*shader, "specular_roughness_anisotropy", scalar(e, "anisotropic", 0, uv));
-  set(*shader, "transmission_weight", scalar(e, "spec_trans", 0, uv));
-  set(*shader, "base_metalness", scalar(e, "metallic", 0, uv));
-  set(*shader, "fuzz_weight", scalar(e, "sheen", 0, uv));
-  set(*shader, "coat_weight", scalar(e, "clearcoat", 0, uv));
-  set_member(*shader, "specular_ior", eta, e.location_of("specular"));
-  if (thin) set_member(*shader, "thin_walled", true, e.at);
-  if (e.has("spec_trans")) set(*shader, "transmission_color", color(e, "base_color", 0.5, uv));
-  inexact(e, fmt::format("'{}' becomes OpenPBR's surface, which differs in its coat, its sheen and its tints", e.type));
-  e.ignore({"sheen_tint", "spec_tint", "clearcoat_gloss", "flatness", "diff_trans", "diffuse_reflectance_sampling_rate",
-            "main_specular_sampling_rate", "clearcoat_sampling_rate", "specular_sampling_rate"});
+  const auto take = [&](const char* property, double otherwise) {
+    if (e.has(property)) set(*shader, property, scalar(e, property, otherwise, uv));
+  };
+  set(*shader, "roughness", scalar(e, "roughness", 0.5, uv));
+  for (const char* property : {"anisotropic", "spec_trans", "spec_tint", "sheen", "sheen_tint", "flatness"}) take(property, 0);
+  if (thin) {
+    take("diff_trans", 1);
+  } else {
+    for (const char* property : {"metallic", "clearcoat", "clearcoat_gloss"}) take(property, 0);
+  }
+  if (e.has("eta")) {
+    set_member(*shader, "ior", e.number("eta", 1.5), e.location_of("eta"));
+  } else if (!thin && e.has("specular")) {
+    // What reflects 0.08 times "specular" straight on.
+    const double root = std::sqrt(0.08 * std::clamp(e.number("specular", 0.5), 0.0, 10.0));
+    set_member(*shader, "ior", 2 / (1 - root) - 1, e.location_of("specular"));
+  }
+  e.ignore({"diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate",
+            "spec_refl_sampling_rate", "spec_trans_sampling_rate", "diff_trans_sampling_rate"});
   return {shader, thin || e.has("spec_trans")};
 }
 

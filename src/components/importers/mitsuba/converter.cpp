@@ -53,10 +53,9 @@ Ref<Job> Converter::job(const Element& scene) {
   const std::vector<const Element*> samplers = sensor ? sensor->all("sampler") : std::vector<const Element*>{};
   const std::vector<const Element*> integrators = scene.all("integrator");
   const Element* const film = films.empty() ? nullptr : films.front();
-  int width = 768, height = 576;
-  set_member(*job, "image", image(film, width, height), scene.at);
+  set_member(*job, "image", image(film), scene.at);
   if (sensor) {
-    set_member(*job, "camera", camera(*sensor, width, height), sensor->at);
+    set_member(*job, "camera", camera(*sensor), sensor->at);
   } else {
     importing_.inexact("the scene has no sensor: a camera at the origin looks along +z", scene.at);
     set_member(*job, "camera", importing_.make("PerspectiveCamera", scene.at), scene.at);

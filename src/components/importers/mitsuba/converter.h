@@ -40,10 +40,10 @@ class Converter {
 
   // sensors, films, integrators
   void place(Component& camera, const Element& sensor);
-  Ref<Component> camera(const Element& sensor, int width, int height);
-  void set_view(Component& camera, const Element& sensor, int width, int height);
+  Ref<Component> camera(const Element& sensor);
+  void set_view(Component& camera, const Element& sensor);
   void set_shutter(Component& camera, const Element& sensor);
-  Ref<Component> image(const Element* film, int& width, int& height);
+  Ref<Component> image(const Element* film);
   Ref<Component> filter(const Element& film);
   void add_outputs(Component& job, const Element* film);
   Ref<Component> renderer(const Element* integrator, const Element* sampler);

@@ -111,7 +111,10 @@ Ref<Component> Converter::grid(const Element& e, const Element& volume, const Co
   set_member(*grid, "file_box", volume.boolean("use_grid_bbox", false), volume.at);
   const std::string filter = volume.string("filter_type", "trilinear"), wrap = volume.string("wrap_mode", "clamp");
   set_member(*grid, "filter", filter, volume.location_of("filter_type"));
-  set_member(*grid, "outside", wrap, volume.location_of("wrap_mode"));
+  if (wrap != "clamp" && wrap != "repeat" && wrap != "mirror")
+    throw Error(fmt::format("there is no wrap mode '{}'{}", wrap, suggestion(wrap, {"clamp", "repeat", "mirror"})),
+                volume.location_of("wrap_mode"));
+  set_member(*grid, "outside", "cut", volume.at);  // the medium ends with the box of its densities, whatever is around it
   volume.ignore({"raw", "accel"});
   return grid;
 }

@@ -46,7 +46,7 @@ void Converter::place(Component& camera, const Element& e) {
   }
 }
 
-Ref<Component> Converter::camera(const Element& e, int width, int height) {
+Ref<Component> Converter::camera(const Element& e) {
   if (std::ranges::find(known_sensors, e.type) == known_sensors.end()) fail_unknown(e, known_sensors);
   const Reading reading(e);
   Ref<Component> camera;
@@ -62,7 +62,7 @@ Ref<Component> Converter::camera(const Element& e, int width, int height) {
     if (e.type != "perspective" && e.type != "thinlens")
       inexact(e, fmt::format("sensor '{}' has no counterpart here: a perspective camera stands for it", e.type));
     camera = make("PerspectiveCamera", e);
-    set_view(*camera, e, width, height);
+    set_view(*camera, e);
     if (e.type == "thinlens") {
       set_member(*camera, "lens_radius", e.number("aperture_radius", 0), e.location_of("aperture_radius"));
       set_member(*camera, "focus_distance", e.number("focus_distance", 0), e.location_of("focus_distance"));
@@ -81,13 +81,12 @@ Ref<Component> Converter::camera(const Element& e, int width, int height) {
   return camera;
 }
 
-void Converter::set_view(Component& camera, const Element& e, int width, int height) {
-  constexpr double film_diagonal = 43.266615305567875;  // [mm] of 36 x 24 mm
-  const double w = width, h = height, diagonal = std::hypot(w, h);
+void Converter::set_view(Component& camera, const Element& e) {
   std::string axis = e.string("fov_axis", "x");
-  double fov = e.number("fov", 0);
+  const double fov = e.number("fov", 0);
   Location at = e.location_of("fov");
-  if (!e.has("fov")) {
+  const bool by_length = !e.has("fov");
+  if (by_length) {
     const Property* p = e.find("focal_length");
     double focal_length = 50;  // [mm]
     if (p) {
@@ -97,21 +96,17 @@ void Converter::set_view(Component& camera, const Element& e, int width, int hei
       at = p->at;
     }
     if (!(focal_length > 0)) throw Error("a focal length must be more than 0 mm", at);
-    fov = 2 * std::atan(film_diagonal / 2 / focal_length) * 180 / std::numbers::pi;
+    set_member(camera, "focal_length", focal_length / 1000, at);  // of a film whose diagonal is that of 36 x 24 mm, as there
     axis = "diagonal";
   }
   static const std::vector<std::string> axes = {"x", "y", "diagonal", "smaller", "larger"};
   if (std::ranges::find(axes, axis) == axes.end())
     throw Error(fmt::format("there is no axis '{}'{}", axis, suggestion(axis, axes)), e.location_of("fov_axis"));
-  if (axis == "diagonal") {
-    fov = 2 * std::atan(std::tan(fov / 2 * std::numbers::pi / 180) * w / diagonal) * 180 / std::numbers::pi;
-    axis = "x";
-  }
-  set_member(camera, "fov", fov, at);
+  if (!by_length) set_member(camera, "fov", fov, at);
   set_member(camera, "fov_axis", axis == "x" ? "width" : (axis == "y" ? "height" : axis.c_str()), e.location_of("fov_axis"));
-  for (const char* shifted : {"principal_point_offset_x", "principal_point_offset_y"})
-    if (e.number(shifted, 0) != 0)
-      importing_.inexact("the middle of the picture lies in the camera's axis: an offset is left out", e.location_of(shifted));
+  const double x = e.number("principal_point_offset_x", 0), y = e.number("principal_point_offset_y", 0);
+  if (x != 0 || y != 0)
+    set_member(camera, "principal_point", Numbers{{-x, -y}, 1, Dimension::none}, e.location_of("principal_point_offset_x"));
 }
 
 void Converter::set_shutter(Component& camera, const Element& e) {
@@ -120,7 +115,8 @@ void Converter::set_shutter(Component& camera, const Element& e) {
   if (e.has("shutter_close")) set_member(camera, "shutter_close", close, e.location_of("shutter_close"));
 }
 
-Ref<Component> Converter::image(const Element* film, int& width, int& height) {
+Ref<Component> Converter::image(const Element* film) {
+  constexpr int width = 768, height = 576;  // where the film does not say
   Ref<Component> image = film ? make("ImageBuffer", *film) : importing_.make("ImageBuffer", importing_.at());
   const Location at = film ? film->at : importing_.at();
   if (film) {
@@ -128,8 +124,6 @@ Ref<Component> Converter::image(const Element* film, int& width, int& height) {
     const std::int64_t w = film->integer("width", width), h = film->integer("height", height);
     set_member(*image, "width", double(w), film->location_of("width"));
     set_member(*image, "height", double(h), film->location_of("height"));
-    width = int(w);
-    height = int(h);
     if (film->has("crop_width") || film->has("crop_height") || film->has("crop_offset_x") || film->has("crop_offset_y")) {
       const double x = double(film->integer("crop_offset_x", 0)), y = double(film->integer("crop_offset_y", 0));
       set_member(*image, "crop",

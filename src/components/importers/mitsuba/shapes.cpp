@@ -167,7 +167,8 @@ void Converter::set_surface(Component& object, const Element& e, Uv uv) {
     set_member(object, "emission", emission, e.at);
   }
   if (interior)
-    if (const Ref<Component> inside = medium(*interior, object)) set_member(object, "interior", inside, e.location_of("interior"));
+    if (const Ref<Component> inside = medium(*interior, object))
+      set_member(object, "interior", inside, e.location_of("interior"));
   if (const Element* exterior = e.nested("exterior"); exterior && !exterior->being_read)
     importing_.inexact("a medium around a shape is not expressed: the body it is inside of has to name it as its interior",
                        e.location_of("exterior"));

@@ -185,25 +185,14 @@ Converter::Surface Converter::tilted(const Element& e, Uv uv, const std::string&
     set(*shader, "height", texture(*map, uv));
     set_member(*shader, "scale", e.number("scale", 1), e.location_of("scale"));
   } else {
-    const Reading reading(*map);
     if (map->type == "rawconstant") {
+      const Reading reading(*map);
       const DoubleVector3 n = map->vector("value", {0.5, 0.5, 1});
-      if (n.x == 0.5 && n.y == 0.5) return inner;  // straight up: it changes nothing
-      inexact(*map, "a normal map of one normal is left out");
-      return inner;
+      if (n.x != 0.5 || n.y != 0.5) inexact(*map, "a normal map of one normal is left out");
+      return inner;  // one that points straight up changes nothing
     }
-    if (map->type != "bitmap") {
-      inexact(*map, "a normal map is an image: this texture is left out");
-      return inner;
-    }
-    const Transform::DoubleMatrix t = to_uv(*map).exact();
-    if (t[1] != 0 || t[4] != 0 || t[3] != 0 || t[7] != 0)
-      importing_.inexact("a normal map is laid over the surface by a scale alone, neither turned nor moved",
-                         map->location_of("to_uv"));
     shader = make("NormalMapShader", e, name);
-    set_member(*shader, "file", file(*map), map->location_of("filename"));
-    set_member(*shader, "repeat", Numbers{{t[0], uv == Uv::as_is ? -t[5] : t[5]}, 1, Dimension::none}, map->at);
-    map->ignore({"raw", "wrap_mode", "filter_type", "gamma"});
+    set(*shader, "map", texture(*map, uv));
   }
   set_member(*shader, "shader", inner.shader, e.at);
   e.ignore({"flip_invalid_normals", "use_shadowing_function"});

@@ -141,11 +141,8 @@ Value Converter::checkerboard(const Element& e, Uv uv) {
 Value Converter::attribute_map(const Element& e) {
   Ref<Component> map = make("AttributeMap", e);
   std::string name = e.string("name", "vertex_color");
-  for (const char* prefix : {"vertex_", "face_"})
-    if (name.starts_with(prefix)) {
-      name = name.substr(std::string_view(prefix).size());
-      break;
-    }
+  // Of vertices they have their own names here.
+  if (name.starts_with("vertex_")) name = name.substr(std::string_view("vertex_").size());
   set_member(*map, "name", name, e.location_of("name"));
   const double scale = e.number("scale", 1);
   if (scale == 1) return Value(map, e.at);

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include "etendue/describe/color.h"
 
@@ -28,7 +29,8 @@ double one_number(std::string_view s, Location at) {
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (code == std::errc::invalid_argument || end != digits.data() + digits.size())
     throw Error(fmt::format("a number is expected, not '{}'", shortened(s)), at);
-  if (code == std::errc::result_out_of_range && std::abs(value) < 1) return 0;  // too small for a double
+  // from_chars does not say whether a number is too large or too small; the latter is 0.
+  if (code == std::errc::result_out_of_range && std::abs(std::strtod(std::string(digits).c_str(), nullptr)) < 1) return 0;
   if (code != std::errc{} || !std::isfinite(value) || std::abs(value) > 1e38)
     throw Error(fmt::format("'{}' is no number that can be used: it must be finite and below 1e38", shortened(s)), at);
   return value;

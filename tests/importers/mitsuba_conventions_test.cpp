@@ -1,0 +1,221 @@
+// What Mitsuba's numbers mean: each convention with a number that follows from its documentation, or was measured with it.
+
+#include <cmath>
+
+#include "etendue/describe/color.h"
+#include "mitsuba_support.h"
+#include "support/image_file.h"
+
+namespace etendue::mitsuba_test {
+namespace {
+
+constexpr double degree = M_PI / 180;
+
+/// A square of 20 m at z = 5 that faces the camera.
+std::string wall(const std::string& inside, const std::string& more = "") {
+  return "<shape type=\"rectangle\"><transform name=\"to_world\">" + more +
+         "<scale value=\"10\"/><rotate y=\"1\" angle=\"180\"/><translate z=\"5\"/></transform>" + inside + "</shape>\n";
+}
+std::string matt(const std::string& reflectance) {
+  return "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" + reflectance + "\"/></bsdf>";
+}
+
+TEST(MitsubaLight, RgbIsWhiteAndSpectraAreAsTheyAre) {
+  const auto lamp = [](const std::string& radiance) {
+    return seen(import_text(seen_scene(wall("<emitter type=\"area\">" + radiance + "</emitter>"), 1)), 8192);
+  };
+  const Xyz white = lamp("<rgb name=\"radiance\" value=\"2\"/>");
+  EXPECT_NEAR(white.y, 2, 0.01);
+  EXPECT_NEAR(white.x / white.y, 0.9505, 0.005);
+  EXPECT_NEAR(white.z / white.y, 1.0888, 0.01);
+  const Xyz flat = lamp("<spectrum name=\"radiance\" value=\"2\"/>");
+  EXPECT_NEAR(flat.x, 2, 0.01);
+  EXPECT_NEAR(flat.z, 2, 0.02);
+  const Xyz none = lamp("");  // D65 of luminance 1
+  EXPECT_NEAR(none.y, 1, 0.005);
+  EXPECT_NEAR(none.z / none.y, 1.0888, 0.01);
+  // A table is 0 beyond its ends: so much of what the eye sees lies below 555 nm.
+  EXPECT_NEAR(lamp("<spectrum name=\"radiance\" value=\"360:1, 555:1\"/>").y, 0.4654, 0.006);
+}
+
+TEST(MitsubaLight, ANumberWasWhiteBeforeVersion2) {
+  const std::string lamp = wall("<emitter type=\"area\"><spectrum name=\"radiance\" value=\"2\"/></emitter>");
+  const Xyz c = seen(import_text(seen_scene(lamp, 1, "0.5.0")), 8192);
+  EXPECT_NEAR(c.z / c.y, 1.0888, 0.01);
+}
+
+TEST(MitsubaLight, PointSpotAndDirectional) {
+  const double half = 0.5 / M_PI;  // of a matt wall of reflectance 0.5
+  const auto lit = [](const std::string& light) { return seen(import_text(seen_scene(wall(matt("0.5")) + light)), 256).y; };
+  EXPECT_NEAR(lit("<emitter type=\"point\"><point name=\"position\" x=\"0\" y=\"0\" z=\"3\"/><rgb name=\"intensity\" "
+                  "value=\"8\"/></emitter>"),
+              half * 8 / 4, 0.005);
+  EXPECT_NEAR(lit("<emitter type=\"directional\"><vector name=\"direction\" value=\"0 0 1\"/><rgb name=\"irradiance\" "
+                  "value=\"3\"/></emitter>"),
+              half * 3, 0.005);
+  EXPECT_NEAR(lit("<emitter type=\"directional\"><rgb name=\"irradiance\" value=\"3\"/></emitter>"), half * 3, 0.005);
+  EXPECT_EQ(lit("<emitter type=\"directional\"><vector name=\"direction\" value=\"0 0 -1\"/></emitter>"), 0);
+  // The edge falls off linearly in angle, from 15 to 20 degrees: a spot turned by 17.5 has half of its light in the middle.
+  const double c = std::cos(17.5 * degree);
+  EXPECT_NEAR(lit("<emitter type=\"spot\"><rgb name=\"intensity\" value=\"10\"/><transform name=\"to_world\"><rotate y=\"1\" "
+                  "angle=\"17.5\"/></transform></emitter>"),
+              half * 10 / 25 / 2, 0.002)
+      << c;
+}
+
+TEST(MitsubaLight, SurfacesShowTheirFrontAlone) {
+  const std::string back = "<rotate y=\"1\" angle=\"180\"/>";
+  const std::string light = "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"1\"/></emitter>";
+  EXPECT_NEAR(seen(import_text(seen_scene(light + wall(matt("0.5")))), 4096).y, 0.5, 0.01);
+  EXPECT_EQ(seen(import_text(seen_scene(light + wall(matt("0.5"), back))), 64).y, 0);
+  EXPECT_NEAR(seen(import_text(seen_scene(light + wall("<bsdf type=\"twosided\">" + matt("0.5") + "</bsdf>", back))), 4096).y,
+              0.5, 0.01);
+  EXPECT_EQ(seen(import_text(seen_scene(wall("<emitter type=\"area\"/>", back))), 64).y, 0);
+  EXPECT_NEAR(
+      seen(import_text(seen_scene(wall("<boolean name=\"flip_normals\" value=\"true\"/><emitter type=\"area\"/>", back))), 4096)
+          .y,
+      1, 0.01);
+}
+
+TEST(MitsubaSensor, AngleAndHandedness) {
+  const auto across = [](const std::string& view, int width, int height, bool vertical = false) {
+    Imported i = import_text(scene(sensor(view, width, height) + integrator() + wall(matt("0.5"))));
+    EXPECT_EQ(i.told(), "");
+    Camera& camera = *i.job->camera;
+    camera.prepare();
+    camera.set_film(width, height);
+    const float w = float(width), h = float(height);
+    const Ray a = camera.ray(vertical ? Point2{w / 2, 0} : Point2{0, h / 2}, {}, 0);
+    const Ray b = camera.ray(vertical ? Point2{w / 2, h} : Point2{w, h / 2}, {}, 0);
+    return std::acos(double(dot(a.direction, b.direction))) / degree;
+  };
+  EXPECT_NEAR(across("", 48, 48), 34.02, 0.01);       // 50 mm, across the diagonal of 36 x 24 mm
+  EXPECT_NEAR(across("", 768, 576), 38.1848, 0.001);  // as Mitsuba 3.9 prints it
+  EXPECT_NEAR(across("<float name=\"fov\" value=\"40\"/>", 20, 10), 40, 0.001);
+  EXPECT_NEAR(across("<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"y\"/>", 20, 10, true), 40, 0.001);
+  EXPECT_NEAR(across("<float name=\"fov\" value=\"40\"/><string name=\"fovAxis\" value=\"smaller\"/>", 20, 10, true), 40,
+              0.001);
+
+  // To the right is the direction times up: -x, where the camera looks along +z with +y up.
+  Imported i = import_text(scene(sensor("<float name=\"fov\" value=\"40\"/>", 10, 10) + integrator() + wall(matt("0.5"))));
+  i.job->camera->prepare();
+  i.job->camera->set_film(10, 10);
+  EXPECT_LT(i.job->camera->ray({10, 5}, {}, 0).direction.x, -0.3f);
+  EXPECT_GT(i.job->camera->ray({5, 0}, {}, 0).direction.y, 0.3f);
+}
+
+TEST(MitsubaSensor, AnOrthographicFilmIsTwoWideTimesItsScale) {
+  const Imported i =
+      import_text(scene("<sensor type=\"orthographic\"><transform name=\"to_world\"><scale x=\"1.5\" y=\"1.5\"/><translate "
+                        "z=\"2\"/></transform><film type=\"hdrfilm\"/></sensor>" +
+                        integrator() + wall(matt("1"))));
+  EXPECT_EQ(i.told(), "");
+  EXPECT_NEAR(number(*i.job->camera, "width"), 3, 1e-6);
+}
+
+TEST(MitsubaTexture, RowsOfImagesBeginWhereVIsZero) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("rows.exr", "");
+  // Of two rows the upper one is bright.
+  test::write_image(path, {1, 2, 3, NumberType::single}, {0.8f, 0.8f, 0.8f, 0.2f, 0.2f, 0.2f});
+  folder.write("square.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+  const std::string picture =
+      "<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" "
+      "value=\"rows.exr\"/><string name=\"filter_type\" value=\"nearest\"/></texture></bsdf>";
+  const auto upper_and_lower = [&](const std::string& shape) {
+    // From +z, with +y up: the camera looks at (0, +-0.5, 0).
+    std::vector<double> found;
+    for (const char* y : {"0.5", "-0.5"}) {
+      const std::string view =
+          std::string("<float name=\"fov\" value=\"1\"/><transform name=\"to_world\"><lookat origin=\"0 ") + y +
+          " 4\" target=\"0 " + y + " 0\" up=\"0 1 0\"/></transform>";
+      found.push_back(
+          seen(import_text(folder, scene(sensor(view) + integrator() + "<emitter type=\"constant\"/>" + shape)), 4096).y);
+    }
+    return found;
+  };
+  const auto on_rectangle = upper_and_lower("<shape type=\"rectangle\">" + picture + "</shape>");
+  EXPECT_NEAR(on_rectangle[0], 0.2, 0.01);  // upside down
+  EXPECT_NEAR(on_rectangle[1], 0.8, 0.02);
+  const auto on_obj =
+      upper_and_lower("<shape type=\"obj\"><string name=\"filename\" value=\"square.obj\"/>" + picture + "</shape>");
+  EXPECT_NEAR(on_obj[0], 0.8, 0.02);  // OBJ files are turned over
+  EXPECT_NEAR(on_obj[1], 0.2, 0.01);
+  const std::string not_turned = "<boolean name=\"flip_tex_coords\" value=\"false\"/>";
+  const auto as_is = upper_and_lower("<shape type=\"obj\"><string name=\"filename\" value=\"square.obj\"/>" + not_turned +
+                                     picture + "</shape>");
+  EXPECT_NEAR(as_is[0], 0.2, 0.01);
+}
+
+TEST(MitsubaTexture, CheckersAndTheirPlace) {
+  const auto at = [&](double x, double y, const std::string& to_uv) {
+    const std::string p = std::to_string(x) + " " + std::to_string(y) + " ";
+    const std::string view = "<float name=\"fov\" value=\"0.1\"/><transform name=\"to_world\"><lookat origin=\"" + p +
+                             "4\" target=\"" + p + "0\" up=\"0 1 0\"/></transform>";
+    const std::string shape =
+        "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><texture type=\"checkerboard\" "
+        "name=\"reflectance\">" +
+        to_uv + "</texture></bsdf></shape>";
+    return seen(import_text(scene(sensor(view) + integrator() + "<emitter type=\"constant\"/>" + shape)), 4096).y;
+  };
+  EXPECT_NEAR(at(-0.5, -0.5, ""), 0.4, 0.01);  // u = v = 0.25: both below a half
+  EXPECT_NEAR(at(0.5, -0.5, ""), 0.2, 0.01);
+  EXPECT_NEAR(at(0.5, 0.5, ""), 0.4, 0.01);
+  const auto turned = [](const char* steps) { return std::string("<transform name=\"to_uv\">") + steps + "</transform>"; };
+  EXPECT_NEAR(at(0.5, -0.5, turned("<translate x=\"0.5\"/>")), 0.4, 0.01);
+  // First scaled, then moved: u = 0.75 * 2 + 0.6 = 2.1, v = 0.25 * 2 = 0.5 + 0.1.
+  EXPECT_NEAR(at(0.5, -0.5, turned("<scale value=\"2\"/><translate x=\"0.6\" y=\"0.1\"/>")), 0.2, 0.01);
+  // A shear: u = 0.75 + 0.5 * 0.25 = 0.875 becomes 1.125 with 0.25 added, v stays.
+  EXPECT_NEAR(at(0.5, -0.5, turned("<matrix value=\"1 0.5 0 0.25  0 1 0 0  0 0 1 0  0 0 0 1\"/>")), 0.4, 0.01);
+  EXPECT_NEAR(at(0.5, -0.5, turned("<rotate z=\"1\" angle=\"90\"/>")), 0.4, 0.01);  // u = -0.25, v = 0.75: both above
+}
+
+TEST(MitsubaLight, AnEnvironmentIsUprightAndRegistered) {
+  const TemporaryFolder folder;
+  std::vector<float> rgb(size_t(4 * 3 * 3), 0.25f);
+  for (size_t k = 0; k < 3; ++k) rgb[size_t(1 * 4 + 1) * 3 + k] = 1;  // column 1 of 4, row 1 of 3
+  test::write_image(folder.write("map.exr", ""), {4, 3, 3, NumberType::single}, rgb);
+  const auto towards = [&](double u, double v) {
+    const double x = std::sin(2 * M_PI * u) * std::sin(M_PI * v), y = std::cos(M_PI * v),
+                 z = -std::cos(2 * M_PI * u) * std::sin(M_PI * v);
+    const std::string view =
+        "<float name=\"fov\" value=\"0.1\"/><transform name=\"to_world\"><lookat origin=\"0 0 0\" target=\"" +
+        std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\" up=\"0 1 0.01\"/></transform>";
+    const std::string map = "<emitter type=\"envmap\"><string name=\"filename\" value=\"map.exr\"/></emitter>";
+    return seen(import_text(folder, scene(sensor(view) + integrator() + map)), 4096).y;
+  };
+  EXPECT_NEAR(towards(1.5 / 4, 0.5), 1, 0.01);               // the centre of a column at (i + 0.5) / W, a row at j / (H - 1)
+  EXPECT_NEAR(towards(1.0 / 4, 0.5), (1 + 0.25) / 2, 0.01);  // between two
+  EXPECT_NEAR(towards(1.5 / 4, 0.25), (1 + 0.25) / 2, 0.01);
+  EXPECT_NEAR(towards(3.5 / 4, 0.5), 0.25, 0.01);
+}
+
+TEST(MitsubaMedium, ExtinctionTimesScaleOverTheWayThrough) {
+  const std::string medium =
+      "<shape type=\"cube\"><transform name=\"to_world\"><translate z=\"3\"/></transform><bsdf type=\"null\"/><medium "
+      "name=\"interior\" "
+      "type=\"homogeneous\"><float name=\"scale\" value=\"0.25\"/><spectrum name=\"sigma_t\" value=\"2\"/><float "
+      "name=\"albedo\" "
+      "value=\"0\"/></medium></shape>";
+  const std::string lamp = wall("<emitter type=\"area\"/>");
+  EXPECT_NEAR(seen(import_text(scene(sensor() + integrator(1, "volpath") + lamp + medium)), 8192).y, std::exp(-0.5 * 2), 0.02);
+}
+
+TEST(MitsubaSurface, IndicesByName) {
+  const Imported i = import_text(scene(sensor() + integrator() +
+                                       wall("<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"diamond\"/></bsdf>") +
+                                       wall("<bsdf type=\"dielectric\"/>") + wall("<bsdf type=\"plastic\"/>")));
+  EXPECT_EQ(i.told(), "");
+  const auto index = [&](size_t n, const char* member) {
+    const Value v = get(part(i.object(n), "shader"), member);
+    if (const Color* c = v.as<Color>()) return double((*c)->at(550, ColorUse::coefficient));
+    return v.as<Number>()->value;
+  };
+  EXPECT_NEAR(index(0, "ior"), 2.419, 1e-4);
+  EXPECT_NEAR(index(0, "exterior"), 1.000277, 1e-6);
+  EXPECT_NEAR(index(1, "ior"), 1.5046, 1e-4);
+  EXPECT_NEAR(index(2, "ior"), 1.49 / 1.000277, 1e-4);  // Mitsuba 3.9 prints 1.48959
+}
+
+}  // namespace
+}  // namespace etendue::mitsuba_test
