@@ -178,6 +178,46 @@ JSON = rb"""{ "$schema": "etendue.schema.json", "$params": { "grey": 0.5 }, "$na
 """
 
 
+PBRT = b"""LookAt 0 0 -5 0 0 0 0 1 0
+Camera "perspective" "float fov" [ 40 ] "float shutteropen" 0
+Sampler "halton" "integer pixelsamples" 1
+Integrator "volpath" "integer maxdepth" 3
+Film "rgb" "integer xresolution" 4 "integer yresolution" [ 4 ] "string filename" "out.exr"
+TransformTimes 0 1
+WorldBegin # a comment
+LightSource "infinite" "blackbody L" 5000 "float scale" .5
+Texture "checks" "spectrum" "checkerboard" "float uscale" 4 "rgb tex1" [ .1 .2 .3 ] "spectrum tex2" [ 400 .1 700 .9 ]
+MakeNamedMaterial "matt" "string type" "diffuse" "texture reflectance" "checks"
+MakeNamedMaterial "both" "string type" "mix" "string materials" [ "matt" "matt" ] "float amount" .25
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 1 2 3 ] "float scale" 0.1
+AttributeBegin
+  ActiveTransform EndTime Translate 1 0 0 ActiveTransform All
+  Rotate 30 0 1 0 Scale 1 2 -1 ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 1 1 1 1 ]
+  AreaLightSource "diffuse" "spectrum L" "stdillum-A" "bool twosided" true
+  Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] "integer indices" [ 0 1 2 1 3 2 ] "normal N" [ 0 0 1 0 0 1 0 0 1 0 0 1 ]
+AttributeEnd
+Attribute "shape" "float radius" 2
+ObjectBegin "thing" NamedMaterial "both" MediumInterface "fog" "" Shape "sphere" Shape "disk" "float phimax" 90 ObjectEnd
+CoordinateSystem "here" CoordSysTransform "camera" ObjectInstance "thing" ReverseOrientation
+Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" .1
+Shape "curve" "point3 P" [ 0 0 0 1 0 0 1 1 0 0 1 1 ] "float width0" .1 "float width1" .2
+Shape "loopsubdiv" "integer levels" 1 "point3 P" [ 0 0 0 1 0 0 0 1 0 0 0 1 ] "integer indices" [ 0 2 1 0 1 3 1 2 3 0 3 2 ]
+"""
+PBRT_V3 = b"""Film "image" "integer xresolution" 2 "integer yresolution" 2 Camera "orthographic" WorldBegin
+LightSource "spot" "rgb I" [ 1 1 1 ] "point from" [ 0 1 0 ] "rgb scale" [ 2 2 2 ] LightSource "distant" "color L" [ 1 0 1 ]
+Material "uber" "rgb Kd" [ .1 .2 .3 ] "float opacity" .5 Shape "cylinder" Material "glass" "float index" 1.3 Shape "cone"
+Material "substrate" "float uroughness" .2 Shape "heightfield" "integer nu" 2 "integer nv" 2 "float Pz" [ 0 1 2 3 ]
+Material "translucent" Shape "hyperboloid" "point p1" [ 1 0 0 ] "point p2" [ .5 1 1 ] Material "disney" Shape "paraboloid" WorldEnd
+"""
+
+
+def scenes_of_others():
+    yield Seed("pbrt v4", "input.pbrt", PBRT, [["check", "input.pbrt"]], {}, True)
+    yield Seed("pbrt v3", "input.pbrt", PBRT_V3, [["check", "input.pbrt"]], {}, True)
+    whole = {"scene.pbrt": b'Film "rgb" WorldBegin Include "input.pbrt" Shape "sphere"'}
+    yield Seed("pbrt included", "input.pbrt", PBRT.split(b"comment")[1], [["check", "scene.pbrt"]], whole, True)
+
+
 def descriptions():
     root = pathlib.Path(__file__).resolve().parents[2]
     # Those whose files lie elsewhere are read as far as that, which the messages then name.
@@ -203,7 +243,7 @@ def checkpoints(program, folder):
 
 
 def seeds(program, plugin, folder):
-    found = list(images()) + list(meshes()) + list(tables()) + list(descriptions()) + checkpoints(program, folder)
+    found = list(images()) + list(meshes()) + list(tables()) + list(descriptions()) + list(scenes_of_others()) + checkpoints(program, folder)
     if plugin:
         data = pathlib.Path(plugin).read_bytes()
         found.append(Seed("plugin", "libinput.so", data, [["classes", "--plugin", "./libinput.so"]]))

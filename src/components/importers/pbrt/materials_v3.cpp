@@ -94,7 +94,9 @@ Ref<Component> uber(Reader& reader, const Parameters& p) {
     if (const Color* c = opacity.as<Color>()) {
       set_member(*mask, "opacity",
                  std::min(1.0, double(to_xyz(**c, ColorUse::reflectance, illuminant_spectrum("D65").get()).y)), at);
-      reader.importing.inexact("an opacity that differs between colours is their brightness here", p.place("opacity"));
+      const ValueRange range = range_of(**c, ColorUse::reflectance);
+      if (range.most - range.least > 0.01f)
+        reader.importing.inexact("an opacity that differs between colours is their brightness here", p.place("opacity"));
     } else {
       set_map(*mask, "opacity", opacity, at);
     }
