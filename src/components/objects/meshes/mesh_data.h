@@ -28,14 +28,27 @@ struct MeshData {
   std::vector<Point2> uvs;
   std::vector<VertexAttribute> attributes;  ///< "color" (linear sRGB) and whatever else a file tells of its vertices
   std::vector<std::string> materials;       ///< names of those that the file uses, each once; nothing more is read of them
+  std::vector<std::uint32_t> triangle_materials;  ///< for each triangle, by their places in `materials`; or empty
+  static constexpr std::uint32_t no_material = 0xffffffffu;
 };
 
 // The readers take the file's contents. They throw Error("what is wrong"), with the line for text, without the file's name.
 // Indices are checked, positions are not: that is for drop_unusable.
 MeshData read_ply(std::string_view file);
 MeshData read_obj(std::string_view file);
-/// By the file's contents (PLY) or the ending of its name. Throws Error("'name': what is wrong").
-MeshData read_mesh(const std::string& path);
+MeshData read_stl(std::string_view file);
+MeshData read_off(std::string_view file);
+/// By the file's contents (PLY) or the ending of its name. `part` names one of several meshes in a file; of an OBJ file the
+/// faces of a material, "usemtl brass". Throws Error("'name': what is wrong").
+MeshData read_mesh(const std::string& path, const std::string& part = {});
+
+/// Reads a part of a file of a format that is not known here; throws Error with the reason alone.
+using ReadPart = MeshData (*)(const std::string& path, const std::string& part);
+/// Says who reads files with these endings (without dots, small letters). At the program's start.
+bool register_mesh_format(const std::vector<std::string>& endings, ReadPart);
+
+/// The parts of an OBJ file by the materials that its faces use, in the order of the file; "" for those without one.
+std::vector<std::string> obj_parts(const std::string& path);
 
 /// Removes triangles with a corner that is not finite and triangles without area, with one warning for each kind that
 /// names `whose`. Throws Error when nothing is left. Of a mesh that changes its shape, `later` holds all positions at the
