@@ -47,6 +47,10 @@ class Importing {
   /// A part of a class, made at a place of the source and named as there ("" without a name). Throws as the Registry does.
   Ref<Component> make(const std::string& class_name, Location at, const std::string& name = {}) const;
 
+  /// Of files of models, which are looked at in light of the viewer's own: whether they have light. When it is false some is
+  /// added. None: a Scene gets light when nothing in it emits, a Job never.
+  std::optional<bool> is_lit;
+
   /// The direction that points upwards in the source's world, for the camera and the sky of a file that has none.
   DoubleVector3 up{0, 1, 0};
 

@@ -7,6 +7,8 @@
 #include <set>
 #include <string>
 
+#include "contained_file.h"
+
 namespace etendue {
 namespace {
 
@@ -27,8 +29,9 @@ bool plain(const std::string& path, struct stat& status) {
 
 }  // namespace
 
-void note_input(const std::string& path) {
-  if (path.empty()) return;
+void note_input(const std::string& named) {
+  if (named.empty()) return;
+  const std::string path = file_on_disk(named);
   std::error_code error;
   const std::filesystem::path full = std::filesystem::absolute(path, error);  // the working folder may change
   Noted& all = noted();

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <cstring>
 #include <utility>
 
+#include "contained_file.h"
 #include "etendue/core/error.h"
 #include "input_files.h"
 
@@ -43,6 +45,25 @@ void read_all(RegularFile& file, char* to) {
   if (file.read_some(to, file.size()) < file.size()) throw Error("it became shorter while it was read");
 }
 
+/// A file in memory that holds what lies in a container.
+int unpacked(const ContainedFile& contained) {
+  const std::string bytes = contained.unpack(contained.container, contained.name);
+  const int descriptor = ::memfd_create("contained", MFD_CLOEXEC);
+  if (descriptor < 0) refuse(errno);
+  for (size_t done = 0; done < bytes.size();) {
+    const ssize_t written = ::write(descriptor, bytes.data() + done, bytes.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      const int reason = errno;
+      ::close(descriptor);
+      refuse(reason);
+    }
+    done += size_t(written);
+  }
+  ::lseek(descriptor, 0, SEEK_SET);
+  return descriptor;
+}
+
 }  // namespace
 
 void require_memory(double bytes, const std::string& what) {
@@ -55,7 +76,8 @@ void require_memory(double bytes, const std::string& what) {
     throw Error(fmt::format("{} takes {}, more than the {} of memory there are", what, size_text(bytes), size_text(most)));
 }
 
-void require_regular_file(const std::string& path) {
+void require_regular_file(const std::string& named) {
+  const std::string path = file_on_disk(named);
   struct stat status{};
   if (::stat(path.c_str(), &status) != 0) refuse(errno);
   require_regular(status);
@@ -63,10 +85,11 @@ void require_regular_file(const std::string& path) {
   note_input(path);
 }
 
-RegularFile::RegularFile(const std::string& path) {
+RegularFile::RegularFile(const std::string& path) : path_(path) {
   // Looked at before it is opened, for opening a device may do something; and after, for it may have been exchanged.
   require_regular_file(path);
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  const auto contained = contained_file(path);
+  const int descriptor = contained ? unpacked(*contained) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (descriptor < 0) refuse(errno);
   file_.reset(::fdopen(descriptor, "rb"));
   if (!file_) {
@@ -78,7 +101,10 @@ RegularFile::RegularFile(const std::string& path) {
   if (::fstat(descriptor, &status) != 0) refuse(errno);
   require_regular(status);
   size_ = std::uint64_t(status.st_size);
+  if (contained) path_ = fmt::format("/proc/self/fd/{}", descriptor);
 }
+
+std::string RegularFile::path_to_open() const { return path_; }
 
 void RegularFile::seek(std::uint64_t offset) {
   if (::fseeko(file_.get(), off_t(offset), SEEK_SET) != 0) refuse(errno);

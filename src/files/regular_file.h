@@ -17,6 +17,8 @@ class RegularFile {
   /// Throws Error with the system's reason, or with what the path is when it is no regular file. Never waits.
   explicit RegularFile(const std::string& path);
 
+  /// A name by which a library can open the same bytes, as long as this is there.
+  std::string path_to_open() const;
   /// In bytes, when it was opened.
   std::uint64_t size() const { return size_; }
   void seek(std::uint64_t offset);
@@ -31,6 +33,7 @@ class RegularFile {
   };
   std::unique_ptr<std::FILE, Close> file_;
   std::uint64_t size_ = 0;
+  std::string path_;
 };
 
 /// For what other libraries open by its name: throws what RegularFile would.

@@ -39,6 +39,10 @@ void check_channel(const std::string& path, const std::string& channel) {
   }
 }
 
+std::vector<std::string> image_channels(const std::string& path) {
+  return reading(path, [&](const ImageLibrary& library) { return library.channel_names(path); });
+}
+
 LinearImage read_linear_image(const std::string& path, const std::string& transfer) {
   return reading(path, [&](const ImageLibrary& library) { return library.read_linear(path, transfer); });
 }

@@ -16,6 +16,9 @@ std::vector<std::string> image_transfer_names();
 /// or of a layer ("diffuse" for diffuse.R, diffuse.G and diffuse.B). A file that cannot be read at all passes.
 void check_channel(const std::string& path, const std::string& channel);
 
+/// The names of a file's channels: R, G, B, A ... Throws Error naming the file and the reason, as far as its head tells.
+std::vector<std::string> image_channels(const std::string& path);
+
 /// Pixels from top to bottom, three channels interleaved; a grey image has three equal ones, and alpha is left out.
 struct LinearImage {
   int width = 0, height = 0;

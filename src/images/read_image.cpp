@@ -6,6 +6,7 @@
 #include "etendue/describe/color.h"
 #include "etendue/film/image_tools.h"
 #include "etendue/output.h"
+#include "files/contained_file.h"
 #include "files/regular_file.h"
 #include "image_library.h"
 #include "numpy_array.h"
@@ -85,7 +86,7 @@ StoredImage read_stored(const std::string& path) {
 /// The size of a file, which is there and holds something.
 std::uint64_t size_of(const std::string& path) {
   std::error_code code;
-  if (std::filesystem::status(path, code).type() == std::filesystem::file_type::not_found)
+  if (std::filesystem::status(file_on_disk(path), code).type() == std::filesystem::file_type::not_found)
     refuse(path, "there is no such file");
   std::uint64_t size = 0;
   try {

@@ -94,17 +94,18 @@ const char* reader_for(RegularFile& file, const std::string& path) {
 
 }  // namespace
 
-std::unique_ptr<OIIO::ImageInput> open_checked(const std::string& path) {
-  RegularFile file(path);
-  const char* const reader = reader_for(file, path);
+CheckedInput open_checked(const std::string& path) {
+  auto file = std::make_shared<RegularFile>(path);
+  const char* const reader = reader_for(*file, path);
   check_exr_header(path);
   check_png_chunks(path);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
   if (!input) refuse(OIIO::geterror());
   OIIO::ImageSpec ignored;
-  if (!input->open(path, ignored)) refuse(input->geterror());
-  require_plausible(*input, file.size());
-  return input;
+  if (!input->open(file->path_to_open(), ignored)) refuse(input->geterror());
+  require_plausible(*input, file->size());
+  const bool unpacked = file->path_to_open() != path;
+  return {unpacked ? file : nullptr, std::move(input)};
 }
 
 }  // namespace etendue

@@ -52,7 +52,7 @@ bool complete_targa(std::string_view file) {
 }  // namespace
 
 StoredImage read_file(const std::string& path) {
-  const std::unique_ptr<OIIO::ImageInput> input = open_checked(path);
+  const CheckedInput input = open_checked(path);
   const OIIO::ImageSpec spec = input->spec();
   require_memory(double(spec.width) * double(spec.height) * double(spec.nchannels) * sizeof(double), "it");
   if (std::string_view(input->format_name()) == "targa" && !complete_targa(FileContents(path).text()))

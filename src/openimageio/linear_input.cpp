@@ -5,6 +5,7 @@
 
 #include "checked_open.h"
 #include "etendue/describe/color.h"
+#include "files/contained_file.h"
 #include "files/regular_file.h"
 #include "images/linear_image.h"
 #include "refuse.h"
@@ -88,7 +89,7 @@ class LinearInput final : public OIIO::ImageInput {
     channels_ = find_channels(native, part(2));
     if (channels_.empty()) {
       errorfmt("it has no channel '{}'", part(2));
-      file_.reset();
+      file_ = {};
       return false;
     }
     // Alpha is a fraction, not light: it is never encoded.
@@ -108,7 +109,7 @@ class LinearInput final : public OIIO::ImageInput {
   }
 
   bool close() override {
-    file_.reset();
+    file_ = {};
     return true;
   }
 
@@ -160,7 +161,7 @@ class LinearInput final : public OIIO::ImageInput {
     }
   }
 
-  std::unique_ptr<OIIO::ImageInput> file_;
+  CheckedInput file_;
   Decoder decoder_;
   std::vector<int> channels_;
   std::vector<float> strip_;
@@ -170,7 +171,7 @@ class LinearInput final : public OIIO::ImageInput {
 }  // namespace
 
 void check_file_channel(const std::string& path, const std::string& channel) {
-  std::unique_ptr<OIIO::ImageInput> file;
+  CheckedInput file;
   try {
     file = open_checked(path);
   } catch (const Error&) {
@@ -187,7 +188,7 @@ OIIO::ImageInput* make_linear_input() { return new LinearInput; }
 
 std::string linear_image_key(const std::string& path, const std::string& transfer, const std::string& channel) {
   std::error_code ignored;
-  const auto changed = std::filesystem::last_write_time(path, ignored).time_since_epoch().count();
+  const auto changed = std::filesystem::last_write_time(file_on_disk(path), ignored).time_since_epoch().count();
   return std::string("etendue") + separator + transfer + separator + channel + separator + std::to_string(changed) + separator +
          path;
 }

@@ -1,6 +1,7 @@
 // The image library as the rest sees it.
 
 #include "cached_texture.h"
+#include "checked_open.h"
 #include "file_input.h"
 #include "file_output.h"
 #include "images/image_library.h"
@@ -16,6 +17,9 @@ class OpenImageIoLibrary final : public ImageLibrary {
   StoredImage read(const std::string& path) const override { return read_file(path); }
   LinearImage read_linear(const std::string& path, const std::string& transfer) const override {
     return read_linear_file(path, transfer);
+  }
+  std::vector<std::string> channel_names(const std::string& path) const override {
+    return open_checked(path)->spec().channelnames;
   }
   void check_channel(const std::string& path, const std::string& channel) const override { check_file_channel(path, channel); }
   std::shared_ptr<const ImageTexture> open_texture(const std::string& path, const std::string& transfer,

@@ -21,7 +21,7 @@ Bounds3 prepared_bounds(const Scene& scene) {
 bool emits(const Scene& scene) {
   for (const Ref<SceneObject>& object : scene.objects) {
     if (object->luminaire()) return true;
-    if (const auto* inner = dynamic_cast<const Scene*>(object.get()); inner && emits(*inner)) return true;
+    if (const Scene* inner = scene_within(*object); inner && emits(*inner)) return true;
   }
   return false;
 }
@@ -56,32 +56,37 @@ Ref<Camera> camera_on(const Scene& scene, const Importing& importing) {
   return ref_cast<Camera>(camera);
 }
 
-/// Light from all sides, and more of it from the upper left behind the camera, so that shapes can be told.
+/// A studio around the model: a dim room, a large soft lamp above on the left behind the camera and a small one on the right,
+/// so that shapes can be told, shadows are soft and metals have something to mirror.
 void add_light(Scene& scene, const Importing& importing) {
+  constexpr const char* studio =
+      R"etd(EnvironmentEmission { radiance: MultiplyMap { first: illuminant("D65"), second: FormulaMap { formula: ")etd"
+      "0.35 + 0.45 * smoothstep(0.42, 0.9, v)"
+      " + 14 * exp(-144 * (u - 0.6) * (u - 0.6) - 60 * (v - 0.78) * (v - 0.78))"
+      " + 2.5 * exp(-192 * (u - 0.27) * (u - 0.27) - 80 * (v - 0.62) * (v - 0.62))"
+      R"etd(" } } })etd";
   const Location at = importing.at();
-  const auto add = [&](const char* object_class, const std::string& emission) {
-    Ref<Component> object = importing.make(object_class, at);
-    set(*object, "emission", Value(parse_component(emission, "light added to " + importing.path()), at));
-    scene.objects.push_back(ref_cast<SceneObject>(object));
-    return object;
-  };
-  add("Environment", "DiffuseEmission { radiance: illuminant(\"D65\") }");
-  const Ref<Component> sun = add("Distant", "DiffuseEmission { radiance: 4 * illuminant(\"D65\") }");
-  const bool z_up = importing.up.z != 0;
-  set_member(*sun, "direction",
-             z_up ? Numbers{{0.45, 0.6, -1 * importing.up.z}, 1, Dimension::none}
-                  : Numbers{{0.45, -1 * importing.up.y, -0.6}, 1, Dimension::none},
-             at);
+  Ref<Component> room = importing.make("Environment", at);
+  set(*room, "emission", Value(parse_component(studio, "light added to " + importing.path()), at));
+  // Up is +y in it, and front +z.
+  if (importing.up.z != 0) set(*room, "transform", Value(Transform::rotate(importing.up.z * double(pi) / 2, {1, 0, 0}), at));
+  scene.objects.push_back(ref_cast<SceneObject>(room));
+}
+
+/// Adds light where there is none, unless `-D light=no`.
+void light_if_dark(Scene& scene, Importing& importing, bool lit) {
+  const std::string wanted = importing.parameter("light").value_or(lit ? "no" : "yes");
+  if (wanted != "yes" && wanted != "no") throw Error("'light' is yes or no", importing.at());
+  if (wanted == "no") return;
+  add_light(scene, importing);
+  if (!lit) importing.inexact("it has no lights: a studio's are added (-D light=no: none)", importing.at());
 }
 
 Ref<Job> job_around(const Ref<Scene>& scene, Importing& importing) {
   Ref<Component> job = importing.make("Job", importing.at());
   const Ref<Camera> camera = camera_on(*scene, importing);
   importing.inexact("it has no camera: one that sees all of it is added", importing.at());
-  if (!emits(*scene)) {
-    add_light(*scene, importing);
-    importing.inexact("it has no light: light from all sides and from the upper left is added", importing.at());
-  }
+  light_if_dark(*scene, importing, importing.is_lit.value_or(emits(*scene)));
   set(*job, "camera", Value(Ref<Component>(camera)));
   set(*job, "scene", Value(Ref<Component>(scene)));
   return ref_cast<Job>(job);
@@ -97,6 +102,8 @@ ImportedJob import_job(const Importer& importer, const std::string& path, const 
     const Ref<Scene> scene = ref_cast<Scene>(read);
     if (!scene) throw Error("the importer gave neither a Job nor a Scene", importing.at());
     job = job_around(scene, importing);
+  } else if (importing.is_lit) {
+    light_if_dark(*job->scene, importing, *importing.is_lit);
   }
   ImportedJob result{job, importing.notes()};
   if (options.import.strict && !result.notes.empty()) throw Errors(std::move(result.notes));

@@ -12,7 +12,8 @@ namespace etendue::mitsuba {
 Ref<Component> Converter::mesh(const Element& e, Uv& uv) {
   Ref<Component> mesh = make("TriangleMesh", e);
   set_member(*mesh, "file", file(e), e.location_of("filename"));
-  if (e.type == "serialized") set_member(*mesh, "number", double(e.integer("shape_index", 0)), e.location_of("shape_index"));
+  if (e.type == "serialized")
+    set_member(*mesh, "part", std::to_string(e.integer("shape_index", 0)), e.location_of("shape_index"));
   // Normals that a file lacks are found from the triangles, unless faces are to be flat.
   set_member(*mesh, e.boolean("face_normals", false) ? "flat" : "smooth", true, e.at);
   if (e.has("max_smooth_angle")) {

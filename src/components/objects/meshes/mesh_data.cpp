@@ -2,25 +2,50 @@
 
 #include "mesh_data.h"
 
+#include <map>
+
 #include "etendue/describe/component.h"
 #include "files/regular_file.h"
+#include "files/text_encoding.h"
 #include "polygon_triangulation.h"
 
 namespace etendue {
 
-MeshData read_mesh(const std::string& path, std::uint32_t number) {
+namespace {
+
+std::map<std::string, ReadPart>& formats() {
+  static auto* all = new std::map<std::string, ReadPart>;
+  return *all;
+}
+
+MeshData read_whole(const std::string& path, const std::string& ending) {
+  const FileContents file(path);
+  const bool marked = has_byte_order_mark(file.text());
+  const std::string plain = marked ? as_utf8(file.text()) : std::string();
+  const std::string_view text = marked ? plain : file.text();
+  if (text.empty()) throw Error("the file is empty");
+  if (text.starts_with("ply\n") || text.starts_with("ply\r") || ending == "ply") return read_ply(text);
+  if (ending == "obj") return read_obj(text);
+  if (ending == "stl") return read_stl(text);
+  if (ending == "off") return read_off(text);
+  throw Error("this is no mesh format that is known here (PLY, OBJ, STL and OFF are, and those of importers)");
+}
+
+}  // namespace
+
+bool register_mesh_format(const std::vector<std::string>& endings, ReadPart read) {
+  for (const std::string& ending : endings) formats()[ending] = read;
+  return true;
+}
+
+MeshData read_mesh(const std::string& path, const std::string& part) {
   try {
-    const FileContents file(path);
-    const std::string_view text = file.text();
-    if (text.empty()) throw Error("the file is empty");
     std::string ending = path.substr(std::min(path.size(), path.find_last_of('.') + 1));
     for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-    if (ending == "serialized") return read_serialized(text, number);
-    if (number != 0) throw Error("files of this format hold one mesh, of the number 0");
-    if (text.starts_with("ply\n") || text.starts_with("ply\r")) return read_ply(text);
-    if (ending == "ply") return read_ply(text);
-    if (ending == "obj") return read_obj(text);
-    throw Error("this is no mesh format that is known here (PLY, OBJ and serialized are; others come in through an importer)");
+    const auto other = formats().find(ending);
+    if (other != formats().end() && (!part.empty() || ending != "obj")) return other->second(path, part);
+    if (!part.empty()) throw Error("files of this format have no parts");
+    return read_whole(path, ending);
   } catch (const Error& error) {
     throw Error("'" + path + "': " + error.what());
   } catch (const std::bad_alloc&) {

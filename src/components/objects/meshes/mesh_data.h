@@ -30,16 +30,29 @@ struct MeshData {
   std::vector<VertexAttribute> face_attributes;  ///< of triangles: those of the faces they are part of; "face_" and a name
   std::vector<std::string> materials;            ///< names of those that the file uses, each once; nothing more is read of them
   bool faceted = false;                          ///< the file says that it is to look so, not smooth
+  std::vector<std::uint32_t> triangle_materials;  ///< for each triangle, by their places in `materials`; or empty
+  static constexpr std::uint32_t no_material = 0xffffffffu;
 };
 
 // The readers take the file's contents. They throw Error("what is wrong"), with the line for text, without the file's name.
 // Indices are checked, positions are not: that is for drop_unusable.
 MeshData read_ply(std::string_view file);
 MeshData read_obj(std::string_view file);
+/// Of a file that holds several meshes the one of this number, counted from 0.
 MeshData read_serialized(std::string_view file, std::uint32_t number);
-/// By the file's contents (PLY) or the ending of its name. Of a format that holds several meshes, the one of this number,
-/// counted from 0. Throws Error("'name': what is wrong").
-MeshData read_mesh(const std::string& path, std::uint32_t number = 0);
+MeshData read_stl(std::string_view file);
+MeshData read_off(std::string_view file);
+/// By the file's contents (PLY) or the ending of its name. `part` names one of several meshes in a file; of an OBJ file the
+/// faces of a material, "usemtl brass". Throws Error("'name': what is wrong").
+MeshData read_mesh(const std::string& path, const std::string& part = {});
+
+/// Reads a part of a file of a format that is not known here; throws Error with the reason alone.
+using ReadPart = MeshData (*)(const std::string& path, const std::string& part);
+/// Says who reads files with these endings (without dots, small letters). At the program's start.
+bool register_mesh_format(const std::vector<std::string>& endings, ReadPart);
+
+/// The parts of an OBJ file by the materials that its faces use, in the order of the file; "" for those without one.
+std::vector<std::string> obj_parts(const std::string& path);
 
 /// Gives every vertex the mean of the normals of the triangles around it, by their angles there (Thuermer & Wuethrich 1998,
 /// Computing vertex normals from polygonal facets).

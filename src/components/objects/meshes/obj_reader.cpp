@@ -1,106 +1,29 @@
-// Wavefront OBJ files: v, vt, vn and f. Of materials the names are kept, to tell that they are not read;
-// everything else (groups, curves) says nothing about triangles.
+// Wavefront OBJ files: v, vt, vn, f, s and usemtl. Of materials the names are kept and which triangle has which: ObjImporter
+// makes shaders of them. Everything else (groups, curves) says nothing about triangles.
 
-#include <charconv>
-#include <cstring>
+#include <unordered_map>
 
-#include "etendue/core/error.h"
 #include "geometry/own_centre.h"
+#include "geometry/triangle_test.h"
 #include "mesh_data.h"
+#include "obj_lines.h"
 #include "polygon_mesh.h"
 
 namespace etendue {
 namespace {
 
-/// The lines of a text; a backslash at a line's end continues it.
-class Lines {
- public:
-  explicit Lines(std::string_view file) : at_(file.data()), end_(file.data() + file.size()) {}
-
-  bool next() {
-    if (at_ >= end_) return false;
-    number_ += 1 + continued_;
-    continued_ = 0;
-    begin_ = at_;
-    for (;;) {
-      const char* stop = static_cast<const char*>(std::memchr(at_, '\n', size_t(end_ - at_)));
-      line_end_ = stop ? stop : end_;
-      at_ = stop ? stop + 1 : end_;
-      const char* last = line_end_ > begin_ && line_end_[-1] == '\r' ? line_end_ - 1 : line_end_;
-      if (!stop || last == begin_ || last[-1] != '\\') break;
-      ++continued_;
-    }
-    cursor_ = begin_;
-    skip_space();
-    return true;
-  }
-
-  /// The line's first word.
-  std::string_view keyword() {
-    const char* from = cursor_;
-    while (cursor_ < line_end_ && !space(*cursor_)) ++cursor_;
-    return {from, size_t(cursor_ - from)};
-  }
-  bool at_end() {
-    skip_space();
-    return cursor_ >= line_end_ || *cursor_ == '#';
-  }
-  template <class Number = float>
-  Number number() {
-    if (at_end()) error("a number is missing");
-    if (*cursor_ == '+') ++cursor_;
-    Number value = 0;
-    const auto [stop, code] = std::from_chars(cursor_, line_end_, value);
-    if (code == std::errc::invalid_argument) error("a number is expected");
-    // Too large or too small for a float: the former makes its triangles unusable, the latter is zero.
-    if (code == std::errc::result_out_of_range) {
-      double wide = 0;
-      std::from_chars(cursor_, stop, wide);
-      value = Number(wide);
-    }
-    cursor_ = stop;
-    return value;
-  }
-  std::int64_t integer() {
-    std::int64_t value = 0;
-    const auto [stop, code] = std::from_chars(cursor_, line_end_, value);
-    if (code == std::errc::invalid_argument) error("an index is expected");
-    if (code == std::errc::result_out_of_range) value = std::numeric_limits<std::int64_t>::max();
-    cursor_ = stop;
-    return value;
-  }
-  bool take(char c) {
-    if (cursor_ >= line_end_ || *cursor_ != c) return false;
-    ++cursor_;
-    return true;
-  }
-  /// What is left of the line.
-  std::string_view rest() {
-    if (at_end()) return {};
-    const char* last = line_end_;
-    while (last > cursor_ && space(last[-1])) --last;
-    return {cursor_, size_t(last - cursor_)};
-  }
-  bool word_ends() const { return cursor_ >= line_end_ || space(*cursor_); }
-
-  [[noreturn]] void error(const std::string& message) const { throw Error("line " + std::to_string(number_) + ": " + message); }
-
- private:
-  static bool space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\\'; }
-  void skip_space() {
-    while (cursor_ < line_end_ && space(*cursor_)) ++cursor_;
-  }
-
-  const char *at_, *end_, *begin_ = nullptr, *line_end_ = nullptr, *cursor_ = nullptr;
-  std::int64_t number_ = 0, continued_ = 0;
-};
-
-/// More names of materials than this nobody is told.
-constexpr size_t most_materials = 100;
-
 struct Counts {
   size_t positions = 0, uvs = 0, normals = 0, faces = 0;
+  bool smoothed = false;  ///< the file has no normals, but groups of faces whose normals are to be blended
 };
+
+/// What follows "s": a number, or "off".
+std::uint32_t smoothing_group(Lines& lines) {
+  const std::string_view word = lines.rest();
+  std::uint32_t group = 0;
+  std::from_chars(word.data(), word.data() + word.size(), group);
+  return group;
+}
 
 /// A first pass, so that indices can be checked at once and nothing grows.
 Counts count(std::string_view file) {
@@ -111,7 +34,9 @@ Counts count(std::string_view file) {
     if (word == "vt") ++c.uvs;
     if (word == "vn") ++c.normals;
     if (word == "f") ++c.faces;
+    if (word == "s" && smoothing_group(lines) > 0) c.smoothed = true;
   }
+  if (c.normals > 0) c.smoothed = false;
   return c;
 }
 
@@ -159,7 +84,6 @@ void name_corners(const std::vector<Vertices::Corner>& list, PolygonMesh& mesh) 
   for (std::uint32_t& c : mesh.corners) c = list[c].position;
 }
 
-/// With `polygons` given, faces go there as they are, and no triangles are made.
 DoublePoint3 read_place(Lines& lines) {
   const double x = lines.number<double>(), y = lines.number<double>(), z = lines.number<double>();
   return {x, y, z};
@@ -185,11 +109,29 @@ DoublePoint3 centre_of(std::string_view file) {
   return own_centre(ends);
 }
 
+/// The normals of vertices whose "normals" are smoothing groups: those of the triangles of the group around the place, by area.
+/// Group 0 has none, which leaves its faces flat.
+std::vector<Normal3> smooth_normals(const MeshData& mesh, const std::vector<Vertices::Corner>& corners) {
+  const auto key = [&](std::uint32_t i) { return std::uint64_t(corners[i].position) << 32 | corners[i].normal; };
+  std::unordered_map<std::uint64_t, Vector3> sums;
+  for (const auto& t : mesh.triangles) {
+    const Vector3 area = area_vector(mesh.positions[corners[t[0]].position], mesh.positions[corners[t[1]].position],
+                                     mesh.positions[corners[t[2]].position]);
+    for (const std::uint32_t i : t)
+      if (corners[i].normal != 0) sums[key(i)] += area;
+  }
+  std::vector<Normal3> normals(corners.size());
+  for (std::uint32_t i = 0; i < corners.size(); ++i)
+    if (const auto sum = sums.find(key(i)); sum != sums.end()) normals[i] = Normal3(sum->second);
+  return normals;
+}
+
 /// One entry for each vertex. A corner without normal gets a zero one, without uv the origin.
-MeshData by_vertex(MeshData mesh, const Vertices& vertices) {
+MeshData by_vertex(MeshData mesh, const Vertices& vertices, bool smoothed) {
   MeshData result;
   result.centre = mesh.centre;
   const auto& list = vertices.corners();
+  if (smoothed) result.normals = smooth_normals(mesh, list);
   bool any_uv = false, any_normal = false;
   for (const auto& c : list) {
     any_uv = any_uv || c.uv != Vertices::none;
@@ -203,12 +145,13 @@ MeshData by_vertex(MeshData mesh, const Vertices& vertices) {
     for (const auto& c : list) result.uvs.push_back(c.uv == Vertices::none ? Point2{} : mesh.uvs[c.uv]);
   }
   mesh.uvs = {};
-  if (any_normal) {
+  if (any_normal && !smoothed) {
     result.normals.reserve(list.size());
     for (const auto& c : list) result.normals.push_back(c.normal == Vertices::none ? Normal3{} : mesh.normals[c.normal]);
   }
   result.triangles = std::move(mesh.triangles);
   result.materials = std::move(mesh.materials);
+  result.triangle_materials = std::move(mesh.triangle_materials);
   return result;
 }
 
@@ -233,6 +176,7 @@ Corner read_corner(Lines& lines, const MeshData& so_far, const Counts& all) {
 
 struct Face {
   std::vector<std::uint32_t> corners, positions;
+  std::uint32_t material = 0;
 };
 
 /// Cuts faces into triangles: by positions, then named by vertices.
@@ -249,6 +193,7 @@ class FaceCutter {
     append_polygon(face_, order_.data(), order_.size());
     for (const auto& t : face_.triangles)
       mesh.triangles.push_back({polygon.corners[t[0]], polygon.corners[t[1]], polygon.corners[t[2]]});
+    mesh.triangle_materials.resize(mesh.triangles.size(), polygon.material);
   }
 
  private:
@@ -256,13 +201,14 @@ class FaceCutter {
   std::vector<std::uint32_t> order_;
 };
 
+/// With `polygons` given, faces go there as they are, and no triangles are made.
 MeshData parse(std::string_view file, PolygonMesh* polygons) {
   const Counts all = count(file);
   if (all.positions == 0) throw Error("it has no vertices");
   if (all.faces == 0) throw Error("it has no faces");
   if (all.positions >= Vertices::none || all.uvs >= Vertices::none || all.normals >= Vertices::none)
     throw Error("more than 2^32 vertices");
-  const bool plain = all.uvs == 0 && all.normals == 0;
+  const bool plain = all.uvs == 0 && all.normals == 0 && !all.smoothed;
 
   MeshData mesh;  // as in the file until all is read
   mesh.centre = centre_of(file);
@@ -274,7 +220,8 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   std::vector<std::uint32_t> corners, positions;
   std::vector<Face> late;  // faces that stand before their vertices and have more than three corners
   FaceCutter cutter;
-  std::vector<std::string> materials;
+  std::unordered_map<std::string, std::uint32_t> materials;
+  std::uint32_t material = MeshData::no_material, group = 0;
   for (Lines lines(file); lines.next();) {
     const std::string_view word = lines.keyword();
     if (word == "v") {
@@ -286,15 +233,18 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
       const float x = lines.number(), y = lines.number(), z = lines.number();
       mesh.normals.push_back({x, y, z});
     } else if (word == "usemtl") {
-      const std::string name(lines.rest());
-      if (std::find(materials.begin(), materials.end(), name) == materials.end() && materials.size() < most_materials)
-        materials.push_back(name);
+      const auto [place, fresh] = materials.try_emplace(std::string(lines.rest()), std::uint32_t(materials.size()));
+      if (fresh) mesh.materials.push_back(place->first);
+      material = place->second;
+    } else if (word == "s") {
+      group = smoothing_group(lines);
     } else if (word == "f") {
       corners.clear();
       positions.clear();
       bool known = true;
       while (!lines.at_end()) {
-        const Corner c = read_corner(lines, mesh, all);
+        Corner c = read_corner(lines, mesh, all);
+        if (all.smoothed) c.normal = group;
         known = known && c.position < mesh.positions.size();
         positions.push_back(c.position);
         corners.push_back(plain ? c.position : vertices.find(c.position, c.uv, c.normal));
@@ -305,10 +255,11 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
         polygons->corners.insert(polygons->corners.end(), corners.begin(), corners.end());
       } else if (corners.size() == 3) {
         mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+        mesh.triangle_materials.push_back(material);
       } else if (!known) {
-        late.push_back({corners, positions});
+        late.push_back({corners, positions, material});
       } else {
-        cutter.cut({corners, positions}, mesh);
+        cutter.cut({corners, positions, material}, mesh);
       }
     }
   }
@@ -320,10 +271,9 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
     return mesh;
   }
   for (const Face& polygon : late) cutter.cut(polygon, mesh);
-  mesh.materials = materials;
+  if (mesh.materials.empty()) mesh.triangle_materials = {};
   if (plain) return mesh;
-
-  return by_vertex(std::move(mesh), vertices);
+  return by_vertex(std::move(mesh), vertices, all.smoothed);
 }
 
 }  // namespace

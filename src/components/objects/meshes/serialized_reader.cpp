@@ -8,9 +8,11 @@
 
 #include <zlib.h>
 
+#include <charconv>
 #include <cstring>
 
 #include "etendue/core/error.h"
+#include "files/regular_file.h"
 #include "geometry/own_centre.h"
 #include "mesh_data.h"
 
@@ -162,4 +164,21 @@ MeshData read_serialized(std::string_view file, std::uint32_t number) {
   return mesh;
 }
 
+namespace {
+
+/// The mesh whose number is written; without one the first.
+MeshData read_numbered(const std::string& path, const std::string& part) {
+  std::uint32_t number = 0;
+  const char* const end = part.data() + part.size();
+  if (!part.empty())
+    if (const auto [stop, error] = std::from_chars(part.data(), end, number); error != std::errc() || stop != end)
+      throw Error("its meshes have numbers from 0 on, not '" + part + "'");
+  const FileContents file(path);
+  if (file.text().empty()) throw Error("the file is empty");
+  return read_serialized(file.text(), number);
+}
+
+const bool registered = register_mesh_format({"serialized"}, read_numbered);
+
+}  // namespace
 }  // namespace etendue

@@ -26,7 +26,7 @@ void append_normals(std::span<const Point3> positions, std::span<const std::arra
 
 class TriangleMesh final : public TriangleObject {
   FilePath file;
-  std::uint32_t mesh_number = 0;
+  std::string part;
   std::vector<DoublePoint3> positions;
   std::vector<std::uint32_t> triangles;
   std::vector<Normal3> normals;
@@ -44,11 +44,12 @@ class TriangleMesh final : public TriangleObject {
          "Triangles, from a file or written out. Meshes from one file share it. A mesh that changes its shape has several "
          "keys: at each of `times` the vertices are where one of them says, and between two they move in straight lines.")
         .group("Shape")
-        .member<&TriangleMesh::file>(
-            "file", "", "a PLY file (text or binary), an OBJ file or one of Mitsuba's serialized meshes; none: the lists below",
-            Effect::rebuild)
-        .member<&TriangleMesh::mesh_number>("number", "1", "which mesh of a file that holds several, counted from 0",
-                                       Effect::rebuild, when("file"))
+        .member<&TriangleMesh::file>("file", "", "a PLY, OBJ, STL or OFF file, or a model with parts; none: the lists below",
+                                     Effect::rebuild)
+        .member<&TriangleMesh::part>("part", "",
+                                     "which mesh of a file that has several: of glTF \"meshes[0].primitives[1]\", of OBJ the "
+                                     "faces of a material, \"usemtl brass\"",
+                                     Effect::rebuild)
         .member<&TriangleMesh::positions>("positions", "m", "the vertices, when there is no file", Effect::rebuild)
         .member<&TriangleMesh::triangles>(
             "triangles", "1", "three vertices, counting from 0, for each triangle; counter-clockwise seen from the front",
@@ -87,8 +88,9 @@ class TriangleMesh final : public TriangleObject {
       if (!positions.empty() || !triangles.empty() || !normals.empty() || !uvs.empty() || !colors.empty() ||
           !face_colors.empty())
         fail("file", "a mesh comes from a file or from lists, not from both");
-      mesh = from_file("file", file, moves);
+      mesh = from_file("file", file, part, moves);
     } else {
+      if (!part.empty()) fail("part", "a part is that of a file, and there is none");
       MeshData own = listed();
       if (!moves) drop(own);
       make_shareable(own);
@@ -107,7 +109,7 @@ class TriangleMesh final : public TriangleObject {
       mesh = std::move(bare);
       motion.normals = {};
     }
-    if (!file.empty()) warn_if_coarse(*mesh);
+    if (!file.empty() && part.empty()) warn_if_coarse(*mesh);
     attributes_.clear();
     for (const VertexAttribute& a : mesh->attributes)
       attributes_.push_back({attribute_number(a.name), a.width, a.values.data(), false});
@@ -142,16 +144,17 @@ class TriangleMesh final : public TriangleObject {
 
   /// What a file holds; as long as some mesh uses it, and the file is the same, it is read once. `whole`: with the triangles
   /// that cannot be used, for at another key they may have an area.
-  std::shared_ptr<const MeshData> from_file(const char* member, const FilePath& path, bool whole) const {
+  std::shared_ptr<const MeshData> from_file(const char* member, const FilePath& path, const std::string& which,
+                                            bool whole) const {
     struct Known {
       std::filesystem::file_time_type written;
       std::uintmax_t size = 0;
       std::weak_ptr<const MeshData> mesh;
     };
     static std::mutex mutex;
-    static auto* all = new std::map<std::tuple<std::string, std::uint32_t, bool>, Known>;
+    static auto* all = new std::map<std::tuple<std::string, std::string, bool>, Known>;
     const std::string name = path.resolved();
-    const std::tuple key(name, mesh_number, whole);
+    const std::tuple key(name, which, whole);
     std::error_code none;  // what is wrong with the file, reading it tells
     const auto written = std::filesystem::last_write_time(name, none);
     const auto size = std::filesystem::file_size(name, none);
@@ -161,7 +164,7 @@ class TriangleMesh final : public TriangleObject {
         known != all->end() && known->second.written == written && known->second.size == size)
       if (auto mesh = known->second.mesh.lock()) return mesh;
     try {
-      MeshData mesh = read_mesh(name, mesh_number);
+      MeshData mesh = read_mesh(name, which);
       if (!whole) drop_unusable(mesh, "'" + name + "'");
       make_shareable(mesh);
       auto made = std::make_shared<const MeshData>(std::move(mesh));
@@ -223,7 +226,7 @@ class TriangleMesh final : public TriangleObject {
       }
     }
     for (const FilePath& path : motion_files) {
-      const std::shared_ptr<const MeshData> key = from_file("motion_files", path, true);
+      const std::shared_ptr<const MeshData> key = from_file("motion_files", path, part, true);
       if (key->positions.size() != n + 1)
         fail("motion_files", "'" + path.resolved() + "' has " + std::to_string(key->positions.size() - 1) +
                                  " vertices, the first key " + std::to_string(n));

@@ -1,0 +1,22 @@
+#pragma once
+// A scene of Assimp's as glTF.
+
+#include <assimp/scene.h>
+
+#include "glb.h"
+
+namespace etendue::assimp_helper {
+
+/// The whole scene.
+void convert(const aiScene&, Glb&);
+
+/// The materials; their places are those in the scene. See materials.cpp.
+void convert_materials(const aiScene&, Glb&);
+
+/// Lights and cameras, as children of the nodes that have their names. `node_of` gives the place of a node by its name, or
+/// SIZE_MAX.
+void convert_lights(const aiScene&, Glb&, size_t (*node_of)(const void* names, const char* name), const void* names);
+
+Json matrix_json(const aiMatrix4x4&);
+
+}  // namespace etendue::assimp_helper

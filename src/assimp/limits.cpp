@@ -1,0 +1,104 @@
+#include "limits.h"
+
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <assimp/IOStream.hpp>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace etendue::assimp_helper {
+namespace {
+
+void limit(__rlimit_resource resource, std::uint64_t value) {
+  rlimit wanted{};
+  ::getrlimit(resource, &wanted);
+  wanted.rlim_cur = std::min<rlim_t>(wanted.rlim_max, value);
+  wanted.rlim_max = wanted.rlim_cur;
+  ::setrlimit(resource, &wanted);
+}
+
+/// Sockets and other programs are refused by the system itself from here on.
+void forbid_calls() {
+  ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  constexpr std::uint32_t refused = SECCOMP_RET_ERRNO | 1;  // EPERM
+  constexpr unsigned calls[] = {SYS_socket, SYS_connect, SYS_execve, SYS_execveat, SYS_ptrace, SYS_kill};
+  constexpr unsigned char count = sizeof calls / sizeof calls[0];
+  std::vector<sock_filter> program;
+  program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)));
+  for (unsigned char i = 0; i < count; ++i)
+    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls[i], static_cast<unsigned char>(count - i), 0));
+  program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
+  program.push_back(BPF_STMT(BPF_RET | BPF_K, refused));
+  const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
+  ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter, 0, 0);
+}
+
+/// A file of the C library.
+class File final : public Assimp::IOStream {
+ public:
+  explicit File(std::FILE* file) : file_(file) {}
+  ~File() override { std::fclose(file_); }
+  size_t Read(void* to, size_t size, size_t count) override { return std::fread(to, size, count, file_); }
+  size_t Write(const void*, size_t, size_t) override { return 0; }
+  aiReturn Seek(size_t offset, aiOrigin origin) override {
+    const int from = origin == aiOrigin_SET ? SEEK_SET : (origin == aiOrigin_CUR ? SEEK_CUR : SEEK_END);
+    return ::fseeko(file_, off_t(offset), from) == 0 ? aiReturn_SUCCESS : aiReturn_FAILURE;
+  }
+  size_t Tell() const override { return size_t(::ftello(file_)); }
+  size_t FileSize() const override {
+    struct stat status{};
+    return ::fstat(::fileno(file_), &status) == 0 ? size_t(status.st_size) : 0;
+  }
+  void Flush() override {}
+
+ private:
+  std::FILE* file_;
+};
+
+}  // namespace
+
+void limit_process(std::uint64_t file_size) {
+  constexpr std::uint64_t mega = 1 << 20;
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_AS, 1024 * mega + 64 * file_size);  // the libraries themselves map some hundred megabytes
+  limit(RLIMIT_CPU, 20 + file_size / (2 * mega));
+  limit(RLIMIT_FSIZE, 0);
+  ::close_range(3, ~0u, 0);
+  forbid_calls();
+}
+
+FilesWithin::FilesWithin(std::vector<std::string> folders) {
+  for (const std::string& folder : folders) {
+    std::error_code error;
+    folders_.push_back(std::filesystem::weakly_canonical(std::filesystem::absolute(folder, error), error).string() + "/");
+  }
+}
+
+std::string FilesWithin::allowed(const std::string& path) const {
+  std::error_code error;
+  const std::string real = std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error).string();
+  const bool inside = std::ranges::any_of(folders_, [&](const std::string& folder) { return real.starts_with(folder); });
+  return !error && inside && std::filesystem::is_regular_file(real, error) ? real : std::string();
+}
+
+bool FilesWithin::Exists(const char* path) const { return !allowed(path).empty(); }
+
+Assimp::IOStream* FilesWithin::Open(const char* path, const char*) {
+  const std::string found = allowed(path);
+  std::FILE* file = found.empty() ? nullptr : std::fopen(found.c_str(), "rb");
+  return file ? new File(file) : nullptr;
+}
+
+void FilesWithin::Close(Assimp::IOStream* stream) { delete stream; }
+
+}  // namespace etendue::assimp_helper

@@ -1,0 +1,31 @@
+#pragma once
+// What this process may do: it reads files of formats whose reader has faults that are known.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <assimp/IOSystem.hpp>
+
+namespace etendue::assimp_helper {
+
+/// Limits memory and the processor's time by the size of the file, closes all but the standard files, and forbids the network
+/// and other programs.
+void limit_process(std::uint64_t file_size);
+
+/// Files in these folders and below, for reading alone. Assimp asks it for everything it opens.
+class FilesWithin : public Assimp::IOSystem {
+ public:
+  explicit FilesWithin(std::vector<std::string> folders);
+  bool Exists(const char* path) const override;
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* path, const char* mode) override;
+  void Close(Assimp::IOStream*) override;
+
+ private:
+  /// The path to open, or "".
+  std::string allowed(const std::string& path) const;
+  std::vector<std::string> folders_;  // with all links followed
+};
+
+}  // namespace etendue::assimp_helper

@@ -1,0 +1,59 @@
+// etendue_assimp FILE [FOLDER ...]: reads a model of one of the many formats that Assimp knows and writes it as .glb to
+// standard output; what is wrong goes to standard error. It is a program of its own, so that a fault in the library ends
+// nothing else, and it may open only what lies in the file's folder and those that are named.
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+
+#include <assimp/Importer.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "convert.h"
+#include "limits.h"
+
+namespace {
+
+using namespace etendue::assimp_helper;
+
+int run(const std::string& path, std::vector<std::string> folders) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  folders.push_back(folder.empty() ? "." : folder);
+  limit_process(size);
+  Assimp::Importer importer;
+  importer.SetIOHandler(new FilesWithin(folders));  // the importer deletes it
+  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 60);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
+                                                     aiProcess_GenUVCoords | aiProcess_TransformUVCoords |
+                                                     aiProcess_JoinIdenticalVertices | aiProcess_ValidateDataStructure);
+  if (!scene || !scene->mRootNode) {
+    std::fprintf(stderr, "%s\n", clean(importer.GetErrorString()).c_str());
+    return 1;
+  }
+  Glb glb;
+  convert(*scene, glb);
+  return glb.write(1) ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count < 2) {
+    std::fprintf(stderr, "etendue_assimp FILE [FOLDER ...]\n");
+    return 2;
+  }
+  try {
+    return run(arguments[1], {arguments + 2, arguments + count});
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "it needs more memory than a file of its size may\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+  }
+  return 1;
+}

@@ -1,0 +1,222 @@
+// Assimp's materials as those of glTF.
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "convert.h"
+
+namespace etendue::assimp_helper {
+namespace {
+
+/// Everything but letters, digits and a few marks as %xx: what the source says is to arrive as it is.
+std::string encoded(const std::string& path) {
+  std::string uri;
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) || c == '.' || c == '-' || c == '_' || c == '/') {
+      uri += c;
+    } else {
+      char text[8];
+      std::snprintf(text, sizeof text, "%%%02X", byte);
+      uri += text;
+    }
+  }
+  return uri;
+}
+
+double clamped(double x, double otherwise = 0) { return std::isfinite(x) ? std::clamp(x, 0.0, 1.0) : otherwise; }
+
+class MaterialWriter {
+ public:
+  MaterialWriter(const aiScene& scene, Glb& glb) : scene_(scene), glb_(glb) {}
+
+  void write(const aiMaterial& m) {
+    Json material = {{"name", clean(m.GetName().C_Str())}};
+    Json pbr = Json::object();
+    std::array<double, 3> base = color(m, AI_MATKEY_BASE_COLOR, color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8, 0.8, 0.8}));
+    Json base_texture = texture(m, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
+    // Exporters often leave the colour black where a texture stands for it.
+    if (!base_texture.is_null() && *std::ranges::max_element(base) <= 0) base = {1, 1, 1};
+    double metalness = number(m, AI_MATKEY_METALLIC_FACTOR, -1), roughness = number(m, AI_MATKEY_ROUGHNESS_FACTOR, -1);
+    Json metal_texture = texture(m, {aiTextureType_METALNESS}), rough_texture = texture(m, {aiTextureType_DIFFUSE_ROUGHNESS});
+    Json extensions = Json::object();
+    if (metalness < 0 && roughness < 0 && metal_texture.is_null() && rough_texture.is_null()) {
+      phong(m, base, base_texture, metalness, roughness, extensions);
+    } else {
+      metalness = metalness < 0 ? (metal_texture.is_null() ? 0 : 1) : metalness;
+      roughness = roughness < 0 ? (rough_texture.is_null() ? 0.5 : 1) : roughness;
+      if (!metal_texture.is_null() && metal_texture == rough_texture)
+        pbr["metallicRoughnessTexture"] = metal_texture;
+      else if (!metal_texture.is_null() || !rough_texture.is_null())
+        glb_.note("textures of metalness and roughness that are not in one image are left out");
+    }
+    const double opacity = opacity_of(m);
+    pbr["baseColorFactor"] = {base[0], base[1], base[2], opacity};
+    pbr["metallicFactor"] = clamped(metalness);
+    pbr["roughnessFactor"] = clamped(roughness, 0.5);
+    if (!base_texture.is_null()) pbr["baseColorTexture"] = base_texture;
+    material["pbrMetallicRoughness"] = pbr;
+    const Json holes = texture(m, {aiTextureType_OPACITY});
+    if (opacity < 1 || (!holes.is_null() && holes == base_texture)) material["alphaMode"] = "BLEND";
+    if (!holes.is_null() && holes != base_texture)
+      glb_.note("textures of opacity are left out where they are not the colour's own");
+    emission(m, material, extensions);
+    shape(m, material);
+    coat(m, extensions);
+    if (const double ior = number(m, AI_MATKEY_REFRACTI, 1.5); ior > 1 && ior <= 4 && ior != 1.5)
+      extensions["KHR_materials_ior"] = {{"ior", ior}};
+    if (!extensions.empty()) material["extensions"] = extensions;
+    glb_.add("materials", material);
+  }
+
+ private:
+  static double number(const aiMaterial& m, const char* key, unsigned type, unsigned index, double otherwise) {
+    float value = 0;
+    return m.Get(key, type, index, value) == aiReturn_SUCCESS && std::isfinite(value) ? double(value) : otherwise;
+  }
+  static std::array<double, 3> color(const aiMaterial& m, const char* key, unsigned type, unsigned index,
+                                     const std::array<double, 3>& otherwise) {
+    aiColor3D c;
+    if (m.Get(key, type, index, c) != aiReturn_SUCCESS) return otherwise;
+    const auto usable = [](float x) { return std::isfinite(x) && x > 0 ? double(x) : 0.0; };
+    return {usable(c.r), usable(c.g), usable(c.b)};
+  }
+
+  // The exponent of a highlight as a roughness: alpha^2 = 2 / (n + 2) (Walter et al. 2007), and alpha is the roughness squared.
+  // A strength of 0.5 is what programs write for the four percent that most things reflect.
+  static void phong(const aiMaterial& m, std::array<double, 3>& base, const Json& base_texture, double& metalness,
+                    double& roughness, Json& extensions) {
+    const std::array<double, 3> reflected = color(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0});
+    const double exponent = std::max(number(m, AI_MATKEY_SHININESS, 0), 0.0);
+    const double strength = number(m, AI_MATKEY_SHININESS_STRENGTH, 1);
+    const double most = *std::ranges::max_element(reflected) * (strength > 0 ? std::min(strength, 1.0) : 1);
+    metalness = 0;
+    roughness = std::pow(2 / (exponent + 2), 0.25);
+    if (most > 0.3 && base_texture.is_null() && *std::ranges::max_element(base) < 0.05) {
+      metalness = 1;
+      base = reflected;
+      return;
+    }
+    if (exponent <= 0 || most < 0.5)
+      extensions["KHR_materials_specular"] = {{"specularFactor", exponent <= 0 ? 0 : std::min(2 * most, 1.0)}};
+  }
+
+  static double opacity_of(const aiMaterial& m) {
+    const double opacity = clamped(number(m, AI_MATKEY_OPACITY, 1), 1);
+    return opacity;
+  }
+
+  void emission(const aiMaterial& m, Json& material, Json& extensions) {
+    std::array<double, 3> light = color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
+    const Json map = texture(m, {aiTextureType_EMISSION_COLOR, aiTextureType_EMISSIVE});
+    if (!map.is_null()) {
+      material["emissiveTexture"] = map;
+      if (*std::ranges::max_element(light) <= 0) light = {1, 1, 1};
+    }
+    const double most = std::max(*std::ranges::max_element(light), number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1));
+    if (most > 1) {
+      for (double& x : light) x /= most;
+      extensions["KHR_materials_emissive_strength"] = {{"emissiveStrength", most}};
+    }
+    material["emissiveFactor"] = light;
+  }
+
+  void shape(const aiMaterial& m, Json& material) {
+    int sides = 0;
+    if (m.Get(AI_MATKEY_TWOSIDED, sides) == aiReturn_SUCCESS && sides) material["doubleSided"] = true;
+    const Json normals = texture(m, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA});
+    if (!normals.is_null()) material["normalTexture"] = normals;
+    for (const auto& [type, what] : {std::pair{aiTextureType_HEIGHT, "bumps"},
+                                     {aiTextureType_DISPLACEMENT, "displacement"},
+                                     {aiTextureType_REFLECTION, "reflections"},
+                                     {aiTextureType_SPECULAR, "the strength of highlights"}})
+      if (m.GetTextureCount(type) > 0) glb_.note(std::string("textures of ") + what + " are left out");
+  }
+
+  void coat(const aiMaterial& m, Json& extensions) const {
+    const double factor = clamped(number(m, AI_MATKEY_CLEARCOAT_FACTOR, 0));
+    if (factor > 0)
+      extensions["KHR_materials_clearcoat"] = {
+          {"clearcoatFactor", factor},
+          {"clearcoatRoughnessFactor", clamped(number(m, AI_MATKEY_CLEARCOAT_ROUGHNESS_FACTOR, 0))}};
+    const double through = clamped(number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0));
+    if (through > 0) extensions["KHR_materials_transmission"] = {{"transmissionFactor", through}};
+  }
+
+  /// The first texture of the first of these types that the material has; null: none.
+  Json texture(const aiMaterial& m, std::initializer_list<aiTextureType> types) {
+    for (const aiTextureType type : types) {
+      aiString path;
+      aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+      unsigned uv = 0;
+      if (m.GetTexture(type, 0, &path, nullptr, &uv, nullptr, nullptr, modes) != aiReturn_SUCCESS || path.length == 0) continue;
+      m.Get(AI_MATKEY_UVWSRC(type, 0), uv);
+      constexpr int repeat = 10497, clamp = 33071, mirror = 33648;
+      const auto wrap = [&](aiTextureMapMode mode) {
+        return mode == aiTextureMapMode_Mirror ? mirror : (mode == aiTextureMapMode_Wrap ? repeat : clamp);
+      };
+      const Json sampler = {{"wrapS", wrap(modes[0])}, {"wrapT", wrap(modes[1])}};
+      const Json made = {{"source", image(path.C_Str())}, {"sampler", same("samplers", sampler)}};
+      Json info = {{"index", same("textures", made)}};
+      if (uv > 0) info["texCoord"] = uv;
+      return info;
+    }
+    return nullptr;
+  }
+
+  /// The place of an equal element, or of a new one.
+  size_t same(const char* list, const Json& element) {
+    const Json& all = glb_.json[list];
+    for (size_t i = 0; i < all.size(); ++i)
+      if (all[i] == element) return i;
+    return glb_.add(list, element);
+  }
+
+  size_t image(const std::string& path) {
+    if (const auto known = images_.find(path); known != images_.end()) return known->second;
+    const aiTexture* inside = scene_.GetEmbeddedTexture(path.c_str());
+    Json made;
+    if (inside && inside->mHeight == 0)
+      made = {{"bufferView", glb_.add_view(inside->pcData, inside->mWidth)}, {"mimeType", "image/png"}};
+    else if (inside)
+      made = uncompressed(*inside);
+    else
+      made = {{"uri", encoded(path)}};
+    return images_[path] = glb_.add("images", made);
+  }
+
+  /// As a BMP of 32 bits a pixel, whose rows run upwards.
+  Json uncompressed(const aiTexture& t) {
+    const std::uint32_t size = t.mWidth * t.mHeight * 4;
+    std::string file = "BM";
+    const auto word = [&](std::uint32_t x) { file.append(reinterpret_cast<const char*>(&x), 4); };
+    word(54 + size);
+    word(0);
+    word(54);
+    word(40);
+    word(t.mWidth);
+    word(t.mHeight);
+    word(1 | 32 << 16);
+    for (int i = 0; i < 6; ++i) word(i == 1 ? size : 0);
+    for (unsigned y = t.mHeight; y-- > 0;)
+      file.append(reinterpret_cast<const char*>(t.pcData + size_t(y) * t.mWidth), size_t(t.mWidth) * 4);
+    return {{"bufferView", glb_.add_view(file.data(), file.size())}, {"mimeType", "image/bmp"}};
+  }
+
+  const aiScene& scene_;
+  Glb& glb_;
+  std::map<std::string, size_t> images_;
+};
+
+}  // namespace
+
+void convert_materials(const aiScene& scene, Glb& glb) {
+  MaterialWriter writer(scene, glb);
+  for (unsigned i = 0; i < scene.mNumMaterials; ++i) writer.write(*scene.mMaterials[i]);
+}
+
+}  // namespace etendue::assimp_helper

@@ -1,0 +1,55 @@
+// AssimpImporter: the many formats that the library Assimp reads. It does so in a process of its own (src/assimp), which gives
+// a .glb: what is read here is always glTF, and checked as such.
+
+#include "components/importers/gltf/document.h"
+#include "components/importers/gltf/import_document.h"
+#include "components/importers/gltf/primitive.h"
+#include "components/objects/meshes/mesh_data.h"
+#include "files/contained_file.h"
+#include "helper_process.h"
+
+namespace etendue {
+namespace {
+
+const std::vector<std::string>& endings() {
+  static const std::vector<std::string> all{"3ds",  "3mf", "ac",   "ase", "b3d", "blend", "cob", "dae", "dxf",
+                                            "fbx",  "hmp", "irr",  "lwo", "lws", "lxo",   "md2", "md3", "md5mesh",
+                                            "ms3d", "nff", "ogex", "q3o", "smd", "x",     "x3d"};
+  return all;
+}
+
+std::string convert(const std::string& path, const Importing& importing) {
+  std::vector<std::string> arguments{path};
+  for (const std::string& folder : importing.options().allowed_folders) arguments.push_back(folder);
+  return run_helper("etendue_assimp", arguments);
+}
+
+MeshData read_part(const std::string& path, const std::string& part) {
+  return gltf::read_primitive(*gltf::Document::open(path), gltf::PartName::parse(part));
+}
+
+std::string unpack(const std::string& container, const std::string& name) {
+  return gltf::Document::open(container)->image_bytes(name);
+}
+
+const bool known_converter = gltf::register_converter(endings(), convert);
+const bool known_meshes = register_mesh_format(endings(), read_part);
+const bool known_container = register_container(endings(), unpack);
+
+class AssimpImporter final : public Importer {
+ public:
+  static void describe(Description<AssimpImporter>& d) {
+    d.summary(
+        "Files of many other programs, such as FBX, 3DS, Collada, LightWave, ASE, DirectX and Blender, read by the library "
+        "Assimp "
+        "in a process of its own. -D camera= chooses by name or number.",
+        "The Open Asset Import Library, github.com/assimp/assimp");
+  }
+  std::vector<std::string> extensions() const override { return endings(); }
+  Ref<Component> import(Importing& importing) const override { return gltf::import_document(importing); }
+};
+
+const Register<AssimpImporter> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,19 @@
+#pragma once
+// Programs of ours that read files for us, in processes of their own.
+
+#include <string>
+#include <vector>
+
+namespace etendue {
+
+/// What a helper, which lies beside this library or in libexec/etendue, writes to its standard output. Throws Error with the
+/// reason alone when it fails, is ended by a fault, says nothing for too long, or writes more than memory holds.
+std::string run_helper(const std::string& name, const std::vector<std::string>& arguments);
+
+/// The path of a helper; empty: it is not there.
+std::string helper_path(const std::string& name);
+
+/// The same for any program with its arguments.
+std::string run_program(const std::string& path, const std::vector<std::string>& arguments, const std::string& shown_as);
+
+}  // namespace etendue

@@ -1,0 +1,256 @@
+#include "document.h"
+
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <mutex>
+
+#include "data_uri.h"
+#include "files/regular_file.h"
+
+namespace etendue::gltf {
+namespace {
+
+std::string ending_of(const std::string& path) {
+  std::string ending = path.substr(std::min(path.size(), path.find_last_of('.') + 1));
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+std::map<std::string, Converter>& converters() {
+  static auto* all = new std::map<std::string, Converter>;
+  return *all;
+}
+
+struct Opened {
+  std::filesystem::file_time_type written;
+  std::uintmax_t size = 0;
+  std::shared_ptr<const Document> document;
+};
+std::mutex mutex;
+
+/// How an image begins, and the ending of its name.
+std::string image_ending(std::string_view start, const std::string& type) {
+  using namespace std::string_view_literals;
+  if (start.starts_with("\x89PNG")) return "png";
+  if (start.starts_with("\xff\xd8\xff")) return "jpg";
+  if (start.starts_with("RIFF")) return "webp";
+  if (start.starts_with("BM")) return "bmp";
+  if (start.starts_with("\xabKTX 20"sv)) return "ktx2";
+  return type == "image/jpeg" ? "jpg" : (type == "image/x-tga" ? "tga" : "png");
+}
+
+std::uint32_t word(const char* at) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, at, 4);
+  return value;
+}
+
+}  // namespace
+
+bool register_converter(const std::vector<std::string>& endings, Converter convert) {
+  for (const std::string& ending : endings) converters()[ending] = convert;
+  return true;
+}
+
+std::shared_ptr<const Document> Document::open(const std::string& path, const Importing* given) {
+  static auto& known = *new std::map<std::string, Opened>;
+  const std::lock_guard lock(mutex);
+  std::error_code none;
+  const auto written = std::filesystem::last_write_time(path, none);
+  const auto size = std::filesystem::file_size(path, none);
+  if (const auto found = known.find(path);
+      found != known.end() && found->second.written == written && found->second.size == size && size != 0)
+    return found->second.document;
+  const Importing own(path, {});
+  const Importing& importing = given ? *given : own;
+  auto document = std::make_shared<Document>();
+  if (const auto converter = converters().find(ending_of(path)); converter != converters().end()) {
+    require_regular_file(path);
+    document->own_bytes_ = converter->second(path, importing);
+    document->read_container(path, &document->own_bytes_);
+  } else {
+    document->read_container(path, nullptr);
+  }
+  document->find_buffers(importing);
+  constexpr size_t most = 8;
+  if (known.size() >= most) known.clear();
+  known[path] = {written, size, document};
+  return document;
+}
+
+void Document::parse(std::string_view text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  try {
+    json_ = Json::parse(text);
+  } catch (const nlohmann::json::exception& error) {
+    std::string reason = error.what();
+    if (const size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
+    for (char& c : reason)
+      if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
+    throw Error("it is no right JSON: " + reason);
+  }
+  if (!json_.is_object()) throw Error("it is no glTF: its JSON is not an object");
+  const std::string version = within("asset", [&] { return etendue::gltf::text(object_in(json_, "asset"), "version"); });
+  if (!find(json_, "asset")) throw Error("it is no glTF: there is no 'asset'");
+  if (!version.starts_with("2.")) throw Error("it is of glTF version '" + version + "'; 2.0 is read");
+}
+
+// A .glb is a head of 12 bytes ("glTF", version, length), then chunks of a length, a type and bytes: JSON, then BIN.
+void Document::read_container(const std::string& path, const std::string* bytes) {
+  std::unique_ptr<RegularFile> file;
+  if (!bytes) file = std::make_unique<RegularFile>(path);
+  const std::uint64_t size = bytes ? bytes->size() : file->size();
+  const auto read = [&](std::uint64_t offset, std::uint64_t count, void* to) {
+    if (offset > size || count > size - offset) throw Error("it ends too early");
+    if (bytes) {
+      std::memcpy(to, bytes->data() + offset, count);
+    } else {
+      file->seek(offset);
+      file->read(to, count);
+    }
+  };
+  const auto text_at = [&](std::uint64_t offset, std::uint64_t count) {
+    if (offset > size || count > size - offset) throw Error("it ends too early");
+    std::string text(count, ' ');
+    read(offset, count, text.data());
+    return text;
+  };
+  char head[12] = {};
+  read(0, std::min<std::uint64_t>(size, 12), head);
+  if (std::memcmp(head, "glTF", 4) != 0) {
+    if (size == 0) throw Error("the file is empty");
+    return parse(text_at(0, size));
+  }
+  if (size < 12) throw Error("it ends within its head");
+  if (word(head + 4) != 2) throw Error("it is a .glb of version " + std::to_string(word(head + 4)) + "; 2 is read");
+  bool has_json = false;
+  for (std::uint64_t at = 12; at + 8 <= size;) {
+    char chunk[8];
+    read(at, 8, chunk);
+    const std::uint64_t length = word(chunk);
+    if (length > size - at - 8) throw Error("a chunk of it is longer than the file");
+    constexpr std::uint32_t json = 0x4E4F534A, binary = 0x004E4942;
+    if (word(chunk + 4) == json && !has_json) {
+      parse(text_at(at + 8, length));
+      has_json = true;
+    } else if (word(chunk + 4) == binary && !chunk_) {
+      chunk_ = Buffer{bytes ? std::variant<Slice, std::string>(Slice{"", at + 8}) : Slice{path, at + 8}, length};
+    }
+    at += 8 + length;
+  }
+  if (!has_json) throw Error("it has no JSON");
+}
+
+void Document::find_buffers(const Importing& importing) {
+  const Json& list = list_in(json_, "buffers");
+  for (size_t i = 0; i < list.size(); ++i)
+    within(fmt::format("buffers[{}]", i), [&] {
+      const std::uint64_t length = needed_whole(list[i], "byteLength");
+      Buffer buffer;
+      const std::string uri = text(list[i], "uri");
+      if (uri.empty()) {
+        if (i > 0 || !chunk_) throw Error("it has no 'uri', and there is no binary part for it");
+        buffer = *chunk_;
+      } else if (is_data_uri(uri)) {
+        buffer.bytes = decode_data_uri(uri).bytes;
+        buffer.size = std::get<std::string>(buffer.bytes).size();
+      } else {
+        const std::string path = importing.file(decode_percents(uri), importing.at());
+        buffer = {Slice{path, 0}, RegularFile(path).size()};
+      }
+      if (length > buffer.size) throw Error(fmt::format("it should have {} bytes, but there are {}", length, buffer.size));
+      buffers_.push_back(std::move(buffer));
+    });
+}
+
+const Json& Document::element(const char* list, size_t i) const {
+  const Json& all = list_in(json_, list);
+  if (i >= all.size()) throw Error(fmt::format("there is no {}[{}], there are {}", list, i, all.size()));
+  if (!all[i].is_object()) throw Error(fmt::format("{}[{}] is not an object", list, i));
+  return all[i];
+}
+
+std::uint64_t Document::buffer_bytes() const {
+  std::uint64_t sum = 0;
+  for (const Buffer& buffer : buffers_) sum += buffer.size;
+  return sum;
+}
+
+std::uint64_t Document::view_size(size_t view) const {
+  const Json& v = element("bufferViews", view);
+  return within(fmt::format("bufferViews[{}]", view), [&] {
+    if (has_extension(v, "EXT_meshopt_compression"))
+      throw Error("it is compressed by EXT_meshopt_compression, which is not read; programs such as gltfpack undo it");
+    const size_t buffer = needed_whole(v, "buffer"), length = needed_whole(v, "byteLength");
+    const size_t offset = whole(v, "byteOffset").value_or(0);
+    if (buffer >= buffers_.size()) throw Error(fmt::format("there is no buffers[{}]", buffer));
+    if (offset > buffers_[buffer].size || length > buffers_[buffer].size - offset)
+      throw Error(
+          fmt::format("it reaches to byte {} of buffers[{}], which has {}", offset + length, buffer, buffers_[buffer].size));
+    return std::uint64_t(length);
+  });
+}
+
+size_t Document::view_stride(size_t view) const {
+  const size_t stride = whole(element("bufferViews", view), "byteStride").value_or(0);
+  if (stride > 252) throw Error(fmt::format("bufferViews[{}]: a 'byteStride' of {}, at most 252 is allowed", view, stride));
+  return stride;
+}
+
+void Document::read_view(size_t view, std::uint64_t offset, std::uint64_t bytes, void* to) const {
+  const std::uint64_t size = view_size(view);
+  if (offset > size || bytes > size - offset)
+    throw Error(fmt::format("bufferViews[{}] has {} bytes, and {} are needed", view, size, offset + bytes));
+  const Json& v = element("bufferViews", view);
+  const Buffer& buffer = buffers_[needed_whole(v, "buffer")];
+  const std::uint64_t begin = whole(v, "byteOffset").value_or(0) + offset;
+  if (const auto* text = std::get_if<std::string>(&buffer.bytes)) {
+    std::memcpy(to, text->data() + begin, bytes);
+    return;
+  }
+  const Slice& slice = std::get<Slice>(buffer.bytes);
+  if (slice.path.empty()) {
+    std::memcpy(to, own_bytes_.data() + slice.offset + begin, bytes);
+    return;
+  }
+  RegularFile file(slice.path);
+  file.seek(slice.offset + begin);
+  file.read(to, bytes);
+}
+
+std::string Document::view_bytes(size_t view) const {
+  std::string bytes(view_size(view), '\0');
+  read_view(view, 0, bytes.size(), bytes.data());
+  return bytes;
+}
+
+std::string Document::inner_image(size_t image) const {
+  const Json& i = element("images", image);
+  return within(fmt::format("images[{}]", image), [&]() -> std::string {
+    const std::string uri = text(i, "uri"), type = text(i, "mimeType");
+    if (const auto view = whole(i, "bufferView")) {
+      char start[16] = {};
+      read_view(*view, 0, std::min<std::uint64_t>(view_size(*view), sizeof start), start);
+      return fmt::format("images[{}].{}", image, image_ending({start, sizeof start}, type));
+    }
+    if (uri.empty()) throw Error("it has neither a 'uri' nor a 'bufferView'");
+    if (!is_data_uri(uri)) return {};
+    const UriData data = decode_data_uri(std::string_view(uri).substr(0, uri.find(',') + 25));
+    return fmt::format("images[{}].{}", image, image_ending(data.bytes, data.type));
+  });
+}
+
+std::string Document::image_bytes(const std::string& inner) const {
+  size_t image = 0;
+  int read = 0;
+  if (std::sscanf(inner.c_str(), "images[%zu]%n", &image, &read) != 1 || read == 0 || inner[size_t(read) - 1] != ']')
+    throw Error("there is nothing of the name '" + inner + "' in it");
+  const Json& i = element("images", image);
+  if (const auto view = whole(i, "bufferView")) return view_bytes(*view);
+  const std::string uri = text(i, "uri");
+  if (!is_data_uri(uri)) throw Error("its images[" + std::to_string(image) + "] is a file of its own");
+  return decode_data_uri(uri).bytes;
+}
+
+}  // namespace etendue::gltf

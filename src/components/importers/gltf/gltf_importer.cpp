@@ -1,0 +1,114 @@
+// GltfImporter: glTF 2.0.
+
+#include <algorithm>
+
+#include "files/contained_file.h"
+#include "import_document.h"
+#include "scene_builder.h"
+
+namespace etendue {
+namespace gltf {
+namespace {
+
+/// Extensions that are read, or whose absence changes nothing that is shown.
+constexpr const char* known_extensions[] = {"KHR_texture_transform",
+                                            "KHR_lights_punctual",
+                                            "KHR_mesh_quantization",
+                                            "EXT_mesh_gpu_instancing",
+                                            "EXT_texture_webp",
+                                            "KHR_materials_transmission",
+                                            "KHR_materials_volume",
+                                            "KHR_materials_ior",
+                                            "KHR_materials_specular",
+                                            "KHR_materials_clearcoat",
+                                            "KHR_materials_sheen",
+                                            "KHR_materials_iridescence",
+                                            "KHR_materials_dispersion",
+                                            "KHR_materials_anisotropy",
+                                            "KHR_materials_unlit",
+                                            "KHR_materials_emissive_strength",
+                                            "KHR_materials_pbrSpecularGlossiness"};
+
+void check_extensions(Importing& importing, const Document& document) {
+  const auto known = [](const std::string& name) {
+    return std::ranges::find(known_extensions, name) != std::end(known_extensions);
+  };
+  std::vector<std::string> required;
+  for (const Json& name : list_in(document.json(), "extensionsRequired")) {
+    if (!name.is_string()) throw Error("'extensionsRequired' is not a list of names");
+    required.push_back(name.get<std::string>());
+    if (!known(required.back())) throw Error(fmt::format("it requires the extension {}, which is not read", required.back()));
+  }
+  for (const Json& name : list_in(document.json(), "extensionsUsed"))
+    if (name.is_string() && !known(name.get<std::string>()))
+      importing.inexact(fmt::format("it uses the extension {}, which is not read", name.get<std::string>()), importing.at());
+}
+
+/// What a converter from another format could not express (see src/assimp).
+void tell_notes(Importing& importing, const Document& document) {
+  const Json& extras = object_in(document.json(), "asset");
+  if (!find(extras, "extras") || !extras["extras"].is_object()) return;
+  for (const Json& note : list_in(extras["extras"], "notes"))
+    if (note.is_string()) importing.inexact(note.get<std::string>(), importing.at());
+}
+
+Ref<Component> job_of(Importing& importing, const Ref<Scene>& scene, const MadeCamera& camera) {
+  const Location at = importing.at();
+  Ref<Component> job = importing.make("Job", at);
+  set(*job, "camera", Value(camera.camera, at));
+  set(*job, "scene", Value(Ref<Component>(scene), at));
+  if (camera.aspect > 0.01 && camera.aspect < 100) {
+    constexpr double area = 600 * 600;
+    Ref<Component> image = importing.make("ImageBuffer", at);
+    set_member(*image, "width", std::round(std::sqrt(area * camera.aspect)), at);
+    set_member(*image, "height", std::round(std::sqrt(area / camera.aspect)), at);
+    set(*job, "image", Value(image, at));
+  }
+  return job;
+}
+
+std::string unpack(const std::string& container, const std::string& name) {
+  return Document::open(container)->image_bytes(name);
+}
+
+const bool registered_container = register_container({"gltf", "glb"}, unpack);
+
+}  // namespace
+
+Ref<Component> import_document(Importing& importing) {
+  try {
+    const std::shared_ptr<const Document> document = Document::open(importing.path(), &importing);
+    check_extensions(importing, *document);
+    tell_notes(importing, *document);
+    SceneBuilder builder(importing, *document);
+    const Ref<Scene> scene = builder.build();
+    importing.is_lit = builder.has_lights();
+    if (const auto camera = builder.camera()) return job_of(importing, scene, *camera);
+    return scene;
+  } catch (const Error& error) {
+    throw Error(error.what(), error.location.known() ? error.location : importing.at());
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(std::string("it is no right glTF: ") + error.what(), importing.at());
+  }
+}
+
+}  // namespace gltf
+
+namespace {
+
+class GltfImporter final : public Importer {
+ public:
+  static void describe(Description<GltfImporter>& d) {
+    d.summary(
+        "glTF 2.0 files (.gltf, .glb) with their materials, lights, cameras, skins, morph targets and animations. "
+        "-D camera=, scene= and animation= choose by name or number, -D time= the second of the animation.",
+        "The Khronos Group 2021, glTF 2.0 Specification");
+  }
+  std::vector<std::string> extensions() const override { return {"glb", "gltf"}; }
+  Ref<Component> import(Importing& importing) const override { return gltf::import_document(importing); }
+};
+
+const Register<GltfImporter> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,255 @@
+#include "materials.h"
+
+#include <algorithm>
+
+#include "data_uri.h"
+
+namespace etendue::gltf {
+namespace {
+
+std::array<double, 3> rgb(const Json& object, const char* key, double otherwise) {
+  return numbers<3>(object, key).value_or(std::array<double, 3>{otherwise, otherwise, otherwise});
+}
+
+/// The extensions of materials that are read, or change nothing that a path tracer shows.
+constexpr const char* known_extensions[] = {"KHR_materials_transmission",
+                                            "KHR_materials_volume",
+                                            "KHR_materials_ior",
+                                            "KHR_materials_specular",
+                                            "KHR_materials_clearcoat",
+                                            "KHR_materials_sheen",
+                                            "KHR_materials_iridescence",
+                                            "KHR_materials_dispersion",
+                                            "KHR_materials_anisotropy",
+                                            "KHR_materials_unlit",
+                                            "KHR_materials_emissive_strength",
+                                            "KHR_materials_pbrSpecularGlossiness"};
+
+/// sin^2 of a half-vector makes F0 of dielectrics: ((n - 1) / (n + 1))^2.
+double reflectance_of(double ior) { return std::pow((ior - 1) / (ior + 1), 2); }
+
+}  // namespace
+
+const Material& Materials::get(std::optional<size_t> material, bool colored, bool faded) {
+  const Key key{material, colored, faded};
+  if (const auto known = made_.find(key); known != made_.end()) return known->second;
+  uv_set_.reset();
+  Surface surface;
+  if (material)
+    surface = within(fmt::format("materials[{}]", *material), [&] { return read(document_.element("materials", *material)); });
+  surface.base_color.by_vertex = colored;
+  if (faded && material && text(document_.element("materials", *material), "alphaMode", "OPAQUE") != "OPAQUE")
+    surface.opacity.attribute = "alpha";
+  Material made;
+  made.made = make_surface(importing_, surface, at());
+  made.uv_set = uv_set_.value_or(0);
+  made.lamp = !surface.unlit && std::ranges::any_of(surface.emission.value, [](double x) { return x > 1; });
+  return made_[key] = std::move(made);
+}
+
+Surface Materials::read(const Json& m) {
+  Surface s;
+  s.name = text(m, "name");
+  const Json& extensions = object_in(m, "extensions");
+  note_unknown(extensions);
+  if (has_extension(m, "KHR_materials_pbrSpecularGlossiness"))
+    read_specular_glossiness(object_in(extensions, "KHR_materials_pbrSpecularGlossiness"), s);
+  else
+    read_metal(object_in(m, "pbrMetallicRoughness"), s);
+  read_extensions(extensions, s);
+  s.emission = color(m, "emissiveFactor", "emissiveTexture", 0);
+  const double strength = gltf::number(extension(m, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
+  for (double& x : s.emission.value) x *= strength;
+  s.emits_backwards = truth(m, "doubleSided", false);
+  s.unlit = has_extension(m, "KHR_materials_unlit");
+  if (auto normals = texture(m, "normalTexture")) {
+    const double scale = gltf::number(object_in(m, "normalTexture"), "scale", 1);
+    s.normals = SurfaceNormals{*normals, scale, false};
+  }
+  const std::string mode = text(m, "alphaMode", "OPAQUE");
+  if (mode == "OPAQUE") s.opacity = 1.0;
+  if (mode == "MASK") s.opacity_cutoff = gltf::number(m, "alphaCutoff", 0.5);
+  if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND") throw Error("'alphaMode' '" + mode.substr(0, 20) + "' is unknown");
+  return s;
+}
+
+void Materials::read_metal(const Json& pbr, Surface& s) {
+  const auto factor = numbers<4>(pbr, "baseColorFactor").value_or(std::array<double, 4>{1, 1, 1, 1});
+  s.base_color.value = {factor[0], factor[1], factor[2]};
+  bool has_alpha = false;
+  s.base_color.texture = texture(pbr, "baseColorTexture", &has_alpha);
+  s.opacity = factor[3];
+  if (has_alpha) {
+    s.opacity.texture = s.base_color.texture;
+    s.opacity.channel = "A";
+  }
+  s.metalness = number(pbr, "metallicFactor", 1, "metallicRoughnessTexture", "B");
+  s.roughness = number(pbr, "roughnessFactor", 1, "metallicRoughnessTexture", "G");
+}
+
+// The old way to say metals: by the colour of their reflections. A reflectance above what insulators have makes it metal
+// (as in Khronos' own conversion, without its blend between the two).
+void Materials::read_specular_glossiness(const Json& old, Surface& s) {
+  const auto factor = numbers<4>(old, "diffuseFactor").value_or(std::array<double, 4>{1, 1, 1, 1});
+  bool has_alpha = false;
+  s.base_color.value = {factor[0], factor[1], factor[2]};
+  s.base_color.texture = texture(old, "diffuseTexture", &has_alpha);
+  s.opacity = factor[3];
+  if (has_alpha) {
+    s.opacity.texture = s.base_color.texture;
+    s.opacity.channel = "A";
+  }
+  const double glossiness = gltf::number(old, "glossinessFactor", 1);
+  const auto specular = rgb(old, "specularFactor", 1);
+  const auto map = texture(old, "specularGlossinessTexture");
+  const double strongest = std::ranges::max(specular), diffuse = std::max({factor[0], factor[1], factor[2]});
+  s.roughness = 1 - glossiness;
+  if (map) {
+    s.roughness = 1;
+    s.roughness.texture = map;
+    s.roughness.channel = "A";
+    s.roughness.inverted = true;
+    importing_.inexact("KHR_materials_pbrSpecularGlossiness with a texture: its colours of reflections are left out", at());
+  } else if (strongest > 0.25 && diffuse < 0.1) {
+    s.metalness = 1;
+    s.base_color.value = specular;
+  } else {
+    const double f0 = std::clamp(strongest, 0.0, 0.9);
+    s.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
+    if (strongest > 0)
+      for (size_t i = 0; i < 3; ++i) s.specular_color.value[i] = specular[i] / strongest;
+  }
+}
+
+void Materials::read_extensions(const Json& extensions, Surface& s) {
+  const auto named = [&](const char* name) -> const Json& { return object_in(extensions, name); };
+  s.ior = gltf::number(named("KHR_materials_ior"), "ior", s.ior);
+  if (const Json& e = named("KHR_materials_specular"); !e.empty()) {
+    s.specular = number(e, "specularFactor", 1, "specularTexture", "A");
+    s.specular_color = color(e, "specularColorFactor", "specularColorTexture", 1);
+    // Factors above 1 raise the reflectance, which only an index can here.
+    if (const double most = std::ranges::max(s.specular_color.value); most > 1) {
+      const double f0 = std::min(reflectance_of(s.ior) * most, 0.9);
+      s.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
+      for (double& x : s.specular_color.value) x /= most;
+    }
+  }
+  if (const Json& e = named("KHR_materials_clearcoat"); !e.empty()) {
+    s.coat = number(e, "clearcoatFactor", 0, "clearcoatTexture", "R");
+    s.coat_roughness = number(e, "clearcoatRoughnessFactor", 0, "clearcoatRoughnessTexture", "G");
+    if (find(e, "clearcoatNormalTexture") && s.coat.value > 0)
+      importing_.inexact("a clear coat has the normals of what it covers", at());
+  }
+  if (const Json& e = named("KHR_materials_sheen"); !e.empty()) {
+    s.sheen_color = color(e, "sheenColorFactor", "sheenColorTexture", 0);
+    s.sheen_roughness = number(e, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", "A");
+  }
+  if (const Json& e = named("KHR_materials_iridescence"); !e.empty()) {
+    s.film = number(e, "iridescenceFactor", 0, "iridescenceTexture", "R");
+    s.film_ior = gltf::number(e, "iridescenceIor", 1.3);
+    s.film_thickness = number(e, "iridescenceThicknessMaximum", 400, "iridescenceThicknessTexture", "G");
+    if (s.film_thickness.texture && gltf::number(e, "iridescenceThicknessMinimum", 100) != 0)
+      importing_.inexact("the thickness of a film begins at 0 where its texture is black", at());
+  }
+  if (const Json& e = named("KHR_materials_anisotropy"); !e.empty()) {
+    // The ratio of roughnesses alpha is 1 / (1 - a) in Principled and in glTF (alpha + (1 - alpha) s^2) / alpha.
+    const double strength = gltf::number(e, "anisotropyStrength", 0);
+    const double alpha = std::max(s.roughness.value * s.roughness.value, 1e-3);
+    s.anisotropy = 1 - alpha / (alpha + (1 - alpha) * strength * strength);
+    if (find(e, "anisotropyTexture") || gltf::number(e, "anisotropyRotation", 0) != 0)
+      importing_.inexact("stretched highlights lie along u, whatever their texture or rotation", at());
+  }
+  read_volume(extensions, s);
+}
+
+void Materials::read_volume(const Json& extensions, Surface& s) {
+  const Json& e = object_in(extensions, "KHR_materials_transmission");
+  s.transmission = number(e, "transmissionFactor", 0, "transmissionTexture", "R");
+  s.transmission_color = s.base_color;
+  const Json& volume = object_in(extensions, "KHR_materials_volume");
+  s.thin = !(gltf::number(volume, "thicknessFactor", 0) > 0);
+  s.attenuation_color = rgb(volume, "attenuationColor", 1);
+  s.attenuation_distance = gltf::number(volume, "attenuationDistance", s.attenuation_distance);
+  // KHR_materials_dispersion: 20 over the Abbe number.
+  const double dispersion = gltf::number(object_in(extensions, "KHR_materials_dispersion"), "dispersion", 0);
+  if (dispersion > 0) s.abbe_number = 20 / dispersion;
+}
+
+void Materials::note_unknown(const Json& extensions) {
+  for (const auto& [name, value] : extensions.items())
+    if (std::ranges::find(known_extensions, name) == std::end(known_extensions))
+      importing_.inexact(fmt::format("the extension {} of materials is not known", name), at());
+}
+
+SurfaceColor Materials::color(const Json& object, const char* factor, const char* texture_key, double otherwise) {
+  SurfaceColor c = rgb(object, factor, otherwise);
+  c.texture = texture(object, texture_key);
+  return c;
+}
+
+SurfaceNumber Materials::number(const Json& object, const char* factor, double otherwise, const char* texture_key,
+                                const char* channel) {
+  SurfaceNumber n = gltf::number(object, factor, otherwise);
+  if (n.value == 0) return n;
+  bool has_alpha = false;
+  n.texture = texture(object, texture_key, &has_alpha);
+  n.channel = channel;
+  if (n.channel == "A" && !has_alpha) n.texture.reset();
+  return n;
+}
+
+std::optional<SurfaceTexture> Materials::texture(const Json& object, const char* key, bool* has_alpha) {
+  const Json& info = object_in(object, key);
+  if (info.empty()) return std::nullopt;
+  return within(key, [&]() -> std::optional<SurfaceTexture> {
+    const Json& t = document_.element("textures", needed_whole(info, "index"));
+    const Json& transform = extension(info, "KHR_texture_transform");
+    const size_t uv = whole(transform, "texCoord").value_or(whole(info, "texCoord").value_or(0));
+    if (uv_set_ && *uv_set_ != uv)
+      importing_.inexact("all textures of a material use the surface coordinates of its first", at());
+    if (!uv_set_) uv_set_ = uv;
+    auto source = whole(extension(t, "EXT_texture_webp"), "source");
+    if (!source) source = whole(t, "source");
+    if (!source) {
+      importing_.inexact(
+          has_extension(t, "KHR_texture_basisu") ? "images of Basis Universal (KTX2) are not read" : "a texture has no image",
+          at());
+      return std::nullopt;
+    }
+    const Image& found = image(*source);
+    if (has_alpha) *has_alpha = found.has_alpha;
+    if (!found.texture) return std::nullopt;
+    SurfaceTexture made = *found.texture;
+    if (const auto sampler = whole(t, "sampler")) {
+      const Json& s = document_.element("samplers", *sampler);
+      constexpr size_t clamped = 33071, mirrored = 33648, repeated = 10497, nearest = 9728;
+      const size_t u = whole(s, "wrapS").value_or(repeated), v = whole(s, "wrapT").value_or(repeated);
+      made.wrap = u == clamped ? "clamp" : (u == mirrored ? "mirror" : "repeat");
+      if (u != v) importing_.inexact("a texture is continued along v as it is along u", at());
+      made.nearest = whole(s, "magFilter") == nearest;
+    }
+    // Of the file's coordinates: T R S with v downwards. Turned over, the turn keeps its sense and the rest follows.
+    const auto scale = numbers<2>(transform, "scale").value_or(std::array<double, 2>{1, 1});
+    const auto offset = numbers<2>(transform, "offset").value_or(std::array<double, 2>{0, 0});
+    const double angle = gltf::number(transform, "rotation", 0), c = std::cos(angle), sine = std::sin(angle);
+    made.scale = scale;
+    made.angle = angle;
+    made.shift = {offset[0] + sine * scale[1], 1 - c * scale[1] - offset[1]};
+    return made;
+  });
+}
+
+const Materials::Image& Materials::image(size_t index) {
+  if (const auto known = images_.find(index); known != images_.end()) return known->second;
+  Image& made = images_[index];
+  const std::string inner = document_.inner_image(index);
+  std::optional<std::string> file;
+  if (inner.empty())
+    file = importing_.optional_file(decode_percents(text(document_.element("images", index), "uri")), at());
+  else
+    file = importing_.path() + "#" + inner;
+  if (file) made.texture = readable_texture(importing_, *file, at(), &made.has_alpha);
+  return made;
+}
+
+}  // namespace etendue::gltf

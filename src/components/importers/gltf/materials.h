@@ -1,0 +1,51 @@
+#pragma once
+// Materials of glTF files, and the textures they name.
+
+#include <map>
+
+#include "components/importers/models/surface.h"
+#include "document.h"
+
+namespace etendue::gltf {
+
+/// What a material is of, and which set of surface coordinates its textures use.
+struct Material {
+  MadeSurface made;
+  size_t uv_set = 0;
+  bool lamp = false;  ///< it shines more than a display's white
+};
+
+class Materials {
+ public:
+  Materials(Importing& importing, const Document& document) : importing_(importing), document_(document) {}
+
+  /// The same each time for the same; `colored`: vertices have colours, `faded`: and alpha. None: the default material.
+  const Material& get(std::optional<size_t> material, bool colored, bool faded);
+
+ private:
+  struct Image {
+    std::optional<SurfaceTexture> texture;
+    bool has_alpha = false;
+  };
+  using Key = std::tuple<std::optional<size_t>, bool, bool>;
+
+  Surface read(const Json& material);
+  void read_metal(const Json& pbr, Surface&);
+  void read_specular_glossiness(const Json& old, Surface&);
+  void read_extensions(const Json& extensions, Surface&);
+  void read_volume(const Json& extensions, Surface&);
+  std::optional<SurfaceTexture> texture(const Json& object, const char* key, bool* has_alpha = nullptr);
+  SurfaceColor color(const Json& object, const char* factor, const char* texture_key, double otherwise);
+  SurfaceNumber number(const Json& object, const char* factor, double otherwise, const char* texture_key, const char* channel);
+  const Image& image(size_t index);
+  void note_unknown(const Json& extensions);
+  Location at() const { return importing_.at(); }
+
+  Importing& importing_;
+  const Document& document_;
+  std::map<Key, Material> made_;
+  std::map<size_t, Image> images_;
+  std::optional<size_t> uv_set_;  // of the material that is read
+};
+
+}  // namespace etendue::gltf

@@ -1,0 +1,237 @@
+#include "scene_builder.h"
+
+#include <algorithm>
+
+#include "accessor.h"
+
+namespace etendue::gltf {
+
+SceneBuilder::SceneBuilder(Importing& importing, const Document& document)
+    : importing_(importing),
+      document_(document),
+      moment_(moment()),
+      pose_(document, moment_),
+      materials_(importing, document),
+      scene_(ref_cast<Scene>(importing.make("EmbreeScene", importing.at()))) {}
+
+/// What `-D camera=name` chooses from a list, by name or number.
+size_t SceneBuilder::chosen(const char* parameter, const char* list, size_t otherwise) {
+  const auto said = importing_.parameter(parameter);
+  if (!said) return otherwise;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < document_.count(list); ++i) {
+    names.push_back(text(document_.element(list, i), "name"));
+    if (names.back() == *said || std::to_string(i) == *said) return i;
+  }
+  throw Error(fmt::format("there is no {} '{}'{}", parameter, *said, suggestion(*said, names)), at());
+}
+
+Moment SceneBuilder::moment() {
+  Moment moment{importing_.options().time, std::nullopt};
+  if (!has_animation(document_)) return moment;
+  moment.animation = chosen("animation", "animations", 0);
+  if (const auto time = importing_.parameter("time")) {
+    char* end = nullptr;
+    moment.time = std::strtod(time->c_str(), &end);
+    if (end == time->c_str() || *end != 0 || !std::isfinite(moment.time))
+      throw Error("'" + *time + "' is no time in seconds", at());
+  }
+  if (document_.count("animations") > 1)
+    importing_.inexact(
+        fmt::format("of its {} animations one is shown; -D animation=NAME chooses another", document_.count("animations")),
+        at());
+  return moment;
+}
+
+std::vector<size_t> SceneBuilder::roots() {
+  const size_t scenes = document_.count("scenes"), nodes = document_.count("nodes");
+  if (scenes == 0) {
+    // A file of parts: all nodes that are nobody's children.
+    std::vector<bool> child(nodes);
+    for (size_t i = 0; i < nodes; ++i)
+      for (const size_t c : places(document_.element("nodes", i), "children", nodes)) child[c] = true;
+    std::vector<size_t> all;
+    for (size_t i = 0; i < nodes; ++i)
+      if (!child[i]) all.push_back(i);
+    return all;
+  }
+  const size_t scene = chosen("scene", "scenes", whole(document_.json(), "scene").value_or(0));
+  if (scenes > 1) importing_.inexact(fmt::format("of its {} scenes one is shown; -D scene=NAME chooses another", scenes), at());
+  return within(fmt::format("scenes[{}]", scene), [&] { return places(document_.element("scenes", scene), "nodes", nodes); });
+}
+
+Ref<Scene> SceneBuilder::build() {
+  std::vector<size_t> order = roots();
+  std::set<size_t> seen(order.begin(), order.end());
+  if (seen.size() != order.size()) throw Error("a node is twice a root of the scene");
+  for (size_t k = 0; k < order.size(); ++k)
+    for (const size_t child : places(document_.element("nodes", order[k]), "children", document_.count("nodes"))) {
+      if (!seen.insert(child).second) throw Error(fmt::format("nodes[{}] is a root of the scene and a child", child));
+      order.push_back(child);
+    }
+  count_uses(order);
+  std::ranges::sort(order);
+  for (const size_t node : order) within(fmt::format("nodes[{}]", node), [&] { add_node(node); });
+  return scene_;
+}
+
+void SceneBuilder::count_uses(const std::vector<size_t>& order) {
+  for (const size_t node : order)
+    if (const auto mesh = whole(document_.element("nodes", node), "mesh")) ++uses_[*mesh];
+}
+
+void SceneBuilder::add(const Ref<SceneObject>& object) {
+  if (object) scene_->objects.push_back(object);
+}
+
+void SceneBuilder::add_node(size_t node) {
+  const Json& n = document_.element("nodes", node);
+  const Transform& place = pose_.global(node);
+  if (const auto camera = whole(n, "camera")) cameras_.emplace_back(*camera, place);
+  const Json& light = extension(n, "KHR_lights_punctual");
+  if (!light.empty()) {
+    add(ref_cast<SceneObject>(make_light(importing_, document_, needed_whole(light, "light"), place)));
+    has_lights_ = true;
+  }
+  if (const auto mesh = whole(n, "mesh")) add_mesh(node, *mesh);
+}
+
+// A mesh that stands in one place is an object with a transform; one in several is stored once, as a scene.
+void SceneBuilder::add_mesh(size_t node, size_t mesh) {
+  const Json& n = document_.element("nodes", node);
+  const bool skinned = find(n, "skin") != nullptr, bent = skinned || !pose_.weights(node).empty();
+  const std::string name = plain_name(text(n, "name"));
+  std::vector<Transform> placed = places_of(node);
+  std::erase_if(placed, [&](const Transform& t) {
+    if (!t.valid()) importing_.inexact("what is scaled to nothing is left out", at());
+    return !t.valid();
+  });
+  if (skinned) placed = {Transform()};
+  if (placed.empty()) return;
+  if (placed.size() == 1 && (bent || uses_[mesh] == 1)) {
+    PartName whose{bent, bent ? node : mesh, 0, bent ? moment_ : Moment{}, 0};
+    for (const Ref<SceneObject>& object : primitives(mesh, whose)) {
+      if (!placed[0].identity()) set(*object, "transform", Value(placed[0], at()));
+      if (!name.empty()) object->origin->name = name;
+      add(object);
+    }
+    return;
+  }
+  const Ref<Scene> scene = shared(mesh);
+  if (!scene) return;
+  for (const Transform& t : placed) {
+    Ref<Component> instance = importing_.make("Instance", at(), name);
+    set(*instance, "scene", Value(Ref<Component>(scene), at()));
+    set(*instance, "transform", Value(t, at()));
+    add(ref_cast<SceneObject>(instance));
+  }
+}
+
+/// Where the mesh of a node stands: in one place, or in those of EXT_mesh_gpu_instancing.
+std::vector<Transform> SceneBuilder::places_of(size_t node) {
+  const Json& instancing = extension(document_.element("nodes", node), "EXT_mesh_gpu_instancing");
+  const Transform& place = pose_.global(node);
+  if (instancing.empty()) return {place};
+  return within("EXT_mesh_gpu_instancing", [&] {
+    const Json& attributes = object_in(instancing, "attributes");
+    size_t count = 0;
+    const auto read = [&](const char* name, size_t width, std::vector<double> otherwise) {
+      std::vector<float> values;
+      if (find(attributes, name)) {
+        const Accessor accessor(document_, needed_whole(attributes, name));
+        if (accessor.width != width || (count != 0 && accessor.count != count))
+          throw Error(fmt::format("its {} does not fit the others", name));
+        count = accessor.count;
+        values = accessor.floats();
+      }
+      return [values, width, otherwise](size_t i, size_t k) {
+        return values.empty() ? otherwise[k] : double(values[i * width + k]);
+      };
+    };
+    const auto t = read("TRANSLATION", 3, {0, 0, 0});
+    const auto r = read("ROTATION", 4, {0, 0, 0, 1});
+    const auto s = read("SCALE", 3, {1, 1, 1});
+    std::vector<Transform> all;
+    for (size_t i = 0; i < count; ++i)
+      all.push_back(place *
+                    composed({t(i, 0), t(i, 1), t(i, 2)}, {r(i, 0), r(i, 1), r(i, 2), r(i, 3)}, {s(i, 0), s(i, 1), s(i, 2)}));
+    return all;
+  });
+}
+
+Ref<Scene> SceneBuilder::shared(size_t mesh) {
+  if (const auto known = shared_.find(mesh); known != shared_.end()) return known->second;
+  Ref<Scene>& scene = shared_[mesh];
+  const std::vector<Ref<SceneObject>> objects = primitives(mesh, PartName{false, mesh, 0, {}, 0});
+  if (objects.empty()) return scene;
+  scene = ref_cast<Scene>(importing_.make("EmbreeScene", at(), plain_name(text(document_.element("meshes", mesh), "name"))));
+  scene->objects = objects;
+  return scene;
+}
+
+std::vector<Ref<SceneObject>> SceneBuilder::primitives(size_t mesh, const PartName& whose) {
+  std::vector<Ref<SceneObject>> all;
+  const Json& m = document_.element("meshes", mesh);
+  const Json& list = list_in(m, "primitives");
+  const std::string name = plain_name(text(m, "name"));
+  for (size_t i = 0; i < list.size(); ++i) {
+    PartName part = whose;
+    part.primitive = i;
+    within(fmt::format("meshes[{}].primitives[{}]", mesh, i), [&] {
+      if (Ref<SceneObject> object = primitive(list[i], part, name)) all.push_back(object);
+    });
+  }
+  return all;
+}
+
+Ref<SceneObject> SceneBuilder::primitive(const Json& p, PartName part, const std::string& name) {
+  if (has_extension(p, "KHR_draco_mesh_compression"))
+    throw Error("it is compressed by KHR_draco_mesh_compression, which is not read; programs such as gltf-transform undo it");
+  if (!is_triangles(p)) {
+    importing_.inexact("points and lines are not shown", at());
+    return nullptr;
+  }
+  const size_t triangles = triangle_count(document_, p);
+  if (triangles == 0) return nullptr;
+  // A few bytes of a hostile file could name the same vertices again and again; of a real one each triangle has some of its
+  // own.
+  triangles_ += double(triangles);
+  constexpr double always = 1e6, most_for_a_byte = 4;
+  if (triangles_ > always + most_for_a_byte * double(document_.buffer_bytes()))
+    throw Error(fmt::format("its meshes have {:.0f} triangles or more, far more than its {} bytes can tell apart", triangles_,
+                            document_.buffer_bytes()));
+  const Json& attributes = object_in(p, "attributes");
+  bool faded = false;
+  const bool colored = find(attributes, "COLOR_0") != nullptr;
+  if (colored) faded = Accessor(document_, needed_whole(attributes, "COLOR_0")).width == 4;
+  const Material& material = materials_.get(whole(p, "material"), colored, faded);
+  part.uv_set = material.uv_set;
+  Ref<Component> object = importing_.make("TriangleMesh", at(), name);
+  set_member(*object, "file", FilePath{importing_.path(), {}}, at());
+  set_member(*object, "part", part.text(), at());
+  set(*object, "shader", Value(material.made.shader, at()));
+  if (material.lamp) has_lights_ = true;
+  if (material.made.emission) set(*object, "emission", Value(material.made.emission, at()));
+  if (material.made.interior) set(*object, "interior", Value(material.made.interior, at()));
+  return ref_cast<SceneObject>(object);
+}
+
+std::optional<MadeCamera> SceneBuilder::camera() const {
+  if (cameras_.empty()) return std::nullopt;
+  size_t which = 0;
+  if (const auto said = importing_.parameter("camera")) {
+    which = cameras_.size();
+    std::vector<std::string> names;
+    for (size_t i = 0; i < cameras_.size(); ++i) {
+      names.push_back(text(document_.element("cameras", cameras_[i].first), "name"));
+      if (names.back() == *said || std::to_string(i) == *said) which = std::min(which, i);
+    }
+    if (which == cameras_.size()) throw Error(fmt::format("there is no camera '{}'{}", *said, suggestion(*said, names)), at());
+  } else if (cameras_.size() > 1) {
+    importing_.inexact(fmt::format("of its {} cameras the first is used; -D camera=NAME chooses another", cameras_.size()),
+                       at());
+  }
+  return make_camera(importing_, document_, cameras_[which].first, cameras_[which].second);
+}
+
+}  // namespace etendue::gltf

@@ -1,0 +1,51 @@
+#pragma once
+// The objects, lights and cameras of a scene of a glTF file.
+
+#include <map>
+#include <set>
+
+#include "etendue/render/job.h"
+#include "lights.h"
+#include "materials.h"
+#include "primitive.h"
+
+namespace etendue::gltf {
+
+class SceneBuilder {
+ public:
+  SceneBuilder(Importing&, const Document&);
+
+  Ref<Scene> build();
+  /// The camera to look through, when the scene has one; after `build`.
+  std::optional<MadeCamera> camera() const;
+  /// Whether there are lamps; after `build`. What merely glows does not light a scene.
+  bool has_lights() const { return has_lights_; }
+
+ private:
+  size_t chosen(const char* parameter, const char* list, size_t otherwise);
+  Moment moment();
+  std::vector<size_t> roots();
+  void count_uses(const std::vector<size_t>& order);
+  void add_node(size_t node);
+  void add_mesh(size_t node, size_t mesh);
+  std::vector<Transform> places_of(size_t node);
+  std::vector<Ref<SceneObject>> primitives(size_t mesh, const PartName& whose);
+  Ref<SceneObject> primitive(const Json& primitive, PartName, const std::string& name);
+  Ref<Scene> shared(size_t mesh);
+  void add(const Ref<SceneObject>&);
+  Location at() const { return importing_.at(); }
+
+  Importing& importing_;
+  const Document& document_;
+  Moment moment_;
+  Pose pose_;
+  Materials materials_;
+  Ref<Scene> scene_;
+  std::map<size_t, size_t> uses_;  // of meshes, by nodes
+  std::map<size_t, Ref<Scene>> shared_;
+  std::vector<std::pair<size_t, Transform>> cameras_;
+  double triangles_ = 0;
+  bool has_lights_ = false;
+};
+
+}  // namespace etendue::gltf

@@ -1,0 +1,47 @@
+// MeshImporter: files of triangles alone, without materials.
+
+#include "components/importers/models/surface.h"
+#include "components/objects/meshes/mesh_data.h"
+#include "etendue/scene.h"
+#include "files/regular_file.h"
+
+namespace etendue {
+namespace {
+
+class MeshImporter final : public Importer {
+ public:
+  static void describe(Description<MeshImporter>& d) {
+    d.summary("STL, OFF and PLY files: triangles, in the colours of their vertices if they have any.");
+  }
+  std::vector<std::string> extensions() const override { return {"off", "ply", "stl"}; }
+
+  Ref<Component> import(Importing& importing) const override {
+    const Location at = importing.at();
+    try {
+      read_mesh(importing.path());  // what is wrong with it is told now, and not when it is rendered
+    } catch (const Error& error) {
+      throw Error(error.what(), at);
+    }
+    Surface surface;
+    surface.base_color = 0.7;
+    surface.roughness = 0.5;
+    const MadeSurface made = make_surface(importing, surface, at);
+    Ref<Component> colors = importing.make("AttributeMap", at);
+    set_member(*colors, "otherwise", 0.7, at);
+    set(*made.shader, "base_color", Value(colors, at));
+    Ref<Component> mesh = importing.make("TriangleMesh", at);
+    set_member(*mesh, "file", FilePath{importing.path(), {}}, at);
+    set(*mesh, "shader", Value(made.shader, at));
+    const Ref<Scene> scene = ref_cast<Scene>(importing.make("EmbreeScene", at));
+    scene->objects.push_back(ref_cast<SceneObject>(mesh));
+    // What is printed or machined stands on the xy plane.
+    if (importing.path().size() > 4 && std::tolower(importing.path()[importing.path().size() - 3]) == 's')
+      importing.up = {0, 0, 1};
+    return scene;
+  }
+};
+
+const Register<MeshImporter> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,307 @@
+#include "mtl.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "components/objects/meshes/obj_lines.h"
+#include "files/regular_file.h"
+#include "files/text_encoding.h"
+#include "images/linear_image.h"
+
+namespace etendue {
+namespace {
+
+struct Texture {
+  SurfaceTexture image;
+  std::string channel;
+  double bump = 1;
+  bool has_alpha = false, has_colors = false;
+};
+
+/// The lines of one material, before it is known what they mean together.
+struct Said {
+  std::string name;
+  Location at;
+  std::map<std::string, double> numbers;
+  std::map<std::string, std::array<double, 3>> colors;
+  std::map<std::string, Texture> textures;
+  bool has(const char* key) const { return numbers.contains(key) || colors.contains(key) || textures.contains(key); }
+  double number(const char* key, double otherwise) const {
+    const auto found = numbers.find(key);
+    return found == numbers.end() ? otherwise : found->second;
+  }
+  std::array<double, 3> color(const char* key, double otherwise) const {
+    const auto found = colors.find(key);
+    return found == colors.end() ? std::array<double, 3>{otherwise, otherwise, otherwise} : found->second;
+  }
+  const Texture* texture(const char* key) const {
+    const auto found = textures.find(key);
+    return found == textures.end() ? nullptr : &found->second;
+  }
+};
+
+std::string lower(std::string_view text) {
+  std::string small(text);
+  for (char& c : small) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return small;
+}
+
+double strongest(const std::array<double, 3>& c) { return std::ranges::max(c); }
+
+class MtlReader {
+ public:
+  MtlReader(Importing& importing, const std::string& path)
+      : importing_(importing), path_(path), folder_(std::filesystem::path(path).parent_path().string()), file_(intern(path)) {}
+
+  void read(std::map<std::string, MtlMaterial>& all) {
+    const FileContents contents(path_);
+    const std::string text = as_utf8(contents.text());
+    Said said;
+    for (Lines lines(text); lines.next();) {
+      const std::string word = lower(lines.keyword());
+      const Location at{file_, int(lines.line()), 0};
+      if (word.empty() || word[0] == '#') continue;
+      if (word == "newmtl") {
+        finish(said, all);
+        said = {std::string(lines.rest()), at, {}, {}, {}};
+        continue;
+      }
+      if (!said.at.known()) continue;
+      try {
+        line(lines, word, at, said);
+      } catch (const Error& error) {
+        throw Error(error.what(), at);
+      }
+    }
+    finish(said, all);
+  }
+
+ private:
+  void line(Lines& lines, const std::string& word, Location at, Said& said) {
+    static const std::vector<std::string> colors{"kd", "ks", "ke", "tf"},
+        numbers{"ns", "ni", "d", "tr", "illum", "pr", "pm", "ps", "pc", "pcr", "aniso", "anisor"},
+        textures{"map_kd",   "map_ks", "map_ke", "map_ns", "map_d",  "map_tr",
+                 "map_bump", "bump",   "norm",   "map_pr", "map_pm", "map_ps"},
+        ignored{"ka", "map_ka", "sharpness", "map_aat"};
+    if (std::ranges::count(colors, word)) {
+      read_color(lines, word, at, said);
+    } else if (std::ranges::count(numbers, word)) {
+      if (word == "d" && lines.rest().starts_with("-halo")) {
+        lines.keyword();
+        importing_.inexact("'d -halo' is the same from all sides", at);
+      }
+      said.numbers[word] = lines.number<double>();
+    } else if (std::ranges::count(textures, word)) {
+      if (auto texture = read_texture(lines, at)) said.textures[word == "bump" ? "map_bump" : word] = *texture;
+    } else if (!std::ranges::count(ignored, word)) {
+      importing_.inexact(fmt::format("'{}' is not expressed", word.substr(0, 20)), at);
+    }
+  }
+
+  void read_color(Lines& lines, const std::string& word, Location at, Said& said) {
+    if (lines.rest().starts_with("spectral") || lines.rest().starts_with("xyz")) {
+      importing_.inexact("a colour that is a spectrum's file or CIE XYZ is not read", at);
+      return;
+    }
+    std::array<double, 3> c{};
+    c[0] = lines.number<double>();
+    c[1] = lines.at_end() ? c[0] : lines.number<double>();
+    c[2] = lines.at_end() ? c[0] : lines.number<double>();
+    said.colors[word] = c;
+  }
+
+  std::optional<Texture> read_texture(Lines& lines, Location at) {
+    Texture texture;
+    SurfaceTexture placed;
+    while (lines.rest().starts_with("-")) {
+      const std::string option = lower(lines.keyword());
+      lines.at_end();
+      const auto numbers = [&](size_t most) {
+        std::vector<double> all;
+        while (all.size() < most && !lines.at_end() && numeric(lines.rest())) all.push_back(lines.number<double>());
+        return all;
+      };
+      if (option == "-s" || option == "-o" || option == "-t") {
+        const std::vector<double> n = numbers(3);
+        auto& to = option == "-s" ? placed.scale : placed.shift;
+        if (option != "-t")
+          for (size_t i = 0; i < std::min<size_t>(n.size(), 2); ++i) to[i] = n[i];
+        else
+          importing_.inexact("a texture's turbulence (-t) is left out", at);
+      } else if (option == "-bm") {
+        const std::vector<double> n = numbers(1);
+        texture.bump = n.empty() ? 1 : n[0];
+      } else if (option == "-mm") {
+        const std::vector<double> n = numbers(2);
+        if (n.size() == 2 && (n[0] != 0 || n[1] != 1)) importing_.inexact("a texture's range (-mm) is left out", at);
+      } else if (option == "-imfchan") {
+        const std::string channel = lower(lines.keyword());
+        if (channel == "r" || channel == "g" || channel == "b") texture.channel = char(std::toupper(channel[0]));
+        if (channel == "m") texture.channel = "A";
+      } else if (option == "-clamp") {
+        if (lower(lines.keyword()) == "on") placed.wrap = "black";
+      } else if (option == "-boost" || option == "-texres") {
+        numbers(1);
+      } else {  // -blendu, -blendv, -cc, -type: how it is filtered
+        lines.keyword();
+      }
+      lines.at_end();
+    }
+    const std::string name(lines.rest());
+    const auto file = importing_.optional_file(name, at, folder_);
+    if (!file) return std::nullopt;
+    const auto found = readable_texture(importing_, *file, at, &texture.has_alpha);
+    if (!found) return std::nullopt;
+    placed.file = found->file;
+    texture.image = placed;
+    texture.has_colors = image_channels(*file).size() >= 3;
+    return texture;
+  }
+
+  static bool numeric(std::string_view text) {
+    const char c = text.empty() ? 'x' : text[0];
+    const char next = text.size() > 1 ? text[1] : 'x';
+    const auto digit = [](char d) { return d >= '0' && d <= '9'; };
+    return digit(c) || ((c == '-' || c == '+' || c == '.') && (digit(next) || next == '.'));
+  }
+
+  void finish(const Said& said, std::map<std::string, MtlMaterial>& all) {
+    if (!said.at.known()) return;
+    Surface s;
+    s.name = said.name;
+    base(said, s);
+    if (said.has("pr") || said.has("pm") || said.has("map_pr") || said.has("map_pm"))
+      pbr(said, s);
+    else
+      phong(said, s);
+    transparency(said, s);
+    shape(said, s);
+    all.try_emplace(said.name, MtlMaterial{s, said.at});
+  }
+
+  static void put(const Texture* texture, SurfaceColor& color) {
+    if (texture) color.texture = texture->image;
+  }
+  static void put(const Texture* texture, SurfaceNumber& number) {
+    if (!texture) return;
+    number.texture = texture->image;
+    number.channel = texture->channel;
+  }
+
+  void base(const Said& said, Surface& s) const {
+    const Texture* texture = said.texture("map_kd");
+    // Exporters often leave Kd black where a texture stands for it.
+    s.base_color = said.color("kd", texture ? 1 : 0.8);
+    if (texture && s.base_color.black()) s.base_color.value = {1, 1, 1};
+    put(texture, s.base_color);
+    s.emission = said.color("ke", said.texture("map_ke") ? 1 : 0);
+    if (said.texture("map_ke") && s.emission.black()) s.emission.value = {1, 1, 1};
+    put(said.texture("map_ke"), s.emission);
+    s.ior = std::clamp(said.number("ni", 1.5), 1.0, 4.0);
+    if (s.ior == 1) s.ior = 1.5;  // what exporters write that know no index
+  }
+
+  static void pbr(const Said& said, Surface& s) {
+    s.metalness = said.number("pm", said.texture("map_pm") ? 1 : 0);
+    s.roughness = said.number("pr", said.texture("map_pr") ? 1 : 0.5);
+    put(said.texture("map_pm"), s.metalness);
+    put(said.texture("map_pr"), s.roughness);
+  }
+
+  // Phong's exponent n is about that of a Beckmann distribution with alpha^2 = 2 / (n + 2) (Walter et al. 2007, section 5.3),
+  // and alpha is the square of the roughness.
+  static void phong(const Said& said, Surface& s) {
+    s.roughness = std::pow(2 / (std::max(said.number("ns", 0), 0.0) + 2), 0.25);
+    const std::array<double, 3> reflected = said.color("ks", 0);
+    const double most = strongest(reflected), illum = said.number("illum", 2);
+    if (most <= 0 || illum < 2) {
+      s.specular = 0;
+      return;
+    }
+    const bool dark = strongest(s.base_color.value) < 0.05 && !s.base_color.texture;
+    if (dark && most > 0.3 && illum != 6 && illum != 7) {
+      s.metalness = 1;
+      s.base_color = reflected;
+      put(said.texture("map_ks"), s.base_color);
+      return;
+    }
+    // 0.5 is what exporters write for the four percent that plastics, paints and glass reflect.
+    s.specular = std::min(2 * most, 1.0);
+    s.specular_color = std::array<double, 3>{reflected[0] / most, reflected[1] / most, reflected[2] / most};
+    put(said.texture("map_ks"), s.specular_color);
+  }
+
+  void transparency(const Said& said, Surface& s) const {
+    const double illum = said.number("illum", 2);
+    const double opacity = std::clamp(said.has("d") ? said.number("d", 1) : 1 - said.number("tr", 0), 0.0, 1.0);
+    const bool refracts = illum == 6 || illum == 7 || ((illum == 4 || illum == 9) && (opacity < 1 || said.has("tf")));
+    if (refracts) {
+      s.transmission = opacity < 1 ? 1 - opacity : 1;
+      s.transmission_color = said.color("tf", 1);
+      if (s.transmission_color.black()) s.transmission_color = 1.0;  // exporters write 0 for "unused"
+      s.thin = false;
+      s.specular = 1;
+      s.specular_color = 1.0;
+      return;
+    }
+    s.opacity = opacity;
+    const Texture* holes = said.texture("map_d");
+    if (!holes) holes = said.texture("map_tr");
+    if (!holes) return;
+    if (s.opacity.value == 0) s.opacity = 1;
+    put(holes, s.opacity);
+    s.opacity.inverted = !said.texture("map_d");
+    if (holes->channel.empty() && holes->has_alpha) s.opacity.channel = "A";
+  }
+
+  void shape(const Said& said, Surface& s) const {
+    if (const double sheen = said.number("ps", 0); sheen > 0) {
+      s.sheen_color = sheen;
+      s.sheen_roughness = 0.5;
+    }
+    s.coat = said.number("pc", 0);
+    s.coat_roughness = said.number("pcr", 0);
+    s.anisotropy = std::clamp(said.number("aniso", 0), 0.0, 1.0);
+    if (said.number("anisor", 0) != 0) importing_.inexact("stretched highlights lie along u, whatever 'anisor' says", said.at);
+    if (const Texture* normals = said.texture("norm"))
+      s.normals = SurfaceNormals{normals->image, 1, false};
+    else if (const Texture* bumps = said.texture("map_bump")) {
+      if (bumps->has_colors && is_of_normals(bumps->image.file)) {
+        s.normals = SurfaceNormals{bumps->image, bumps->bump, false};
+      } else {
+        constexpr double height = 0.01;
+        s.bumps = bumps->image;
+        s.bump_height = height * bumps->bump;
+        importing_.inexact("the height of bumps has no unit: '-bm 1' is taken for 0.01", said.at);
+      }
+    }
+  }
+
+  /// Many programs write an image of normals where one of heights belongs: it is blue all over.
+  static bool is_of_normals(const std::string& file) {
+    const LinearImage image = read_linear_image(file, "linear");
+    double r = 0, g = 0, b = 0;
+    const size_t pixels = image.rgb.size() / 3, step = std::max<size_t>(pixels / 10000, 1);
+    size_t count = 0;
+    for (size_t i = 0; i < pixels; i += step, ++count) {
+      r += double(image.rgb[3 * i]);
+      g += double(image.rgb[3 * i + 1]);
+      b += double(image.rgb[3 * i + 2]);
+    }
+    const double n = double(std::max<size_t>(count, 1));
+    return std::abs(r / n - 0.5) < 0.1 && std::abs(g / n - 0.5) < 0.1 && b / n > 0.7;
+  }
+
+  Importing& importing_;
+  std::string path_, folder_;
+  const char* file_;
+};
+
+}  // namespace
+
+void read_mtl(Importing& importing, const std::string& path, std::map<std::string, MtlMaterial>& all) {
+  MtlReader(importing, path).read(all);
+}
+
+}  // namespace etendue

@@ -1,0 +1,111 @@
+// ObjImporter: Wavefront OBJ files with their MTL materials.
+
+#include <filesystem>
+
+#include "components/objects/meshes/mesh_data.h"
+#include "components/objects/meshes/obj_lines.h"
+#include "etendue/scene.h"
+#include "files/regular_file.h"
+#include "files/text_encoding.h"
+#include "mtl.h"
+
+namespace etendue {
+namespace {
+
+/// A reader's "line 7: what is wrong" as an error there.
+[[noreturn]] void throw_located(const Importing& importing, const std::string& words) {
+  int line = 0, end = 0;
+  if (std::sscanf(words.c_str(), "line %d: %n", &line, &end) == 1 && end > 0)
+    throw Error(words.substr(size_t(end)), importing.at(line));
+  throw Error(words, importing.at());
+}
+
+class ObjImporter final : public Importer {
+ public:
+  static void describe(Description<ObjImporter>& d) {
+    d.summary(
+        "Wavefront OBJ files with their MTL materials, also in the PBR extension (Pr, Pm, …): a mesh for each material that "
+        "faces use.");
+  }
+  std::vector<std::string> extensions() const override { return {"obj"}; }
+
+  Ref<Component> import(Importing& importing) const override {
+    try {
+      return read(importing);
+    } catch (const Error& error) {
+      if (error.location.known()) throw;
+      throw_located(importing, error.what());
+    }
+  }
+
+ private:
+  static Ref<Component> read(Importing& importing) {
+    const std::vector<std::string> parts = obj_parts(importing.path());
+    std::map<std::string, MtlMaterial> materials;
+    const std::map<std::string, int> used = read_libraries(importing, materials);
+    const Ref<Scene> scene = ref_cast<Scene>(importing.make("EmbreeScene", importing.at()));
+    for (const std::string& name : parts) {
+      const auto line = used.find(name);
+      const Location at = importing.at(line == used.end() ? 0 : line->second);
+      const auto material = materials.find(name);
+      Surface plain;
+      plain.base_color = 0.7;
+      plain.roughness = 0.5;
+      if (material == materials.end() && !name.empty())
+        importing.inexact(fmt::format("no material file says what '{}' is like: it is grey", name), at);
+      const MadeSurface made = material == materials.end()
+                                   ? make_surface(importing, plain, at)
+                                   : make_surface(importing, material->second.surface, material->second.at);
+      Ref<Component> mesh = importing.make("TriangleMesh", at);
+      set_member(*mesh, "file", FilePath{importing.path(), {}}, at);
+      if (parts.size() > 1) set_member(*mesh, "part", "usemtl " + name, at);
+      set(*mesh, "shader", Value(made.shader, at));
+      if (made.emission) set(*mesh, "emission", Value(made.emission, at));
+      if (made.interior) set(*mesh, "interior", Value(made.interior, at));
+      scene->objects.push_back(ref_cast<SceneObject>(mesh));
+    }
+    return scene;
+  }
+
+  /// Reads the material files it names; returns the lines at which materials are used first.
+  static std::map<std::string, int> read_libraries(Importing& importing, std::map<std::string, MtlMaterial>& materials) {
+    const FileContents contents(importing.path());
+    const bool marked = has_byte_order_mark(contents.text());
+    const std::string plain = marked ? as_utf8(contents.text()) : std::string();
+    std::map<std::string, int> used;
+    for (Lines lines(marked ? std::string_view(plain) : contents.text()); lines.next();) {
+      const std::string_view word = lines.keyword();
+      if (word == "usemtl") used.try_emplace(std::string(lines.rest()), int(lines.line()));
+      if (word != "mtllib") continue;
+      const Location at = importing.at(int(lines.line()));
+      for (const std::string& path : library_files(importing, std::string(lines.rest()), at))
+        read_mtl(importing, path, materials);
+    }
+    return used;
+  }
+
+  /// One name, which may hold spaces, or several.
+  static std::vector<std::string> library_files(Importing& importing, const std::string& names, Location at) {
+    try {
+      return {importing.file(names, at)};
+    } catch (const Error&) {
+      if (names.find(' ') == std::string::npos) {
+        if (auto path = importing.optional_file(names, at)) return {*path};
+        return {};
+      }
+    }
+    std::vector<std::string> all;
+    for (size_t begin = 0; begin < names.size();) {
+      const size_t end = std::min(names.find(' ', begin), names.size());
+      if (end > begin)
+        if (auto path = importing.optional_file(names.substr(begin, end - begin), at)) all.push_back(*path);
+      begin = end + 1;
+    }
+    return all;
+  }
+};
+
+const Register<ObjImporter> registered;
+
+}  // namespace
+}  // namespace etendue

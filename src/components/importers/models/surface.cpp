@@ -1,0 +1,266 @@
+#include "surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "etendue/describe/color.h"
+
+namespace etendue {
+namespace {
+
+class SurfaceMaker {
+ public:
+  SurfaceMaker(Importing& importing, const Surface& surface, Location at) : importing_(importing), s_(surface), at_(at) {}
+
+  MadeSurface make() {
+    MadeSurface made;
+    if (s_.unlit) {
+      made.shader = part("Lambertian", s_.name);
+      set_member(*made.shader, "color", 0.0, at_);
+      made.emission = emission(s_.base_color);
+      importing_.inexact("what is unlit gives off its colour as light, on to other surfaces too", at_);
+    } else {
+      made.shader = principled();
+      if (!s_.emission.black()) made.emission = emission(s_.emission);
+      made.interior = interior();
+    }
+    if (s_.normals) made.shader = with_normals(made.shader);
+    if (s_.bumps && s_.bump_height != 0) made.shader = with_bumps(made.shader);
+    if (s_.opacity.texture || !s_.opacity.attribute.empty() || s_.opacity.value < 1) {
+      made.shader = with_holes(made.shader);
+      if (made.emission) importing_.inexact("the light of a surface does not become less where it is transparent", at_);
+    }
+    return made;
+  }
+
+ private:
+  Ref<Component> part(const char* class_name, const std::string& name = {}) const {
+    return importing_.make(class_name, at_, name.empty() ? name : plain_name(name));
+  }
+  static void put(Component& to, std::string_view member, const Ref<Component>& value, Location at) {
+    set(to, member, Value(value, at));
+  }
+
+  Ref<Component> image(const SurfaceTexture& t, const std::string& channel, bool linear) const {
+    Ref<Component> map = part("ImageMap");
+    set_member(*map, "file", FilePath{t.file, {}}, at_);
+    if (!channel.empty()) set_member(*map, "channel", channel, at_);
+    if (linear) set_member(*map, "transfer", "linear", at_);
+    set_member(*map, "wrap", t.wrap, at_);
+    if (t.nearest) set_member(*map, "interpolation", "nearest", at_);
+    const auto pair = [](const std::array<double, 2>& p) { return Numbers{{p[0], p[1]}, 1, Dimension::none}; };
+    std::array<double, 2> shift = t.shift;
+    if (t.wrap == "repeat" && std::abs(t.angle) < 1e-9)
+      for (double& x : shift)
+        if (std::abs(x - std::round(x)) < 1e-9) x = 0;
+    if (std::abs(t.angle) < 1e-9 && shift[0] == 0 && shift[1] == 0) {
+      if (t.scale[0] != 1 || t.scale[1] != 1) set_member(*map, "repeat", pair(t.scale), at_);
+      return map;
+    }
+    Ref<Component> moved = part("UvTransformMap");
+    put(*moved, "map", map, at_);
+    if (t.scale[0] != 1 || t.scale[1] != 1) set_member(*moved, "scale", pair(t.scale), at_);
+    if (t.angle != 0) set_member(*moved, "angle", Number{t.angle, Dimension::angle}, at_);
+    set_member(*moved, "shift", pair(shift), at_);
+    return moved;
+  }
+
+  Ref<Component> product(const Ref<Component>& first, const Value& second) const {
+    Ref<Component> map = part("MultiplyMap");
+    put(*map, "first", first, at_);
+    set(*map, "second", second);
+    return map;
+  }
+
+  /// Sets a member that is a number or a map of numbers; when it is the default nothing is written.
+  void number(Component& to, std::string_view member, const SurfaceNumber& n) const {
+    const double value = std::isfinite(n.value) ? n.value : 0;
+    if (Ref<Component> map = number_map(n))
+      put(to, member, map, at_);
+    else
+      set_member(to, member, value, at_);
+  }
+
+  /// None: it is the same everywhere.
+  Ref<Component> number_map(const SurfaceNumber& n) const {
+    Ref<Component> map;
+    if (n.texture && n.value != 0) {
+      map = image(*n.texture, n.channel, n.channel != "A");
+      if (n.inverted) {
+        Ref<Component> turned = part("RemapMap");
+        put(*turned, "input", map, at_);
+        set_member(*turned, "to", Numbers{{1, 0}, 1, Dimension::none}, at_);
+        map = turned;
+      }
+    }
+    if (!n.attribute.empty()) {
+      Ref<Component> vertices = part("AttributeMap");
+      set_member(*vertices, "name", n.attribute, at_);
+      set_member(*vertices, "otherwise", 1.0, at_);
+      map = map ? product(map, Value(vertices, at_)) : vertices;
+    }
+    if (map && n.value != 1) map = product(map, Value(Number{n.value}, at_));
+    return map;
+  }
+
+  /// None: it is the same everywhere.
+  Ref<Component> color_map(const SurfaceColor& c) const {
+    Ref<Component> map;
+    if (c.texture && !c.black()) map = image(*c.texture, {}, false);
+    if (c.by_vertex) {
+      Ref<Component> vertices = part("AttributeMap");
+      set_member(*vertices, "otherwise", 1.0, at_);
+      map = map ? product(map, Value(vertices, at_)) : vertices;
+    }
+    if (map && c.value != std::array<double, 3>{1, 1, 1}) map = product(map, color_value(c.value, at_));
+    return map;
+  }
+
+  void color(Component& to, std::string_view member, const SurfaceColor& c) const {
+    if (std::ranges::any_of(c.value, [](double x) { return x > 1; }) && member != "radiance")
+      importing_.inexact("a surface cannot reflect more light than it gets: colours above 1 become 1", at_);
+    if (Ref<Component> map = color_map(c))
+      put(to, member, map, at_);
+    else
+      set(to, member, color_value(c.value, at_));
+  }
+
+  double within(double value, double low, double high, const char* what) const {
+    const double kept = std::clamp(std::isfinite(value) ? value : low, low, high);
+    if (kept != value) importing_.inexact(fmt::format("{} of {} becomes {}", what, value, kept), at_);
+    return kept;
+  }
+
+  Ref<Component> principled() const {
+    Ref<Component> shader = part("Principled", s_.name);
+    Component& p = *shader;
+    color(p, "base_color", s_.base_color);
+    if (is_there(s_.metalness)) number(p, "base_metalness", s_.metalness);
+    number(p, "specular_roughness", s_.roughness);
+    if (s_.ior != 1.5) set_member(p, "specular_ior", within(s_.ior, 1, 4, "an index of refraction"), at_);
+    if (s_.specular.value != 1 || s_.specular.texture) number(p, "specular_weight", s_.specular);
+    if (s_.specular_color.value != std::array<double, 3>{1, 1, 1} || s_.specular_color.texture)
+      color(p, "specular_color", s_.specular_color);
+    if (is_there(s_.anisotropy)) number(p, "specular_roughness_anisotropy", s_.anisotropy);
+    if (is_there(s_.transmission)) {
+      number(p, "transmission_weight", s_.transmission);
+      color(p, "transmission_color", s_.transmission_color);
+      if (s_.thin) set_member(p, "thin_walled", true, at_);
+      if (s_.abbe_number > 0) {
+        set_member(p, "transmission_dispersion_scale", 1.0, at_);
+        set_member(p, "transmission_dispersion_abbe_number", within(s_.abbe_number, 5, 1000, "an Abbe number"), at_);
+      }
+    }
+    if (is_there(s_.coat)) {
+      number(p, "coat_weight", s_.coat);
+      number(p, "coat_roughness", s_.coat_roughness);
+      set_member(p, "coat_ior", 1.5, at_);
+      set_member(p, "coat_darkening", 0.0, at_);
+    }
+    if (!s_.sheen_color.black()) {
+      set_member(p, "fuzz_weight", 1.0, at_);
+      color(p, "fuzz_color", s_.sheen_color);
+      number(p, "fuzz_roughness", s_.sheen_roughness);
+    }
+    if (is_there(s_.film)) {
+      number(p, "thin_film_weight", s_.film);
+      number(p, "thin_film_thickness", s_.film_thickness);
+      set_member(p, "thin_film_ior", within(s_.film_ior, 1, 4, "an index of refraction"), at_);
+    }
+    return shader;
+  }
+
+  static bool is_there(const SurfaceNumber& n) { return n.value > 0; }
+
+  Ref<Component> emission(const SurfaceColor& c) const {
+    Ref<Component> emission = part("DiffuseEmission");
+    color(*emission, "radiance", c);
+    if (s_.emits_backwards) set_member(*emission, "sides", "both", at_);
+    return emission;
+  }
+
+  /// What light loses on its way: after the distance the colour is left of white, so that it loses -ln(colour) / distance.
+  Ref<Component> interior() const {
+    if (!is_there(s_.transmission) || s_.thin || !(s_.attenuation_distance > 0) || !std::isfinite(s_.attenuation_distance))
+      return nullptr;
+    std::array<double, 3> absorbed{};
+    for (size_t i = 0; i < 3; ++i)
+      absorbed[i] = -std::log(std::clamp(s_.attenuation_color[i], 1e-4, 1.0)) / s_.attenuation_distance;
+    if (absorbed == std::array<double, 3>{}) return nullptr;
+    Ref<Component> medium = part("HomogeneousVolume", s_.name.empty() ? "" : s_.name + "_inside");
+    set(*medium, "absorption", color_value(absorbed, at_));
+    return medium;
+  }
+
+  Ref<Component> with_normals(const Ref<Component>& shader) const {
+    const SurfaceTexture& t = s_.normals->texture;
+    Ref<Component> tilted = part("NormalMapShader");
+    put(*tilted, "shader", shader, at_);
+    set_member(*tilted, "file", FilePath{t.file, {}}, at_);
+    if (s_.normals->strength != 1) set_member(*tilted, "strength", std::abs(s_.normals->strength), at_);
+    if (s_.normals->downwards) set_member(*tilted, "flip_y", true, at_);
+    if (t.scale[0] != 1 || t.scale[1] != 1)
+      set_member(*tilted, "repeat", Numbers{{t.scale[0], t.scale[1]}, 1, Dimension::none}, at_);
+    const auto whole = [](double x) { return std::abs(x - std::round(x)) < 1e-6; };
+    if (std::abs(t.angle) > 1e-6 || !whole(t.shift[0]) || !whole(t.shift[1]))
+      importing_.inexact("an image of normals is not turned or shifted", at_);
+    return tilted;
+  }
+
+  Ref<Component> with_bumps(const Ref<Component>& shader) const {
+    Ref<Component> bumpy = part("BumpShader");
+    put(*bumpy, "shader", shader, at_);
+    put(*bumpy, "height", image(*s_.bumps, {}, true), at_);
+    set_member(*bumpy, "scale", s_.bump_height, at_);
+    return bumpy;
+  }
+
+  Ref<Component> with_holes(const Ref<Component>& shader) const {
+    Ref<Component> mask = part("MaskShader");
+    put(*mask, "shader", shader, at_);
+    Ref<Component> map = number_map(s_.opacity);
+    if (!s_.opacity_cutoff) {
+      number(*mask, "opacity", s_.opacity);
+    } else if (!map) {
+      set_member(*mask, "opacity", s_.opacity.value >= *s_.opacity_cutoff ? 1.0 : 0.0, at_);
+    } else {
+      Ref<Component> step = part("RemapMap");
+      put(*step, "input", map, at_);
+      set_member(*step, "from", Numbers{{*s_.opacity_cutoff - 1e-3, *s_.opacity_cutoff}, 1, Dimension::none}, at_);
+      put(*mask, "opacity", step, at_);
+    }
+    return mask;
+  }
+
+  Importing& importing_;
+  const Surface& s_;
+  Location at_;
+};
+
+}  // namespace
+
+MadeSurface make_surface(Importing& importing, const Surface& surface, Location at) {
+  return SurfaceMaker(importing, surface, at).make();
+}
+
+Value color_value(const std::array<double, 3>& rgb, Location at) {
+  const auto usable = [](double x) { return std::isfinite(x) && x > 0 ? std::min(x, 1e30) : 0.0; };
+  const double r = usable(rgb[0]), g = usable(rgb[1]), b = usable(rgb[2]);
+  return Value(rgb_color("srgb", r, g, b), at);
+}
+
+std::string plain_name(const std::string& name) {
+  std::string plain;
+  for (const char c : name) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'), digit = c >= '0' && c <= '9';
+    if (letter || (digit && !plain.empty()))
+      plain += c;
+    else if (!plain.empty() && plain.back() != '_')
+      plain += '_';
+  }
+  while (!plain.empty() && plain.back() == '_') plain.pop_back();
+  constexpr size_t longest = 64;
+  return plain.substr(0, longest);
+}
+
+}  // namespace etendue

@@ -1,0 +1,125 @@
+// The faces of an OBJ file by their materials, each as a mesh of its own.
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+
+#include "files/regular_file.h"
+#include "files/text_encoding.h"
+#include "mesh_data.h"
+
+namespace etendue {
+namespace {
+
+constexpr const char* prefix = "usemtl ";
+
+/// The triangles of one material, with the vertices they use.
+MeshData taken_out(const MeshData& mesh, std::uint32_t material, std::vector<std::uint32_t>& now) {
+  MeshData part;
+  part.centre = mesh.centre;
+  constexpr std::uint32_t unknown = 0xffffffffu;
+  now.assign(mesh.positions.size(), unknown);
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (mesh.triangle_materials[i] != material) continue;
+    std::array<std::uint32_t, 3> t{};
+    for (size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = mesh.triangles[i][k];
+      if (now[vertex] == unknown) {
+        now[vertex] = std::uint32_t(part.positions.size());
+        part.positions.push_back(mesh.positions[vertex]);
+        if (!mesh.normals.empty()) part.normals.push_back(mesh.normals[vertex]);
+        if (!mesh.uvs.empty()) part.uvs.push_back(mesh.uvs[vertex]);
+      }
+      t[k] = now[vertex];
+    }
+    part.triangles.push_back(t);
+  }
+  return part;
+}
+
+/// Parts of the files that were read last, until they are taken: reading one of them takes a pass over the whole file.
+struct ReadFile {
+  std::filesystem::file_time_type written;
+  std::uintmax_t size = 0;
+  std::vector<std::string> names;
+  std::map<std::string, MeshData> parts;
+};
+std::mutex mutex;
+std::map<std::string, ReadFile>& known_files() {
+  static auto* all = new std::map<std::string, ReadFile>;
+  return *all;
+}
+
+ReadFile read_parts(const std::string& path) {
+  ReadFile file;
+  std::error_code none;
+  file.written = std::filesystem::last_write_time(path, none);
+  file.size = std::filesystem::file_size(path, none);
+  const FileContents contents(path);
+  if (contents.text().empty()) throw Error("the file is empty");
+  MeshData mesh = has_byte_order_mark(contents.text()) ? read_obj(as_utf8(contents.text())) : read_obj(contents.text());
+  if (mesh.triangle_materials.empty()) {
+    file.names = {""};
+    file.parts[""] = std::move(mesh);
+    return file;
+  }
+  std::vector<size_t> triangles(mesh.materials.size() + 1);
+  for (const std::uint32_t m : mesh.triangle_materials) ++triangles[m == MeshData::no_material ? mesh.materials.size() : m];
+  std::vector<std::uint32_t> now;
+  for (size_t m = 0; m < triangles.size(); ++m) {
+    if (triangles[m] == 0) continue;
+    const bool named = m < mesh.materials.size();
+    const std::string& name = file.names.emplace_back(named ? mesh.materials[m] : "");
+    MeshData& part = file.parts[name];
+    if (triangles[m] < mesh.triangles.size()) {
+      part = taken_out(mesh, named ? std::uint32_t(m) : MeshData::no_material, now);
+    } else {
+      part = std::move(mesh);
+      break;
+    }
+  }
+  for (auto& [name, part] : file.parts) {
+    part.materials = {};
+    part.triangle_materials = {};
+  }
+  return file;
+}
+
+/// With the lock held.
+ReadFile& known(const std::string& path) {
+  auto& all = known_files();
+  std::error_code none;
+  const auto found = all.find(path);
+  if (found != all.end() && found->second.written == std::filesystem::last_write_time(path, none) &&
+      found->second.size == std::filesystem::file_size(path, none))
+    return found->second;
+  constexpr size_t most = 8;
+  if (all.size() >= most) all.clear();
+  return all[path] = read_parts(path);
+}
+
+MeshData read_obj_part(const std::string& path, const std::string& part) {
+  if (!part.starts_with(prefix)) throw Error("a part of an OBJ file is written \"usemtl\" and the name of a material");
+  const std::string name = part.substr(std::string_view(prefix).size());
+  const std::lock_guard lock(mutex);
+  ReadFile* file = &known(path);
+  if (!std::ranges::count(file->names, name))
+    throw Error("no face has a material '" + name + "'" + suggestion(name, file->names));
+  if (!file->parts.contains(name)) {  // it was taken before
+    known_files().erase(path);
+    file = &known(path);
+  }
+  MeshData mesh = std::move(file->parts.extract(name).mapped());
+  return mesh;
+}
+
+const bool registered = register_mesh_format({"obj"}, read_obj_part);
+
+}  // namespace
+
+std::vector<std::string> obj_parts(const std::string& path) {
+  const std::lock_guard lock(mutex);
+  return known(path).names;
+}
+
+}  // namespace etendue
