@@ -1,7 +1,7 @@
 // The pictures that are there: the one that grows, a coarse one while a camera moves, display values, and a pinned one.
 import { computed, signal } from "@preact/signals";
 import { readPixels, type Pixels } from "../model/protocol.ts";
-import { Film } from "./film.ts";
+import { automaticStops, Film } from "./film.ts";
 import type { Toned } from "./screen.ts";
 import type { Size } from "./view.ts";
 
@@ -17,6 +17,12 @@ export const size = signal<Size>({ width: 0, height: 0 });
 export const samplesShown = signal(0);
 
 export const stops = signal(0);
+/** Whether somebody has chosen the exposure; until then it follows the first samples. */
+let exposed = false;
+export function expose(to: number): void {
+  exposed = true;
+  stops.value = Number(to.toFixed(2));
+}
 export const curve = signal<Curve>("filmic");
 export const falseColor = signal(false);
 export const falseRange = signal<[number, number]>([-8, 4]);
@@ -50,6 +56,10 @@ function takeLinear(pixels: Pixels): void {
     to.write({ x0: x0 + dx, y0: y0 + dy, x1: x1 + dx, y1: y1 + dy }, values as Uint16Array);
   }
   if (!pixels.coarse) coarse.value = null;
+  if (!exposed) {
+    stops.value = Number(automaticStops(to).toFixed(2));
+    exposed = pixels.samples >= 4 || pixels.finished;
+  }
 }
 
 function takeToned(pixels: Pixels): void {
@@ -75,6 +85,7 @@ function takeToned(pixels: Pixels): void {
 
 export function forgetPictures(): void {
   film.value = coarse.value = toned.value = null;
+  exposed = false;
   pixelsVersion.value += 1;
 }
 
