@@ -128,7 +128,7 @@ export async function until(what, test, seconds = 10) {
   for (;;) {
     const value = await test();
     if (value) return value;
-    if (Date.now() > end) throw new Error(`not within ${seconds} s: ${what}`);
+    if (Date.now() > end) throw new Error(`not within ${seconds} s: ${what}; it is ${JSON.stringify(value)}`);
     await new Promise((done) => setTimeout(done, 30));
   }
 }

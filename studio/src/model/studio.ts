@@ -22,7 +22,8 @@ export const connection = new Connection(`${protocol}://${location.host}/socket$
   pixels: takePixels,
 });
 
-async function hello(): Promise<void> {
+/** Says who is here, and takes all there is to know. */
+export async function hello(): Promise<void> {
   try {
     const said = await connection.ask<Hello & Reply>("hello", { protocol: 1 });
     state.version.value = said.version;

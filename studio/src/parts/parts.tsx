@@ -89,6 +89,7 @@ export function Dialog({ title, close, children, class: more }: DialogProps): JS
   useEffect(() => {
     const before = document.activeElement;
     element.current?.showModal();
+    element.current?.querySelector<HTMLElement>("[data-focus]")?.focus();
     return () => {
       if (before instanceof HTMLElement) before.focus();
     };
