@@ -27,5 +27,6 @@ void add_image_command(CLI::App& program, Run& run);
 void add_verify_command(CLI::App& program, Run& run);
 void add_compare_command(CLI::App& program, Run& run);
 void add_conform_command(CLI::App& program, Run& run);
+void add_studio_command(CLI::App& program, Run& run);
 
 }  // namespace etendue

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "replay.h"
+#include "check/replay/replay.h"
 
 namespace etendue {
 

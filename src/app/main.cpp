@@ -26,6 +26,7 @@ First steps
   etendue verify box.etd                                 whether all algorithms agree on a scene
   etendue compare box.etd --renderers A,B --time 1m      which algorithm is better on a scene, and by how much
   etendue conform Shader                                 whether parts do what their interfaces promise
+  etendue studio box.etd                                 describes, shows and controls a render in the browser
 
 Help on one command: etendue render --help
 Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
@@ -63,6 +64,7 @@ int run_program(int argument_count, char** arguments) {
   add_verify_command(program, run);
   add_compare_command(program, run);
   add_conform_command(program, run);
+  add_studio_command(program, run);
 
   refuse_empty_values(program);
 

@@ -22,6 +22,14 @@ Node Parser::chain(NodeType type, char first, char second, Node (Parser::*operan
   return node;
 }
 
+Node Parser::expression() {
+  const size_t begin = token_.begin;
+  Node node = sum();
+  node.begin = begin;  // brackets around it belong to it
+  node.end = last_end_;
+  return node;
+}
+
 Node Parser::sum() { return chain(NodeType::sum, '+', '-', &Parser::product); }
 
 Node Parser::product() { return chain(NodeType::product, '*', '/', &Parser::unary); }
@@ -106,6 +114,8 @@ Node Parser::primary() {
 Node Parser::named(const Token& name) {
   Node node;
   node.at = name.at;
+  node.begin = name.begin;
+  node.end = name.end;
   if (token_.is('{')) return component(name);
   if (misses_brace(name.text)) return component_without_brace(name);
   if (two_words(name)) {
@@ -132,16 +142,20 @@ Node Parser::list() {
   const Level level(*this, token_.at);
   Node node;
   node.at = token_.at;
+  node.begin = token_.begin;
   // The lexer stands right behind the '['.
   if (auto numbers = std::make_unique<Numbers>(); lexer_.read_numbers(*numbers)) {
     node.type = NodeType::numbers;
     node.numbers = std::move(numbers);
+    token_.end = lexer_.position();
     take();
+    node.end = last_end_;
     return node;
   }
   node.type = NodeType::list;
   const Location opened = take().at;
   items(node, ']', opened);
+  node.end = last_end_;
   return node;
 }
 

@@ -70,6 +70,7 @@ Token Lexer::next() {
   Token token;
   token.first_in_line = s_.first_in_line;
   token.at = location();
+  token.begin = token.end = s_.position;
   s_.first_in_line = false;
   if (at_end()) return token;
   const char c = peek();
@@ -95,6 +96,7 @@ Token Lexer::next() {
     report("unexpected character " + shown, token.at);
     token.type = TokenType::bad;
   }
+  token.end = s_.position;
   return token;
 }
 

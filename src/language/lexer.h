@@ -25,6 +25,7 @@ struct Token {
   double number = 0;
   std::string text;  ///< the name, the string without its quotes, or the number as written
   Location at;
+  size_t begin = 0, end = 0;  ///< bytes in the text
 
   bool is(char c) const { return type == TokenType::symbol && symbol == c; }
   /// As messages call it: "'{'", "the end of the file", …
@@ -51,6 +52,8 @@ class Lexer {
   /// Right after a '[': reads a list of plain numbers, or of rows of 2 to 4 plain numbers each, to its ']' into packed
   /// form. When the list holds anything else nothing is read. Lists of millions of numbers take this way.
   bool read_numbers(Numbers&);
+  /// The byte behind what was read last.
+  size_t position() const { return s_.position; }
 
  private:
   struct State {

@@ -15,6 +15,7 @@ Parser::Parser(const Source& source, Diagnostics& diagnostics, size_t begin)
 
 Token Parser::take() {
   Token taken = std::move(token_);
+  last_end_ = taken.end;
   token_ = lexer_.next();
   return taken;
 }
@@ -117,6 +118,8 @@ void Parser::statement(Document& document) {
   if (token_.is('{') || misses_brace(name.text)) {
     lost_ = lost_ && !token_.is('{');
     document.components.push_back(token_.is('{') ? component(name) : component_without_brace(name));
+    document.components.back().begin = name.begin;
+    document.components.back().end = last_end_;
     return;
   }
   if (name.text == "param") {
@@ -150,7 +153,7 @@ void Parser::statement(Document& document) {
 void Parser::definition(Document& document, Token name, bool parameter) {
   take();  // '='
   lost_ = false;
-  Definition made{{name.text, name.at}, parameter, {}};
+  Definition made{{name.text, name.at, name.begin}, parameter, {}};
   for (const char* reserved : {"true", "false", "none", "pi"})
     if (name.text == reserved) {
       diagnostics_.add(Error(fmt::format("'{}' has a fixed meaning and cannot be defined", reserved), name.at));
@@ -171,7 +174,7 @@ void Parser::definition(Document& document, Token name, bool parameter) {
 Label Parser::path_statement(const char* what) {
   if (token_.type != TokenType::string) unexpected(what);
   const Token path = take();
-  return {path.text, path.at};
+  return {path.text, path.at, path.begin};
 }
 
 // A member outside of any block: most likely the block ended too early, by a '}' too many. It is gone on with.
@@ -202,7 +205,7 @@ Node Parser::component(const Token& class_name) {
   node.type = NodeType::component;
   node.at = class_name.at;
   node.text = class_name.text;
-  take();
+  node.inside = take().end;
   members(node, opened);
   open_ = std::move(outside);
   return node;
@@ -251,7 +254,7 @@ void Parser::member(Node& component, Seen& seen) {
   Node value;
   value.type = NodeType::bad;
   const size_t index = component.children.size();
-  component.labels.push_back({name.text, name.at});
+  component.labels.push_back({name.text, name.at, name.begin});
   component.children.push_back(std::move(value));
   bool good = false;
   const auto leave = [&] {

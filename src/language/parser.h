@@ -51,7 +51,7 @@ class Parser {
   void note_stranger(const Token& member);
 
   // expressions.cpp
-  Node expression() { return sum(); }
+  Node expression();
   Node chain(NodeType, char first, char second, Node (Parser::*operand)());
   Node sum();
   Node product();
@@ -81,7 +81,8 @@ class Parser {
 
   Diagnostics& diagnostics_;
   Lexer lexer_;
-  Token token_;  // the next one
+  Token token_;          // the next one
+  size_t last_end_ = 0;  // the byte behind the last one that was taken
   int depth_ = 0;
   bool bracketed_ = false;
   std::string open_;  // '[' and '(' that are open in the innermost block, for going on after an error

@@ -33,6 +33,7 @@ enum class NodeType : std::uint8_t {
 struct Label {
   std::string text;
   Location at;
+  size_t begin = 0;  ///< its first byte in the text; of member names and definitions of an .etd only
 };
 
 struct Node {
@@ -45,6 +46,9 @@ struct Node {
   std::unique_ptr<Numbers> numbers;  ///< a packed list
   std::vector<Node> children;        ///< items, arguments, member values, operands
   std::vector<Label> labels;         ///< member names; the unit; the operator before each operand but the first
+  /// Bytes of the text, from the first to the one behind the last, of an .etd only: of members' values, items, arguments, names
+  /// and of what is defined. `inside` is the byte behind the '{' of a component.
+  size_t begin = 0, end = 0, inside = 0;
 };
 
 struct Definition {

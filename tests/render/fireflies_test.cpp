@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/replay.h"
+#include "check/replay/replay.h"
 #include "support/replay_test_support.h"
 
 namespace etendue::replay_test {

@@ -1,6 +1,6 @@
 // Samples computed again.
 
-#include "app/replay.h"
+#include "check/replay/replay.h"
 
 #include <gtest/gtest.h>
 

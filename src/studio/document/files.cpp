@@ -1,0 +1,153 @@
+// A document from a file, and into one.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "document.h"
+#include "etendue/language/language.h"
+#include "files/regular_file.h"
+#include "files/whole_file.h"
+#include "language/json.h"
+#include "language/source.h"
+
+namespace etendue::studio {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t largest_text = std::uint64_t(256) << 20;
+
+std::vector<Error> errors_at_hand() {
+  try {
+    throw;
+  } catch (const Errors& several) {
+    return several.errors;
+  } catch (const std::bad_alloc&) {
+    return {Error("there is not enough memory")};
+  } catch (const Error& error) {
+    return {error};
+  } catch (const std::exception& error) {
+    return {Error(error.what())};
+  }
+}
+
+/// The smallest description that can be rendered, as a person would begin it.
+constexpr const char* beginning = R"(# A new scene. Lengths are in metres unless a unit says otherwise.
+
+Job {
+    renderer: PathTracer { samples: 64 }
+    camera:   PerspectiveCamera { from: [0, 1, -5], to: [0, 1, 0] }
+    image:    ImageBuffer { width: 512, height: 512 }
+    outputs:  [ PngOutput {} ]
+    scene:    BvhScene { objects: [] }
+}
+)";
+
+}  // namespace
+
+void Document::open(const std::string& file) {
+  std::string text;
+  try {
+    text = read_regular_file(file, largest_text);
+  } catch (const Error& error) {
+    throw Error(fmt::format("cannot read '{}': {}", file, error.what()));
+  }
+  const std::string disk = text, folder = fs::path(file).parent_path().string();
+  std::string path = file;
+  bool converted = false;
+  if (language::is_json(file)) {  // its text is not ours to edit: it goes on as an .etd, not saved yet
+    text = write_description(*load_job(file), false, folder);
+    path = fs::path(file).replace_extension(".etd").string();
+    converted = true;
+  }
+  Document next(settings_, *folders_);
+  next.next_id_ = next_id_;
+  next.revision_ = revision_;
+  next.file_ = path;
+  next.folder_ = folder;
+  next.name_ = intern(path);
+  language::remember_text(next.name_, text);
+  next.trusts_all_ = true;
+  try {
+    next.follow(text, {});
+    for (const NamedFile& named : files_loaded_by(next.outline(), folder)) next.trusted_.insert(canonical_path(named.path));
+    for (const NamedFile& named : files_named_by(next.job())) next.trusted_.insert(canonical_path(named.path));
+  } catch (...) {
+    next.set_draft(text, errors_at_hand());
+    next.take_text("");
+  }
+  if (!converted) {
+    next.saved_text_ = next.disk_text_ = disk;
+    next.saved_revision_ = next.revision_;
+  }
+  take(std::move(next));
+}
+
+void Document::create(const std::string& folder) {
+  Document next(settings_, *folders_);
+  next.next_id_ = next_id_;
+  next.revision_ = revision_;
+  next.folder_ = folder;
+  next.name_ = intern("new.etd");
+  next.follow(beginning, {});
+  next.saved_text_ = beginning;  // there is nothing to lose yet
+  take(std::move(next));
+}
+
+void Document::take(Document&& next) {
+  file_ = std::move(next.file_);
+  folder_ = std::move(next.folder_);
+  saved_text_ = std::move(next.saved_text_);
+  disk_text_ = std::move(next.disk_text_);
+  name_ = next.name_;
+  revision_ = next.revision_;
+  saved_revision_ = next.saved_revision_;
+  next_id_ = next.next_id_;
+  outline_ = std::move(next.outline_);
+  places_ = std::move(next.places_);
+  draft_ = std::move(next.draft_);
+  overrides_.clear();
+  trusted_ = std::move(next.trusted_);
+  components_ = std::move(next.components_);
+  by_id_ = std::move(next.by_id_);
+  ids_ = std::move(next.ids_);
+  uses_ = std::move(next.uses_);
+  undo_.clear();
+  redo_.clear();
+  const std::lock_guard lock(render_guard_);
+  render_ = std::move(next.render_);
+}
+
+void Document::drop_draft() { draft_.reset(); }
+
+bool Document::changed_on_disk() const {
+  if (file_.empty() || disk_text_.empty()) return false;
+  try {
+    return read_regular_file(file_, largest_text) != disk_text_;
+  } catch (const Error&) {
+    return true;
+  }
+}
+
+void Document::save(const std::string& file) {
+  const std::string& whole = text();
+  write_whole_file(file, whole.data(), whole.size());
+  const std::string folder = fs::path(file).parent_path().string();
+  const bool moved = folder != folder_;
+  file_ = file;
+  saved_text_ = disk_text_ = whole;
+  saved_revision_ = revision_;
+  if (!moved) return;
+  // Names of files in it count from another folder now: what they lead to is for its reader to see.
+  folder_ = folder;
+}
+
+void Document::reload() {
+  Ref<Job> job = load(text(), overrides_);
+  replace_render(std::move(job));
+  number_parts();
+}
+
+}  // namespace etendue::studio

@@ -1,0 +1,183 @@
+// Classes and names of parts in the text.
+
+#include <fmt/format.h>
+
+#include "language/lexer.h"
+#include "language/writer.h"
+#include "text_editor.h"
+
+namespace etendue::studio {
+
+using language::Node;
+using language::NodeType;
+
+namespace {
+
+/// Whether a member of a class takes a value that another class's member has.
+bool fits(const ClassInfo& now, const Member& member, const Value& value) {
+  const Member* there = now.find(member.name);
+  if (!there) return false;
+  try {
+    const Ref<Component> tried = now.create();
+    set(*tried, member.name, value);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+std::string snake_case(const std::string& class_name) {
+  std::string text;
+  for (const char c : class_name) {
+    const bool capital = c >= 'A' && c <= 'Z';
+    if (capital && !text.empty()) text += '_';
+    text += capital ? char(c - 'A' + 'a') : c;
+  }
+  return text;
+}
+
+/// A value for a member that must be written.
+std::string required_text(const Member& member) {
+  if (!member.choices.empty()) return member.choices.front();
+  switch (member.kind) {
+    case Kind::component: {
+      if (member.list) return "[]";
+      const ClassInfo* wanted = Registry::instance().find(member.component_class);
+      for (const ClassInfo* candidate : Registry::instance().subclasses(*wanted))
+        if (!candidate->literal.empty()) return "0.5";
+      // The one that needs least.
+      const ClassInfo* best = nullptr;
+      size_t least = 0;
+      for (const ClassInfo* candidate : Registry::instance().subclasses(*wanted)) {
+        if (candidate->abstract()) continue;
+        size_t needs = 0;
+        for (const Member& m : candidate->members) needs += m.required;
+        if (!best || needs < least) best = candidate, least = needs;
+      }
+      return best ? new_component_text(*best) : "none";
+    }
+    case Kind::file:
+    case Kind::string: return member.list ? "[]" : "\"\"";
+    case Kind::color: return "0.5";
+    case Kind::boolean: return "false";
+    case Kind::transform: return "translate(0, 0, 0)";
+    case Kind::number:
+    case Kind::integer: {
+      if (member.list) return "[]";
+      double x = 1;
+      if (member.soft) x = member.soft->low;
+      if (member.range && !member.range->contains(x)) x = member.range->open_low ? member.range->high : member.range->low;
+      return fmt::format("{}", x);
+    }
+    default: return member.list ? (member.kind == Kind::point3 ? "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]" : "[]") : "[0, 0, 1]";
+  }
+}
+
+}  // namespace
+
+std::string new_component_text(const ClassInfo& info) {
+  std::vector<std::string> members;
+  for (const Member& member : info.members)
+    if (member.required) members.push_back(member.name + ": " + required_text(member));
+  if (members.empty()) return info.name + " {}";
+  return fmt::format("{} {{ {} }}", info.name, fmt::join(members, ", "));
+}
+
+void TextEditor::replace_class(const Ref<Component>& part, const ClassInfo& now) {
+  if (now.abstract()) throw Error(fmt::format("{} is abstract: there is nothing of this class alone", now.name));
+  const Node* written = node(*part);
+  if (!written) {  // what it is by default, or by a plain value, is written where it is used
+    const Slot use = use_of(*part);
+    set_value(use, written_out(*part));
+    const Node* value = value_node(use);
+    const Node* list = value && use.index ? outline_->resolve(*value) : nullptr;
+    if (value) begins_[part.get()] = list ? outline_->entries(*list).items.at(*use.index).begin : value->begin;
+    written = node(*part);
+    if (!written) {  // the plain value itself
+      const Node* there = value_node(use);
+      const std::string plain = there ? outline_->text({there->begin, there->end}) : "";
+      const Member* literal = part->class_info().find(part->class_info().literal);
+      const bool keeps = literal && fits(now, *literal, literal->get(*part, *literal));
+      return set_value(use, keeps ? fmt::format("{} {{ {}: {} }}", now.name, literal->name, plain) : new_component_text(now));
+    }
+  }
+  for (const Member& member : part->class_info().members)
+    if (!fits(now, member, member.get(*part, member)) && Outline::member(*node(*part), member.name))
+      set_text(without_member(*outline_, *node(*part), member.name));
+  for (const Member& member : now.members)
+    if (member.required && !Outline::member(*node(*part), member.name))
+      set_text(with_member(*outline_, *node(*part), member.name, required_text(member)));
+  const size_t begin = node(*part)->begin;
+  set_text(with_span(*outline_, {begin, begin + part->class_info().name.size()}, now.name));
+  begins_[part.get()] = begin;
+}
+
+std::string TextEditor::free_name(const std::string& stem) const {
+  std::string name = stem;
+  for (int i = 2; outline_->definition(name) || !outline_->uses(name).empty(); ++i) name = fmt::format("{}_{}", stem, i);
+  return name;
+}
+
+std::string TextEditor::name_of(const Ref<Component>& part) {
+  const Node* written = node(*part);
+  for (const language::Definition& d : outline_->syntax().definitions)
+    if (written && outline_->resolve(d.value) == written) return d.name.text;
+  if (part->origin && !part->origin->name.empty() && !written) return part->origin->name;  // in a file that is included
+  const std::string name = free_name(snake_case(part->class_info().name));
+  const std::string whole = written_out(*part);
+  std::unordered_map<const Component*, size_t> within;  // from where the part begins
+  size_t at = 0;
+  if (written) {
+    const Span gone{written->begin, written->end};
+    at = gone.begin;
+    for (const auto& [other, begin] : begins_)
+      if (gone.contains(begin)) within.emplace(other, begin - gone.begin);
+    set_text(with_span(*outline_, gone, name));
+  } else {
+    const Slot use = use_of(*part);
+    set_value(use, name);
+    if (const Node* value = value_node(use)) at = value->begin;
+    within.emplace(part.get(), 0);
+  }
+  set_text(with_definition(*outline_, name, whole, at));
+  if (const language::Definition* d = outline_->definition(name))
+    for (const auto& [other, offset] : within) begins_[other] = d->value.begin + offset;
+  return name;
+}
+
+void TextEditor::rename(const std::string& old, const std::string& now) {
+  const language::Definition* d = outline_->definition(old);
+  if (!d) throw Error(fmt::format("there is no name '{}' in this text", old));
+  if (now == old) return;
+  std::vector<Span> uses = outline_->uses(old);
+  if (now.empty()) {
+    if (uses.size() != 1)
+      throw Error(fmt::format("'{}' is used {} times: what has no name can be used once", old, uses.size()));
+    const std::string value = outline_->text({d->value.begin, d->value.end});
+    const std::string whole = outline_->text();
+    // The line of the definition goes; a comment behind it stays.
+    size_t begin = whole.rfind('\n', d->name.begin);
+    begin = begin == std::string::npos ? 0 : begin + 1;
+    size_t end = d->value.end;
+    while (end < whole.size() && (whole[end] == ' ' || whole[end] == '\t' || whole[end] == '\r' || whole[end] == ';')) ++end;
+    if (end < whole.size() && whole[end] == '\n') ++end;
+    const Span line{begin, end}, use = uses[0];
+    if (use.begin > line.begin) {
+      set_text(with_span(*outline_, use, value));
+      set_text(with_span(*outline_, line, ""));
+    } else {
+      set_text(with_span(*outline_, line, ""));
+      set_text(with_span(*outline_, use, value));
+    }
+    return;
+  }
+  if (!language::is_name(now)) throw Error(fmt::format("'{}' is no name: letters, digits and _, and no digit first", now));
+  for (const char* reserved : {"true", "false", "none", "pi", "param", "include", "plugin"})
+    if (now == reserved) throw Error(fmt::format("'{}' has a fixed meaning and cannot be a name", now));
+  if (outline_->definition(now)) throw Error(fmt::format("'{}' is defined already", now));
+  uses.push_back({d->name.begin, d->name.begin + old.size()});
+  std::sort(uses.begin(), uses.end(), [](Span a, Span b) { return a.begin > b.begin; });
+  for (const Span& s : uses) set_text(with_span(*outline_, s, now));
+}
+
+}  // namespace etendue::studio

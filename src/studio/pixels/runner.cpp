@@ -1,0 +1,101 @@
+#include "runner.h"
+
+namespace etendue::studio {
+
+Runner::Runner() : thread_([this] { work(); }) {}
+
+Runner::~Runner() {
+  {
+    const std::lock_guard lock(guard_);
+    ending_ = true;
+    wanted_ = false;
+    if (running_) render_->abort();
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Runner::set(std::shared_ptr<Render> render) {
+  std::unique_lock lock(guard_);
+  const bool wanted = std::exchange(wanted_, false);
+  // Whatever it waits for, it hears of it: one that begins just now would forget an earlier word.
+  while (running_) {
+    render_->abort();
+    changed_.wait_for(lock, std::chrono::milliseconds(20));
+  }
+  render_ = std::move(render);
+  wanted_ = wanted;
+  ++turn_;
+  status_ = {render_ ? State::paused : State::empty, {}, {}, status_.changes + 1};
+  changed_.notify_all();
+}
+
+void Runner::start() {
+  const std::lock_guard lock(guard_);
+  wanted_ = true;
+  ++turn_;
+  changed_.notify_all();
+}
+
+void Runner::pause() {
+  const std::lock_guard lock(guard_);
+  wanted_ = false;
+  if (running_) render_->stop();
+}
+
+void Runner::stop() {
+  const std::lock_guard lock(guard_);
+  wanted_ = false;
+  if (running_) render_->abort();
+}
+
+void Runner::follow(const std::shared_ptr<Render>& render) {
+  bool other = false;
+  {
+    const std::lock_guard lock(guard_);
+    other = render_ != render;
+  }
+  if (other) return set(render);
+  const std::lock_guard lock(guard_);
+  ++turn_;
+  changed_.notify_all();
+}
+
+Runner::Status Runner::status() const {
+  const std::lock_guard lock(guard_);
+  return status_;
+}
+
+void Runner::work() {
+  std::unique_lock lock(guard_);
+  while (true) {
+    changed_.wait(lock, [&] { return ending_ || (wanted_ && render_ && turn_ != done_turn_); });
+    if (ending_) return;
+    done_turn_ = turn_;
+    running_ = true;
+    status_ = {State::rendering, {}, {}, status_.changes + 1};
+    const std::shared_ptr<Render> render = render_;
+    lock.unlock();
+    Status next;
+    try {
+      next.ended = render->run();
+    } catch (const Errors& several) {
+      next.errors = several.errors;
+    } catch (const Error& error) {
+      next.errors = {error};
+    } catch (const std::exception& error) {
+      next.errors = {Error(error.what())};
+    }
+    lock.lock();
+    running_ = false;
+    const bool given_up = next.ended == Ended::interrupted || next.ended == Ended::aborted;
+    if (given_up && wanted_) ++turn_;  // the word was for an earlier run
+    next.state = !next.errors.empty() ? State::failed : (given_up ? State::paused : State::finished);
+    if (next.state == State::failed) wanted_ = false;
+    next.changes = status_.changes + 1;
+    status_ = std::move(next);
+    changed_.notify_all();
+  }
+}
+
+}  // namespace etendue::studio

@@ -1,0 +1,153 @@
+// Requests by which parts come, go, and are put elsewhere.
+
+#include <fmt/format.h>
+
+#include "requests.h"
+
+namespace etendue::studio {
+
+namespace {
+
+const ClassInfo& class_named(const std::string& name) {
+  const ClassInfo* info = Registry::instance().find(name);
+  if (!info || info->abstract()) static_cast<void>(Registry::instance().create(name));  // says what there is
+  return *info;
+}
+
+/// The part that stands in a slot now; 0 when there is none.
+int part_in(const Document& document, const Slot& s, size_t index) {
+  const Value value = s.member->get(*s.part, *s.member);
+  if (const auto* one = value.as<Ref<Component>>()) return *one ? document.id_of(**one) : 0;
+  const auto* list = value.as<Value::List>();
+  if (!list || index >= list->size()) return 0;
+  const auto* part = (*list)[index].as<Ref<Component>>();
+  return part && *part ? document.id_of(**part) : 0;
+}
+
+Json with_component(Json reply, int id) {
+  reply["component"] = id ? Json(id) : Json();
+  return reply;
+}
+
+Json replace(const Call& call) {
+  TextEditor editor = editor_for(call);
+  const Ref<Component> part = call.component();
+  const ClassInfo& now = class_named(call.text("class"));
+  if (call.has("use")) {  // this use alone: it becomes a copy first
+    const Json& use = call.request["use"];
+    if (!use.is_object()) throw RequestError("bad_request", "'use' must be {id, member, index}");
+    const Call place{call.studio, call.browser, use, call.id};
+    const Slot s = slot(place.component("id"), place.text("member"), place.index());
+    if (!editor.name_in(s).empty()) {
+      editor.set(s, new_component_text(now));
+      const Json reply = apply(call, editor, "replace by " + now.name);
+      return with_component(reply, part_in(call.studio.document(), s, s.index.value_or(0)));
+    }
+  }
+  const auto uses = call.studio.document().uses(*part);
+  editor.replace_class(part, now);
+  const Json reply = apply(call, editor, "replace by " + now.name);
+  if (uses.empty()) return reply;
+  const Slot s{call.studio.document().component(uses[0].holder), uses[0].member, uses[0].index};
+  return with_component(reply, part_in(call.studio.document(), s, uses[0].index.value_or(0)));
+}
+
+Json add(const Call& call) {
+  TextEditor editor = editor_for(call);
+  const Slot s = slot(call.component(), call.text("member"));
+  const std::string text = call.has("text") ? call.text("text") : new_component_text(class_named(call.text("class")));
+  const std::optional<size_t> index = call.index();
+  const Value before = s.member->get(*s.part, *s.member);
+  const auto* list = before.as<Value::List>();
+  const size_t at = index.value_or(list ? list->size() : 0);
+  if (s.member->list)
+    editor.add(s, index, text);
+  else
+    editor.set(s, text);
+  const Json reply = apply(call, editor, "add to " + s.member->name);
+  return with_component(reply, part_in(call.studio.document(), s, at));
+}
+
+Json remove(const Call& call) {
+  TextEditor editor = editor_for(call);
+  const Slot s = slot_of(call);
+  if (s.index)
+    editor.remove(s);
+  else if (s.member->required)
+    editor.set(s, "none");
+  else if (s.member->default_value.none())
+    editor.reset(s);
+  else
+    editor.set(s, "none");
+  return apply(call, editor, "remove from " + s.member->name);
+}
+
+Json duplicate(const Call& call) {
+  TextEditor editor = editor_for(call);
+  const Slot s = slot_of(call);
+  if (!s.index) throw RequestError("bad_request", "'index' is missing");
+  editor.add(s, *s.index + 1, editor.written(s));
+  const Json reply = apply(call, editor, "duplicate in " + s.member->name);
+  return with_component(reply, part_in(call.studio.document(), s, *s.index + 1));
+}
+
+Json move(const Call& call) {
+  TextEditor editor = editor_for(call);
+  const Slot from = slot_of(call);
+  if (!from.index) throw RequestError("bad_request", "'index' is missing");
+  const bool same = !call.has("component_to");
+  const Slot to = same ? Slot{from.part, from.member, {}} : slot(call.component("component_to"), call.text("member_to"));
+  const auto place = size_t(call.integer("to", 0, 1'000'000'000));
+  const std::string text = editor.written(from);
+  // In one list `to` is where the entry stands in the end.
+  if (same && place == *from.index) return {{"revision", call.studio.document().revision()}};
+  editor.remove(from);
+  editor.add(to, place, text);
+  return apply(call, editor, "move in " + from.member->name);
+}
+
+Json share(const Call& call) {
+  TextEditor editor = editor_for(call);
+  const Slot s = slot_of(call);
+  const Ref<Component> with = call.component("with");
+  editor.set(s, editor.name_of(with));
+  return apply(call, editor, "share " + s.member->name);
+}
+
+Json unshare(const Call& call) {
+  TextEditor editor = editor_for(call);
+  const Slot s = slot_of(call);
+  const Value value = s.member->get(*s.part, *s.member);
+  const auto* list = value.as<Value::List>();
+  const auto* part =
+      list && s.index && *s.index < list->size() ? (*list)[*s.index].as<Ref<Component>>() : value.as<Ref<Component>>();
+  if (!part || !*part || editor.name_in(s).empty()) throw Error("what stands there is not shared by a name");
+  editor.set(s, editor.written_out(**part));
+  const Json reply = apply(call, editor, "unshare " + s.member->name);
+  return with_component(reply, part_in(call.studio.document(), s, s.index.value_or(0)));
+}
+
+Json rename(const Call& call) {
+  TextEditor editor = editor_for(call);
+  const std::string now = call.text_or("name", "");
+  std::string old = call.text_or("old", "");
+  if (old.empty()) {
+    const Ref<Component> part = call.component();
+    if (now.empty() && (!part->origin || part->origin->name.empty())) throw Error("it has no name");
+    old = editor.name_of(part);
+  }
+  editor.rename(old, now);
+  return apply(call, editor, now.empty() ? "take the name " + old : "name " + now);
+}
+
+}  // namespace
+
+std::span<const Request> structure_requests() {
+  static constexpr Request all[] = {
+      {"replace", false, replace}, {"add", false, add},     {"remove", false, remove},   {"duplicate", false, duplicate},
+      {"move", false, move},       {"share", false, share}, {"unshare", false, unshare}, {"rename", false, rename},
+  };
+  return all;
+}
+
+}  // namespace etendue::studio

@@ -1,0 +1,302 @@
+// Requests one after the other, and what becomes of them.
+
+#include "studio.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace etendue::studio {
+
+namespace {
+
+constexpr size_t largest_echo = 200;
+
+const Request* find_request(const std::string& name) {
+  static const std::map<std::string, const Request*, std::less<>> all = [] {
+    std::map<std::string, const Request*, std::less<>> map;
+    for (const auto list : {edit_requests(), structure_requests(), text_requests(), render_requests(), camera_requests(),
+                            look_requests(), file_requests()})
+      for (const Request& request : list) map.emplace(request.name, &request);
+    return map;
+  }();
+  const auto found = all.find(name);
+  if (found != all.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [key, request] : all) known.push_back(key);
+  throw RequestError("unknown_request",
+                     fmt::format("there is no request '{}'{}", name.substr(0, largest_echo), suggestion(name, known)));
+}
+
+/// Texts from files may hold bytes that are not UTF-8.
+std::shared_ptr<const std::string> written(const Json& json) {
+  return std::make_shared<const std::string>(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace
+
+Studio::Studio(StudioSettings settings)
+    : settings_(std::move(settings)),
+      document_(settings_.render, settings_.folders),
+      queue_(settings_.render, [this] { tell_queue(); }),
+      checks_([this](const Json& event) { broadcast(event); }) {
+  answerer_ = std::thread([this] { answer(); });
+  viewer_ = std::thread([this] { look(); });
+}
+
+Studio::~Studio() {
+  ending_ = true;
+  {
+    const std::lock_guard lock(tasks_guard_);
+    tasks_.clear();
+  }
+  tasks_changed_.notify_all();
+  wake_viewer();
+  answerer_.join();
+  viewer_.join();
+  runner_.set(nullptr);
+}
+
+void Studio::begin(const std::string& file) {
+  if (file.empty())
+    document_.create(std::filesystem::current_path().string());
+  else
+    document_.open(std::filesystem::absolute(file).string());
+  text_units_ = document_.places().size();
+  runner_.set(document_.render());
+  if (!file.empty()) runner_.start();
+}
+
+// ---- browsers ---------------------------------------------------------------------------------------------------------------
+
+void Studio::join(const std::shared_ptr<Browser>& browser) {
+  const std::lock_guard lock(browsers_guard_);
+  browser->number = next_browser_++;
+  browsers_.emplace(browser->number, browser);
+}
+
+void Studio::leave(const Browser& browser) {
+  const std::lock_guard lock(browsers_guard_);
+  browsers_.erase(browser.number);
+  watches_.erase(browser.number);
+}
+
+void Studio::broadcast(const Json& event) {
+  const auto words = written(event);
+  const std::lock_guard lock(browsers_guard_);
+  for (const auto& [number, weak] : browsers_)
+    if (const auto browser = weak.lock()) browser->send(words);
+}
+
+void Studio::notice(const std::string& text, const char* kind) {
+  broadcast({{"event", "notice"}, {"text", text}, {"kind", kind}});
+}
+
+/// Some times a second at most: it changes with every sample.
+void Studio::tell_queue() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+  const auto before = queue_told_.load();
+  constexpr auto interval = std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::milliseconds(200));
+  const Json json = queue_.json();
+  bool rendering = false;
+  for (const Json& entry : json["entries"]) rendering |= entry["state"] == "rendering" && entry["fraction"] > 0.0;
+  if (rendering && now - before < interval.count()) return;
+  queue_told_ = now;
+  broadcast(json);
+}
+
+void Studio::set_watch(const Browser& browser, const Watch& watch) {
+  {
+    const std::lock_guard lock(browsers_guard_);
+    watches_[browser.number] = watch;
+  }
+  wake_viewer();
+}
+
+std::shared_ptr<const Frame> Studio::frame(const Browser& browser) const {
+  const std::lock_guard lock(browsers_guard_);
+  const auto watch = watches_.find(browser.number);
+  if (watch == watches_.end()) return nullptr;
+  const auto found = frames_.find(watch->second);
+  return found == frames_.end() ? nullptr : found->second;
+}
+
+// ---- requests ---------------------------------------------------------------------------------------------------------------
+
+void Studio::request(const std::shared_ptr<Browser>& from, std::string text) {
+  {
+    const std::lock_guard lock(tasks_guard_);
+    tasks_.push_back({from, std::move(text)});
+  }
+  tasks_changed_.notify_one();
+}
+
+void Studio::answer() {
+  std::unique_lock lock(tasks_guard_);
+  while (!ending_) {
+    const auto ready = [&] { return ending_ || !tasks_.empty(); };
+    if (fine_at) {
+      // A camera that came to rest is shown fine.
+      if (!tasks_changed_.wait_until(lock, *fine_at, ready)) {
+        lock.unlock();
+        fine_at.reset();
+        coarse = false;
+        try {
+          apply_overrides();
+        } catch (const std::exception& error) {
+          notice(error.what(), "error");
+        }
+        lock.lock();
+        continue;
+      }
+    } else {
+      tasks_changed_.wait(lock, ready);
+    }
+    if (ending_) return;
+    const Task task = std::move(tasks_.front());
+    tasks_.pop_front();
+    lock.unlock();
+    answer(task);
+    task.from->answered();
+    lock.lock();
+  }
+}
+
+void Studio::answer(const Task& task) {
+  Json reply = {{"id", nullptr}, {"ok", false}};
+  try {
+    Json request;
+    try {
+      request = Json::parse(task.text);
+    } catch (const nlohmann::json::exception& error) {
+      throw RequestError("bad_request", fmt::format("this is no JSON: {}", std::string(error.what()).substr(0, largest_echo)));
+    }
+    if (!request.is_object()) throw RequestError("bad_request", "a request is a JSON object");
+    const auto id = request.find("id");
+    if (id != request.end() &&
+        (id->is_number() || (id->is_string() && id->get_ref<const std::string&>().size() <= largest_echo)))
+      reply["id"] = *id;
+    const Call call{*this, *task.from, request, reply["id"]};
+    const Request* found = find_request(call.text("do"));
+    if (settings_.read_only && !found->read_only)
+      throw RequestError("read_only", "this studio only shows (--read-only): nothing can be changed");
+    Json result = found->answer(call);
+    reply["ok"] = true;
+    for (auto& [key, value] : result.items()) reply[key] = std::move(value);
+  } catch (const RequestError& error) {
+    reply["errors"] = Json::array({{{"message", error.what()}, {"code", error.code}}});
+  } catch (...) {
+    reply["errors"] = errors_json(errors_at_hand(), &document_);
+  }
+  try {
+    task.from->send(written(reply));
+  } catch (const std::exception&) {  // no memory for it: the page will ask again
+  }
+}
+
+std::vector<Error> errors_at_hand() {
+  try {
+    throw;
+  } catch (const Errors& several) {
+    return several.errors;
+  } catch (const Error& error) {
+    return {error};
+  } catch (const std::bad_alloc&) {
+    return {Error("there is not enough memory for this")};
+  } catch (const std::exception& error) {
+    return {Error(error.what())};
+  } catch (...) {
+    return {Error("something unknown was thrown")};
+  }
+}
+
+void Studio::shutdown() {
+  broadcast({{"event", "goodbye"}});
+  if (on_shutdown) on_shutdown();
+}
+
+std::shared_ptr<Render> Studio::valid_render() {
+  std::shared_ptr<Render> render = document_.render();
+  if (!render) throw RequestError("no_document", "there is nothing that can be rendered: the text has errors");
+  return render;
+}
+
+void Studio::apply_overrides() {
+  std::map<std::string, std::string> all = overrides;
+  if (coarse && document_.valid()) {
+    const ImageBuffer& image = *document_.job().image;
+    constexpr int part = 4;
+    if (!document_.overrides().contains("image.width")) {  // else it is coarse already
+      all["image.width"] = std::to_string(std::max(image.width / part, 1));
+      all["image.height"] = std::to_string(std::max(image.height / part, 1));
+      all["image.crop"] = "[]";
+    } else {
+      for (const char* member : {"image.width", "image.height", "image.crop"}) all[member] = document_.overrides().at(member);
+    }
+  }
+  static_cast<void>(document_.set_overrides(all));
+  ++generation;
+  runner_.follow(document_.render());
+  wake_viewer();
+}
+
+// ---- arguments --------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+const Json& argument(const Call& call, const char* key) {
+  if (!call.has(key)) throw RequestError("bad_request", fmt::format("'{}' is missing", key));
+  return call.request[key];
+}
+
+[[noreturn]] void wrong(const char* key, const char* wanted) {
+  throw RequestError("bad_request", fmt::format("'{}' must be {}", key, wanted));
+}
+
+}  // namespace
+
+std::string Call::text(const char* key) const {
+  const Json& value = argument(*this, key);
+  if (!value.is_string()) wrong(key, "a text");
+  return value.get<std::string>();
+}
+
+std::string Call::text_or(const char* key, const std::string& otherwise) const { return has(key) ? text(key) : otherwise; }
+
+bool Call::flag(const char* key) const {
+  if (!has(key)) return false;
+  if (!request[key].is_boolean()) wrong(key, "true or false");
+  return request[key].get<bool>();
+}
+
+std::int64_t Call::integer(const char* key, std::int64_t low, std::int64_t high) const {
+  const Json& value = argument(*this, key);
+  double x = value.is_number() ? value.get<double>() : std::nan("");
+  if (!(x == std::floor(x)) || x < double(low) || x > double(high))
+    throw RequestError("bad_request", fmt::format("'{}' must be a whole number from {} to {}", key, low, high));
+  return std::int64_t(x);
+}
+
+std::int64_t Call::integer_or(const char* key, std::int64_t otherwise, std::int64_t low, std::int64_t high) const {
+  return has(key) ? integer(key, low, high) : otherwise;
+}
+
+double Call::number(const char* key) const {
+  const Json& value = argument(*this, key);
+  if (!value.is_number() || !std::isfinite(value.get<double>())) wrong(key, "a finite number");
+  return value.get<double>();
+}
+
+double Call::number_or(const char* key, double otherwise) const { return has(key) ? number(key) : otherwise; }
+
+std::optional<size_t> Call::index(const char* key) const {
+  if (!has(key)) return {};
+  return size_t(integer(key, 0, 1'000'000'000));
+}
+
+Ref<Component> Call::component(const char* key) const {
+  static_cast<void>(studio.valid_render());
+  return studio.document().component(int(integer(key, 0, 2'000'000'000)));
+}
+
+}  // namespace etendue::studio

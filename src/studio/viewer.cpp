@@ -1,0 +1,236 @@
+// Looking at the render while it goes on: progress, and frames of the film for whoever watches.
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "language/loader.h"
+#include "studio.h"
+
+namespace etendue::studio {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// How much of one processor looking may take: what is rendered should hardly notice.
+constexpr double share = 0.03;
+constexpr auto shortest = std::chrono::milliseconds(50), longest = std::chrono::milliseconds(1000);
+
+const char* name(Runner::State state) {
+  switch (state) {
+    case Runner::State::empty: return "empty";
+    case Runner::State::rendering: return "rendering";
+    case Runner::State::paused: return "paused";
+    case Runner::State::finished: return "finished";
+    case Runner::State::failed: return "stopped";
+  }
+  return "";
+}
+
+const char* reason(Ended ended) {
+  switch (ended) {
+    case Ended::samples: return "samples";
+    case Ended::time: return "time";
+    case Ended::error: return "error";
+    case Ended::interrupted: return "paused";
+    case Ended::aborted: return "stopped";
+  }
+  return "";
+}
+
+Json finite(double x) { return std::isfinite(x) && x > 0 ? Json(x) : Json(); }
+
+}  // namespace
+
+Ref<ToneMap> tone_map_of(const std::string& text) {
+  constexpr size_t longest = 10000;
+  if (text.size() > longest) throw Error("this tone map is too long");
+  LoadOptions strict;
+  strict.allow_files = false;
+  language::Loader loader(strict);
+  loader.add_text(text, "tone map", {});
+  const Ref<ToneMap> tone_map = ref_cast<ToneMap>(loader.result(false));
+  if (!tone_map) throw Error("this is no tone map");
+  prepare_tree(*tone_map);
+  return tone_map;
+}
+
+void Studio::pin(const std::string& name, std::shared_ptr<const Image> picture) {
+  constexpr size_t most = 8;
+  const std::lock_guard lock(browsers_guard_);
+  if (!picture) {
+    pins_.erase(name);
+  } else if (pins_.size() >= most && !pins_.contains(name)) {
+    throw Error("eight pictures are pinned already: take one off first");
+  } else {
+    pins_[name] = std::move(picture);
+  }
+}
+
+void Studio::wake_viewer() {
+  {
+    const std::lock_guard lock(viewer_guard_);
+    viewer_woken_ = true;
+  }
+  viewer_changed_.notify_all();
+}
+
+Json Studio::progress_json() {
+  const Runner::Status status = runner_.status();
+  Json json = {{"event", "progress"},
+               {"state", name(status.state)},
+               {"ended", status.ended ? Json(reason(*status.ended)) : Json()},
+               {"generation", generation.load()},
+               {"coarse", coarse.load()}};
+  const std::shared_ptr<Render> render = document_.render();
+  if (render) {
+    const RenderSnapshot now = render->snapshot();
+    const Progress& p = now.progress;
+    json["samples"] = p.samples;
+    json["samples_wanted"] = p.samples_wanted;
+    json["fraction"] = p.fraction;
+    json["seconds"] = p.seconds;
+    json["seconds_left"] = p.seconds_left >= 0 && std::isfinite(p.seconds_left) ? Json(p.seconds_left) : Json();
+    json["samples_per_second"] = p.samples_per_second;
+    json["error"] = finite(now.film.relative_error());
+    json["bad_samples"] = now.film.bad_samples();
+    const Image picture = now.picture();
+    json["width"] = picture.width;
+    json["height"] = picture.height;
+    Json layers = Json::array();
+    std::set<std::string> seen;
+    for (size_t i = 3; i < picture.channels.size(); ++i)
+      if (const std::string layer = picture.channels[i].substr(0, picture.channels[i].find('.')); seen.insert(layer).second)
+        layers.push_back(layer);
+    json["layers"] = std::move(layers);
+  }
+  json["errors"] = errors_json(status.errors, nullptr);
+  return json;
+}
+
+void Studio::look() {
+  std::uint64_t seen_changes = 0, seen_generation = 0;
+  Clock::time_point told{};
+  auto pause = Clock::duration(shortest);
+  while (!ending_) {
+    bool woken = false;
+    {
+      std::unique_lock lock(viewer_guard_);
+      viewer_changed_.wait_for(lock, pause, [&] { return ending_ || viewer_woken_; });
+      woken = std::exchange(viewer_woken_, false);
+    }
+    if (ending_) return;
+    const Runner::Status status = runner_.status();
+    const bool changed = woken || status.changes != seen_changes || generation.load() != seen_generation;
+    if (status.state != Runner::State::rendering && !changed) {
+      pause = longest / 4;
+      continue;
+    }
+    seen_changes = status.changes;
+    seen_generation = generation.load();
+    {
+      const std::lock_guard lock(browsers_guard_);
+      if (browsers_.empty()) {
+        frames_.clear();
+        pause = longest / 4;
+        continue;
+      }
+    }
+    const Clock::time_point begin = Clock::now();
+    try {
+      look_once(changed);
+      if (changed || begin - told >= std::chrono::milliseconds(250)) {
+        broadcast(progress_json());
+        told = begin;
+      }
+    } catch (const std::exception& error) {
+      notice(error.what(), "error");
+      pause = longest;
+      continue;
+    }
+    const auto cost = Clock::now() - begin;
+    const auto quiet = std::chrono::duration_cast<Clock::duration>(cost / share);
+    pause =
+        std::clamp<Clock::duration>(status.state == Runner::State::rendering && !coarse ? quiet : shortest, shortest, longest);
+  }
+}
+
+std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const RenderSnapshot& snapshot, const Image& picture,
+                                                const FrameInfo& info, const Frame* before) {
+  static_cast<void>(snapshot);
+  const std::uint64_t number = ++frame_number_;
+  Image pinned;
+  const Image* image = &picture;
+  if (watch.layer.starts_with("pin:")) {
+    const std::lock_guard lock(browsers_guard_);
+    const auto found = pins_.find(watch.layer.substr(4));
+    if (found == pins_.end()) return nullptr;
+    pinned = *found->second;
+    image = &pinned;
+  } else if (!watch.layer.empty()) {
+    for (size_t i = 3; i < picture.channels.size(); ++i)
+      if (picture.channels[i] == watch.layer || picture.channels[i].starts_with(watch.layer + ".")) {
+        const bool xyz = picture.channels[i] == watch.layer + ".X";
+        return Frame::make(Frame::Kind::linear, picture, i, xyz, info, number, before);
+      }
+    return nullptr;
+  }
+  if (watch.what == Watch::What::linear) return Frame::make(Frame::Kind::linear, *image, 0, true, info, number, before);
+  const std::shared_ptr<Render> render = document_.render();
+  Image shown;
+  if (watch.tone_map.empty()) {
+    shown = render->display(*image);
+  } else {
+    shown = tone_map_of(watch.tone_map)->apply(*image);
+  }
+  return Frame::make(Frame::Kind::toned, shown, 0, false, info, number, before);
+}
+
+/// One frame for each kind of watching.
+bool Studio::look_once(bool) {
+  const std::shared_ptr<Render> render = document_.render();
+  if (!render) return false;
+  std::set<Watch> wanted;
+  std::map<Watch, std::shared_ptr<const Frame>> before;
+  {
+    const std::lock_guard lock(browsers_guard_);
+    for (const auto& [number, watch] : watches_)
+      if (watch.what != Watch::What::none) wanted.insert(watch);
+    before = frames_;
+  }
+  if (wanted.empty()) return false;
+  const Runner::Status status = runner_.status();
+  const RenderSnapshot snapshot = render->snapshot();
+  const Image picture = snapshot.picture();
+  FrameInfo info;
+  info.generation = generation;
+  info.samples = snapshot.progress.samples;
+  info.coarse = coarse;
+  info.finished = status.state == Runner::State::finished;
+  const auto number_in = [&](const char* key, std::uint32_t otherwise) {
+    const auto found = picture.metadata.find(key);
+    return found == picture.metadata.end() ? otherwise : std::uint32_t(std::stoul(found->second));
+  };
+  info.x0 = number_in("crop_x", 0);
+  info.y0 = number_in("crop_y", 0);
+  info.full_width = number_in("full_width", std::uint32_t(picture.width));
+  info.full_height = number_in("full_height", std::uint32_t(picture.height));
+  std::map<Watch, std::shared_ptr<const Frame>> frames;
+  for (const Watch& watch : wanted) {
+    const auto had = before.find(watch);
+    try {
+      frames[watch] = make_frame(watch, snapshot, picture, info, had == before.end() ? nullptr : had->second.get());
+    } catch (const std::exception& error) {  // of a tone map; whoever watches keeps what is on the screen
+      notice(error.what(), "error");
+      if (had != before.end()) frames[watch] = had->second;
+    }
+  }
+  const std::lock_guard lock(browsers_guard_);
+  frames_ = std::move(frames);
+  for (const auto& [number, weak] : browsers_)
+    if (const auto browser = weak.lock()) browser->frame_ready();
+  return true;
+}
+
+}  // namespace etendue::studio
