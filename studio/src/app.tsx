@@ -6,6 +6,7 @@ import { FileBrowser } from "./files/browser.tsx";
 import { Help } from "./help.tsx";
 import { remember, remembered } from "./memory.ts";
 import { dismiss, document_, line, notices, tab, type Tab } from "./model/state.ts";
+import { Explanation } from "./panel/field.tsx";
 import { Panel } from "./panel/panel.tsx";
 import { Button, Divider, Tabs } from "./parts/parts.tsx";
 import { Paths } from "./paths/paths.tsx";
@@ -59,7 +60,10 @@ export function App(): JSX.Element {
       </main>
       <aside class="right" aria-label={texts.panel.label}>
         <Divider label={texts.common.divider} size={right.value} least={270} most={620} after change={resize("right")} />
-        <Panel />
+        <div class="panel-side">
+          <Panel />
+          <Explanation />
+        </div>
       </aside>
       <Notices />
       <Chooser />

@@ -16,7 +16,7 @@ export function Markdown({ text }: { text: string }): JSX.Element {
       ++i;
       const code = take((l) => !l.startsWith("```"));
       ++i;
-      blocks.push(<pre>{code.join("\n")}</pre>);
+      blocks.push(<pre tabIndex={0}>{code.join("\n")}</pre>);
     } else if (/^#{1,6}\s/.test(line)) {
       blocks.push(<h4>{inline(line.replace(/^#+\s*/, ""))}</h4>);
       ++i;

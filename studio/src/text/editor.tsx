@@ -138,7 +138,7 @@ function extensions(): unknown[] {
   return [
     lineNumbers(), foldGutter(), codeFolding(), lintGutter(), drawSelection(), highlightActiveLine(), highlightSelectionMatches(), bracketMatching(),
     closeBrackets(), indentOnInput(), indentUnit.of("    "), search({ top: true }), language, hover, autocompletion({ override: [complete] }),
-    EditorView.contentAttributes.of({ "aria-label": t.label }),
+    EditorView.contentAttributes.of({ "aria-label": t.label, tabindex: "0" }),
     keymap.of([
       { key: "Mod-z", run: () => (void settle().then(() => ask("undo")), true), preventDefault: true },
       { key: "Mod-Shift-z", run: () => (void settle().then(() => ask("redo")), true), preventDefault: true },
