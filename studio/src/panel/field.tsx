@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import type { Member } from "../model/classes.ts";
 import { writeDefault } from "../model/classes.ts";
 import type { Component, MemberState } from "../model/protocol.ts";
+import { inline } from "../parts/markdown.tsx";
 import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
 import { ColorField } from "./color.tsx";
@@ -30,7 +31,7 @@ export function Explanation(): JSX.Element {
     <footer class="explanation">
       {member ? (
         <>
-          <b>{member.name}</b> {member.text}
+          <b>{member.name}</b> {inline(member.text)}
           <span class="facts">{facts(member)}</span>
         </>
       ) : (

@@ -40,7 +40,8 @@ function table(lines: string[]): JSX.Element {
   );
 }
 
-function inline(text: string): ComponentChildren {
+/** Words with code and emphasis in them. */
+export function inline(text: string): ComponentChildren {
   return text.split(/(`[^`]+`|\*\*[^*]+\*\*|\[[^\]]*\]\([^)]*\))/).map((part) => {
     if (part.startsWith("`")) return <code>{part.slice(1, -1)}</code>;
     if (part.startsWith("**")) return <b>{part.slice(2, -2)}</b>;

@@ -45,7 +45,7 @@ export function PictureToolbar(): JSX.Element {
             onClick={() => (mode.value = m.name)} />
         ))}
         {crop.value && <Button label={t.wholePicture} onClick={() => void setCrop(null)} />}
-        {mode.value === "orbit" && <Button label={t.frame} onClick={frameSelected} />}
+        {mode.value === "orbit" && <Button icon="target" label={t.frame} onClick={frameSelected} />}
       </div>
       <div class="cluster" role="group" aria-label={t.zoom}>
         <Button icon="fit" label={t.fit} keys="F" onClick={() => command("fit")} />

@@ -7,7 +7,7 @@ import type { Use } from "../model/protocol.ts";
 import { classes, components, names } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { Button, Dialog } from "../parts/parts.tsx";
-import { Markdown } from "../parts/markdown.tsx";
+import { inline, Markdown } from "../parts/markdown.tsx";
 import { texts } from "../texts.ts";
 import * as actions from "./actions.ts";
 import { slots } from "./rows.ts";
@@ -154,7 +154,7 @@ function Page({ info }: { info: ClassInfo }): JSX.Element {
   return (
     <>
       <h3>{info.name}</h3>
-      <p>{info.summary}</p>
+      <p>{inline(info.summary)}</p>
       {info.source && <p class="dim">{info.source}</p>}
       {page && <Markdown text={withoutHead(page, info)} />}
       {ownGroupsFirst(info).map((g) => (
@@ -166,7 +166,7 @@ function Page({ info }: { info: ClassInfo }): JSX.Element {
                 <dt>
                   <code>{m.name}</code> <span class="dim">{m.class ?? m.type}{m.unit ? `, ${m.unit}` : ""}</span>
                 </dt>
-                <dd>{m.text}</dd>
+                <dd>{inline(m.text)}</dd>
               </div>
             ))}
           </dl>
