@@ -182,7 +182,11 @@ Applied Document::follow(const std::string& text, const std::map<std::string, st
   if (reason) {
     // Parts that change places with what holds them cannot be edited one by one; then all is made anew, if it can be at all.
     if (!merge.structure) std::rethrow_exception(reason);
-    replace_render(load(text, overrides));
+    now = load(text, overrides);
+    const Pairs pairs = pairs_of(job(), *now, counterpart);
+    replace_render(now);
+    for (const auto& [part, old] : pairs)
+      if (const int id = id_of(*old)) ids_.emplace(part, id);
   }
   take_text(text);
   result.structure = merge.structure || reason;

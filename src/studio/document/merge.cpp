@@ -26,8 +26,8 @@ Parts parts_in(const Value& value) {
 
 class Matcher {
  public:
-  Matcher(Merge& merge, const std::function<Component*(const Component&)>& counterpart)
-      : merge_(merge), counterpart_(counterpart) {}
+  Matcher(Pairs& pairs, const std::function<Component*(const Component&)>& counterpart)
+      : pairs_(pairs), counterpart_(counterpart) {}
 
   void match(Component& old, Component& now) {
     pair(old, now);
@@ -47,7 +47,7 @@ class Matcher {
           if (after[i] && i < before.size() && before[i]) pair(*before[i], *after[i]);
         }
         for (Component* part : after)
-          if (const auto found = merge_.old_of.find(part); part && found != merge_.old_of.end())
+          if (const auto found = pairs_.find(part); part && found != pairs_.end())
             rest.emplace_back(found->second, part);
       }
     }
@@ -55,12 +55,12 @@ class Matcher {
 
  private:
   void pair(Component& old, Component& now) {
-    if (&old.class_info() != &now.class_info() || taken_.contains(&old) || merge_.old_of.contains(&now)) return;
+    if (&old.class_info() != &now.class_info() || taken_.contains(&old) || pairs_.contains(&now)) return;
     taken_.insert(&old);
-    merge_.old_of.emplace(&now, &old);
+    pairs_.emplace(&now, &old);
   }
 
-  Merge& merge_;
+  Pairs& pairs_;
   const std::function<Component*(const Component&)>& counterpart_;
   std::unordered_set<const Component*> taken_;
 };
@@ -104,9 +104,15 @@ std::vector<Ref<Component>> components_of(const Job& job) {
   return all;
 }
 
+Pairs pairs_of(const Job& old, Job& now, const std::function<Component*(const Component&)>& counterpart) {
+  Pairs pairs;
+  Matcher(pairs, counterpart).match(const_cast<Job&>(old), now);
+  return pairs;
+}
+
 Merge merge(const Job& old, Job& now, const std::function<Component*(const Component&)>& counterpart) {
   Merge merge;
-  Matcher(merge, counterpart).match(const_cast<Job&>(old), now);
+  merge.old_of = pairs_of(old, now, counterpart);
   for (const Ref<Component>& part : components_of(now)) {
     const auto found = merge.old_of.find(part.get());
     Component* was = found == merge.old_of.end() ? nullptr : found->second;

@@ -57,9 +57,10 @@ Rest rest_of_line(const std::string& text, size_t at) {
   if (at < text.size() && text[at] == '#') {
     rest.comment = true;
     at = std::min(text.find('\n', at), text.size());
-    while (at > 0 && text[at - 1] == '\r') --at;
   }
-  if (at >= text.size() || text[at] == '\n' || text[at] == '\r') rest.end_of_line = at;
+  if (at < text.size() && text[at] != '\n') return rest;
+  while (at > 0 && text[at - 1] == '\r') --at;
+  rest.end_of_line = at;
   return rest;
 }
 
