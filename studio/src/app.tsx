@@ -6,6 +6,7 @@ import { FileBrowser } from "./files/browser.tsx";
 import { Help } from "./help.tsx";
 import { remember, remembered } from "./memory.ts";
 import { dismiss, document_, line, notices, tab, type Tab } from "./model/state.ts";
+import { Explanation } from "./panel/field.tsx";
 import { Panel } from "./panel/panel.tsx";
 import { Button, Divider, Tabs } from "./parts/parts.tsx";
 import { Paths } from "./paths/paths.tsx";
@@ -36,13 +37,13 @@ export function App(): JSX.Element {
     { name: "paths", label: texts.tabs.paths },
   ];
   return (
-    <div class="app" style={{ gridTemplateColumns: `${left.value}px 5px minmax(0, 1fr) 5px ${right.value}px` }}>
+    <div class="app" style={{ gridTemplateColumns: `${left.value}px minmax(0, 1fr) ${right.value}px` }}>
       <TopBar />
       {document_.value?.changed_on_disk && <p class="banner" role="status">{texts.top.changedElsewhere}</p>}
       <aside class="left" aria-label={texts.tree.label}>
         <Tree />
+        <Divider label={texts.common.divider} size={left.value} least={180} most={460} change={resize("left")} />
       </aside>
-      <Divider label={texts.common.divider} size={left.value} least={180} most={460} change={resize("left")} />
       <main class="middle">
         <Tabs label={texts.tabs.label} tabs={tabs} chosen={chosen} choose={(name) => (tab.value = name)} />
         <div class="tab-panel" id="panel-picture" role="tabpanel" aria-labelledby="tab-picture" hidden={chosen !== "picture"}>
@@ -57,9 +58,12 @@ export function App(): JSX.Element {
         </div>
         <ControlStrip />
       </main>
-      <Divider label={texts.common.divider} size={right.value} least={270} most={620} after change={resize("right")} />
       <aside class="right" aria-label={texts.panel.label}>
-        <Panel />
+        <Divider label={texts.common.divider} size={right.value} least={270} most={620} after change={resize("right")} />
+        <div class="panel-side">
+          <Panel />
+          <Explanation />
+        </div>
       </aside>
       <Notices />
       <Chooser />

@@ -29,7 +29,7 @@ export function Help(): JSX.Element | null {
         <p class="dim">{t.version(version.value)}</p>
         <details>
           <summary>{t.licences}</summary>
-          <pre class="licences">{licences}</pre>
+          <pre class="licences" tabIndex={0}>{licences}</pre>
         </details>
       </div>
     </Dialog>

@@ -84,6 +84,7 @@ export const texts = {
     label: "Properties",
     of: (what: string) => `Properties of ${what}`,
     none: "Nothing is selected.",
+    explain: "What a member is and what may be written stands here.",
     path: "Where it stands",
     replace: "Replace",
     name: "Name",

@@ -73,7 +73,7 @@ export function ControlStrip(): JSX.Element {
         <div id="control-more" class="control-more">
           <Goals />
           <div class="curve-box">
-            <h3>{t.course}</h3>
+            <h2 class="small">{t.course}</h2>
             <ErrorCurve />
           </div>
           <QueueView />
@@ -118,7 +118,7 @@ function Goals(): JSX.Element {
   );
   return (
     <div class="goals">
-      <h3>{t.goals}</h3>
+      <h2 class="small">{t.goals}</h2>
       {renderer && job && (
         <div class="reference">
           <button type="button" class="go" onClick={() => select(renderer.id)}>{renderer.name ?? renderer.class}</button>

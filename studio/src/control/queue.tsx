@@ -17,7 +17,7 @@ export function QueueView(): JSX.Element {
   };
   return (
     <div class="queue">
-      <h3>{t.title}</h3>
+      <h2 class="small">{t.title}</h2>
       <ul class="plain scroll">
         {entries.map((e) => (
           <li key={e.entry} class={`queue-${e.state}`}>

@@ -2,7 +2,7 @@
 import { Classes } from "./classes.ts";
 import { Connection } from "./connection.ts";
 import { Refused } from "./protocol.ts";
-import type { Component, DocumentState, Event, Hello, Notice, Progress, Queue, Reply, TextState, TreeState } from "./protocol.ts";
+import type { Component, DocumentState, Event, Hello, Notice, Progress, Queue, Reply, TextChange, TextState, TreeState } from "./protocol.ts";
 import * as state from "./state.ts";
 import { forgetPictures, takePixels } from "../picture/store.ts";
 import { texts } from "../texts.ts";
@@ -22,7 +22,8 @@ export const connection = new Connection(`${protocol}://${location.host}/socket$
   pixels: takePixels,
 });
 
-async function hello(): Promise<void> {
+/** Says who is here, and takes all there is to know. */
+export async function hello(): Promise<void> {
   try {
     const said = await connection.ask<Hello & Reply>("hello", { protocol: 1 });
     state.version.value = said.version;
@@ -51,6 +52,7 @@ function take(event: Event): void {
       if (!state.document_.value.valid) clearTree();
       break;
     case "text":
+      if (event.text !== undefined) forgetPictures(); // another document
       takeText(event as unknown as TextState);
       break;
     case "tree":
@@ -81,7 +83,7 @@ export function onEvent(name: string, listener: (event: Event) => void): () => v
 
 function takeText(text: TextState): void {
   if (text.text !== undefined) latestText = { ...text };
-  else if (text.changes && text.revision === latestText.revision + 1) {
+  else if (text.changes && text.revision === latestText.revision + 1 && fits(text.changes, latestText.text ?? "")) {
     let whole = latestText.text ?? "";
     for (const { begin, end, insert } of [...text.changes].sort((a, b) => b.begin - a.begin)) {
       whole = whole.slice(0, begin) + insert + whole.slice(end);
@@ -93,6 +95,11 @@ function takeText(text: TextState): void {
   }
   if (text.draft !== undefined) latestText.draft = text.draft;
   for (const listener of textListeners) listener(text);
+}
+
+/** Whether changes can be of this text; if not, something was missed. */
+function fits(changes: TextChange[], whole: string): boolean {
+  return changes.every(({ begin, end }) => begin >= 0 && begin <= end && end <= whole.length);
 }
 
 /** The text as it is now and every change after it. */

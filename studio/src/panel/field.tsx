@@ -1,8 +1,10 @@
 // One member of a component: its name, what it is set by, back to the default, help, and what is wrong.
+import { signal } from "@preact/signals";
 import type { JSX } from "preact";
 import type { Member } from "../model/classes.ts";
 import { writeDefault } from "../model/classes.ts";
 import type { Component, MemberState } from "../model/protocol.ts";
+import { inline } from "../parts/markdown.tsx";
 import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
 import { ColorField } from "./color.tsx";
@@ -15,6 +17,29 @@ import { TransformField } from "./transform.tsx";
 import { VectorField } from "./vector.tsx";
 
 const t = texts.panel;
+
+/** The member that is told of below the panel: it must not move what a mouse is about to press. */
+const explained = signal<Member | null>(null);
+
+function explain(member: Member): void {
+  explained.value = member;
+}
+
+export function Explanation(): JSX.Element {
+  const member = explained.value;
+  return (
+    <footer class="explanation">
+      {member ? (
+        <>
+          <b>{member.name}</b> {inline(member.text)}
+          <span class="facts">{facts(member)}</span>
+        </>
+      ) : (
+        <span>{t.explain}</span>
+      )}
+    </footer>
+  );
+}
 
 /** What every kind of field gets. */
 export interface FieldProps {
@@ -33,7 +58,7 @@ export function Field({ component, member }: { component: Component; member: Mem
   const props = { component, member, state, id };
   return (
     <div class={`field type-${member.type}${state.written ? " written" : ""}${state.matters ? "" : " idle"}${problems.length ? " has-wrong" : ""}`}
-      title={state.matters ? undefined : t.doesNotMatter}>
+      title={state.matters ? undefined : t.doesNotMatter} onFocusIn={() => explain(member)} onMouseEnter={() => explain(member)}>
       <label for={id} title={member.text}>
         {member.name.replace(/_/g, " ")}
       </label>
@@ -46,10 +71,7 @@ export function Field({ component, member }: { component: Component; member: Mem
       {problems.map(([, message]) => (
         <p class="wrong" role="alert" id={`${id}-wrong`}>{message}</p>
       ))}
-      <p class="help" id={`${id}-help`}>
-        {member.text}
-        <span class="facts">{facts(member)}</span>
-      </p>
+      <p class="help" id={`${id}-help`}>{member.text}</p>
     </div>
   );
 }

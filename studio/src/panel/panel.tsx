@@ -6,6 +6,7 @@ import { ownGroupsFirst, type Member } from "../model/classes.ts";
 import type { Component } from "../model/protocol.ts";
 import { classes, components, locked, placeOfSelected, select, selectedComponent } from "../model/state.ts";
 import { Icon, kindIcon } from "../parts/icons.tsx";
+import { inline } from "../parts/markdown.tsx";
 import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
 import { choosing, renaming } from "../tree/actions.ts";
@@ -21,9 +22,9 @@ export function Panel(): JSX.Element {
   const info = classes.value.find(component.class);
   const elsewhere = component.written === "elsewhere";
   return (
-    <section class="panel" aria-label={t.of(component.name ?? component.class)}>
+    <section class="panel" data-component={component.id} aria-label={t.of(component.name ?? component.class)}>
       <Head component={component} />
-      {info && <p class="summary">{info.summary}</p>}
+      {info && <p class="summary">{inline(info.summary)}</p>}
       {elsewhere && <p class="hint">{t.elsewhere(component.file ?? "")}</p>}
       {locked.value && locked.value !== "offline" && <p class="hint">{t.locked[locked.value]}</p>}
       <fieldset disabled={elsewhere || locked.value !== null} class="fields">

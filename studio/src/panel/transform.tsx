@@ -5,7 +5,7 @@ import { readSteps, writeSteps, type Step } from "../model/expressions.ts";
 import { brief } from "../model/numbers.ts";
 import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
-import { setMember } from "./edit.ts";
+import { resetMember, setMember } from "./edit.ts";
 import { Entry } from "./entry.tsx";
 import type { FieldProps } from "./field.tsx";
 
@@ -19,10 +19,14 @@ const fresh: Record<string, Step> = {
 
 export function TransformField({ component, member, state, id }: FieldProps): JSX.Element {
   const asText = useSignal(false);
-  const steps = readSteps(state.text);
-  const set = (next: Step[]): Promise<boolean> => setMember(component.id, member.name, writeSteps(next));
   const value = state.value;
   const matrix = typeof value === "object" && value !== null && "transform" in value ? value.transform.matrix : undefined;
+  const steps = !state.written && matrix && isIdentity(matrix) ? [] : readSteps(state.text);
+  const set = async (next: Step[]): Promise<boolean> => {
+    if (next.length) return setMember(component.id, member.name, writeSteps(next));
+    await resetMember(component.id, member.name);
+    return true;
+  };
   if (!steps || asText.value) {
     return (
       <div class="transform">
@@ -54,6 +58,10 @@ export function TransformField({ component, member, state, id }: FieldProps): JS
       </div>
     </div>
   );
+}
+
+function isIdentity(matrix: number[]): boolean {
+  return matrix.every((n, i) => n === (i % 5 === 0 ? 1 : 0));
 }
 
 function Matrix({ numbers }: { numbers: number[] }): JSX.Element {

@@ -16,7 +16,7 @@ export function Markdown({ text }: { text: string }): JSX.Element {
       ++i;
       const code = take((l) => !l.startsWith("```"));
       ++i;
-      blocks.push(<pre>{code.join("\n")}</pre>);
+      blocks.push(<pre tabIndex={0}>{code.join("\n")}</pre>);
     } else if (/^#{1,6}\s/.test(line)) {
       blocks.push(<h4>{inline(line.replace(/^#+\s*/, ""))}</h4>);
       ++i;
@@ -40,7 +40,8 @@ function table(lines: string[]): JSX.Element {
   );
 }
 
-function inline(text: string): ComponentChildren {
+/** Words with code and emphasis in them. */
+export function inline(text: string): ComponentChildren {
   return text.split(/(`[^`]+`|\*\*[^*]+\*\*|\[[^\]]*\]\([^)]*\))/).map((part) => {
     if (part.startsWith("`")) return <code>{part.slice(1, -1)}</code>;
     if (part.startsWith("**")) return <b>{part.slice(2, -2)}</b>;

@@ -89,7 +89,9 @@ export function Dialog({ title, close, children, class: more }: DialogProps): JS
   useEffect(() => {
     const before = document.activeElement;
     element.current?.showModal();
+    element.current?.querySelector<HTMLElement>("[data-focus]")?.focus();
     return () => {
+      element.current?.close(); // what is behind it cannot have the focus before
       if (before instanceof HTMLElement) before.focus();
     };
   }, []);

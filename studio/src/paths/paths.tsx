@@ -65,7 +65,7 @@ export function Paths(): JSX.Element {
     <div class="paths">
       <SpaceView paths={paths} />
       <div class="paths-side" tabIndex={0} role="region" aria-label={t.list}>
-        <h3>{pixel ? t.of(pixel.x, pixel.y) : t.list}</h3>
+        <h2 class="small">{pixel ? t.of(pixel.x, pixel.y) : t.list}</h2>
         {!pixel && <p class="dim">{t.choose}</p>}
         <Button label={t.goChoose} onClick={() => ((mode.value = "paths"), (tab.value = "picture"))} />
         {loading.value && <p role="status" class="dim">{t.loading}</p>}
@@ -78,7 +78,7 @@ export function Paths(): JSX.Element {
             </li>
           ))}
         </ol>
-        <h3>{t.fireflies}</h3>
+        <h2 class="small">{t.fireflies}</h2>
         <Button label={t.findFireflies} onClick={() => void findFireflies()} />
         {fireflies.value && fireflies.value.samples.length === 0 && <p class="dim">{t.noFireflies}</p>}
         <ul class="plain">

@@ -35,14 +35,15 @@ export class Film {
     this.changed = { x0: 0, y0: 0, x1: this.width, y1: this.height };
   }
 
-  /** Takes a tile of three half floats a pixel. What is outside the picture is left out. */
-  write(tile: Rectangle, values: Uint16Array): void {
+  /** Takes a tile of three half floats a pixel. What is outside the picture is left out; black pixels too, if that is asked. */
+  write(tile: Rectangle, values: Uint16Array, keepWhereBlack = false): void {
     const columns = tile.x1 - tile.x0;
     const width = Math.min(tile.x1, this.width) - tile.x0;
     for (let y = tile.y0; y < Math.min(tile.y1, this.height); ++y) {
       let to = (y * this.width + tile.x0) * 4;
       let from = (y - tile.y0) * columns * 3;
       for (let x = 0; x < width; ++x, to += 4, from += 3) {
+        if (keepWhereBlack && values[from] === 0 && values[from + 1] === 0 && values[from + 2] === 0) continue;
         this.pixels[to] = values[from] as number;
         this.pixels[to + 1] = values[from + 1] as number;
         this.pixels[to + 2] = values[from + 2] as number;
@@ -70,6 +71,21 @@ export class Film {
     film.scale = this.scale;
     return film;
   }
+}
+
+/** The same picture with more, or fewer, pixels: each takes the nearest. */
+export function stretched(film: Film, width: number, height: number): Film {
+  if (film.width === width && film.height === height) return film.copy();
+  const result = new Film(width, height);
+  result.scale = film.scale;
+  for (let y = 0; y < height; ++y) {
+    const row = Math.floor((y * film.height) / height) * film.width;
+    for (let x = 0; x < width; ++x) {
+      const from = (row + Math.floor((x * film.width) / width)) * 4;
+      result.pixels.set(film.pixels.subarray(from, from + 4), (y * width + x) * 4);
+    }
+  }
+  return result;
 }
 
 export function union(a: Rectangle, b: Rectangle): Rectangle {

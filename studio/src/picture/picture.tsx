@@ -252,9 +252,9 @@ export function Picture(): JSX.Element {
     else if (event.key === "-") zoomBy("out");
     else if (event.key === "f" || event.key === "F") zoomBy("fit");
     else if (event.key === "1") zoomBy("one");
-    else if (event.key === "e") store.stops.value += 0.25;
-    else if (event.key === "E") store.stops.value -= 0.25;
-    else if (event.key === "0") store.stops.value = 0;
+    else if (event.key === "e") store.expose(store.stops.value + 0.25);
+    else if (event.key === "E") store.expose(store.stops.value - 0.25);
+    else if (event.key === "0") store.expose(0);
     else if (event.key === "Enter" && (mode.value === "pick" || mode.value === "paths")) choose(at);
     else if (event.key === "Escape") mode.value = "look";
     else return;

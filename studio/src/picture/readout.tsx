@@ -73,9 +73,9 @@ export function PixelNumbers(): JSX.Element {
       {now ? (
         <dl>
           <Item label={texts.picture.pixel} value={`${now.x}, ${now.y}`} width={9} />
-          <Item label="RGB" value={(known?.rgb ?? now.rgb).map(number).join("  ")} width={26} />
-          <Item label="XYZ" value={known ? known.xyz.map(number).join("  ") : "…"} width={26} />
-          <Item label="Y" value={number(known ? known.xyz[1] : luminance(now.rgb))} width={8} />
+          <Item label="RGB" value={(known?.rgb ?? now.rgb).map(number).join("  ")} width={22} />
+          <Item label="XYZ" value={known ? known.xyz.map(number).join("  ") : "…"} width={22} />
+          <Item label="Y" value={number(known ? known.xyz[1] : luminance(now.rgb))} width={7} />
           <Item label={texts.picture.samples} value={brief(known?.samples ?? samplesShown.value)} width={6} />
           <Item label={texts.picture.error} value={known?.error != null ? percent(known.error) : "–"} width={7} />
           {Object.entries(known?.layers ?? {}).map(([name, v]) => (

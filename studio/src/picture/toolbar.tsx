@@ -45,7 +45,7 @@ export function PictureToolbar(): JSX.Element {
             onClick={() => (mode.value = m.name)} />
         ))}
         {crop.value && <Button label={t.wholePicture} onClick={() => void setCrop(null)} />}
-        {mode.value === "orbit" && <Button label={t.frame} onClick={frameSelected} />}
+        {mode.value === "orbit" && <Button icon="target" label={t.frame} onClick={frameSelected} />}
       </div>
       <div class="cluster" role="group" aria-label={t.zoom}>
         <Button icon="fit" label={t.fit} keys="F" onClick={() => command("fit")} />
@@ -74,7 +74,7 @@ export function PictureToolbar(): JSX.Element {
 function Exposure(): JSX.Element {
   const disabled = store.curve.value === "program" && !store.falseColor.value && store.compare.value === "none";
   const change = (e: JSX.TargetedEvent<HTMLInputElement>): void => {
-    store.stops.value = Number(e.currentTarget.value);
+    store.expose(Number(e.currentTarget.value));
   };
   return (
     <div class="cluster exposure">
@@ -84,7 +84,7 @@ function Exposure(): JSX.Element {
       </label>
       <input type="number" class="narrow" aria-label={t.exposureStops} min={-30} max={30} step={0.25} disabled={disabled}
         value={Number(store.stops.value.toFixed(2))} onInput={change} />
-      <Button label={t.automatic} disabled={disabled} onClick={() => store.film.value && (store.stops.value = Number(automaticStops(store.film.value).toFixed(2)))} />
+      <Button label={t.automatic} disabled={disabled} onClick={() => store.film.value && store.expose(automaticStops(store.film.value))} />
     </div>
   );
 }

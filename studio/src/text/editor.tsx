@@ -11,7 +11,7 @@ import { render, type JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { Refused, type Problem, type TextState } from "../model/protocol.ts";
 import { browser, components, document_, locked, readOnly, select, selectedComponent, tab } from "../model/state.ts";
-import { ask, connection, demand, followText, report, textNow } from "../model/studio.ts";
+import { ask, connection, demand, followText, hello, report, textNow } from "../model/studio.ts";
 import { Markdown } from "../parts/markdown.tsx";
 import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
@@ -39,12 +39,16 @@ export function showPlace(begin: number, end = begin): void {
 
 async function send(revision: number, changes: { begin: number; end: number; insert: string }[]): Promise<Answer> {
   try {
+    if (changes.length === 0) return await demand<Answer>("drop_draft");
     lastTextRequest = connection.next;
     const reply = await demand<Answer & { valid?: boolean; errors?: Problem[] }>("text", { revision, changes });
     if (reply.valid === false) showProblems(reply.errors ?? []);
     return reply;
   } catch (error) {
-    if (error instanceof Refused && error.code === "busy") return { stale: true };
+    if (error instanceof Refused && error.code === "busy") {
+      await hello();
+      return { stale: true };
+    }
     report(error);
     return { valid: false };
   }
@@ -134,7 +138,7 @@ function extensions(): unknown[] {
   return [
     lineNumbers(), foldGutter(), codeFolding(), lintGutter(), drawSelection(), highlightActiveLine(), highlightSelectionMatches(), bracketMatching(),
     closeBrackets(), indentOnInput(), indentUnit.of("    "), search({ top: true }), language, hover, autocompletion({ override: [complete] }),
-    EditorView.contentAttributes.of({ "aria-label": t.label }),
+    EditorView.contentAttributes.of({ "aria-label": t.label, tabindex: "0" }),
     keymap.of([
       { key: "Mod-z", run: () => (void settle().then(() => ask("undo")), true), preventDefault: true },
       { key: "Mod-Shift-z", run: () => (void settle().then(() => ask("redo")), true), preventDefault: true },
@@ -185,6 +189,7 @@ function begin(parent: HTMLElement): () => void {
   start(text, revision);
   const end = followText((event: TextState) => {
     if (event.text !== undefined) {
+      if (sync?.rebased(event.text, event.revision) && !event.draft) return;
       start(event.text, event.revision);
       const draft = event.draft?.text;
       if (draft !== undefined && draft !== null) view?.dispatch({ changes: { from: 0, to: event.text.length, insert: draft } });

@@ -4,7 +4,7 @@ import { ChangeSet, type ChangeSpec, type Text } from "@codemirror/state";
 import type { Problem, TextState } from "../model/protocol.ts";
 
 export interface Asker {
-  /** Sends changes of the text of `revision`; resolves when the program has answered. */
+  /** Sends changes of the text of `revision`, or none, which gives up a draft; resolves when the program has answered. */
   send: (revision: number, changes: { begin: number; end: number; insert: string }[]) => Promise<Answer>;
   /** What the editor must show besides: changes that come from elsewhere. */
   apply: (changes: ChangeSet) => void;
@@ -27,6 +27,8 @@ export class Sync {
   private unsent: ChangeSet;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private ownRevision = -1;
+  /** The program keeps what was sent as a draft, since it is not valid. */
+  private draft = false;
 
   constructor(
     text: Text,
@@ -51,11 +53,13 @@ export class Sync {
 
   async flush(): Promise<void> {
     this.stop();
-    if (this.sent || this.unsent.empty) return;
+    if (this.sent || (this.unsent.empty && !this.draft)) return;
     const sending = this.unsent;
     this.sent = sending;
     this.unsent = ChangeSet.empty(sending.newLength);
     const answer = await this.asker.send(this.revision, toList(sending));
+    if (!answer.stale) this.draft = answer.valid === false;
+    if (this.sent && sending.empty) this.sent = null; // only the draft is gone
     if (this.sent) {
       if (answer.valid !== false && !answer.stale && answer.revision !== undefined && answer.revision >= this.revision) {
         // The event with the change may come before or after the answer.
@@ -96,10 +100,18 @@ export class Sync {
     if (!theirs.empty) this.asker.apply(theirs);
   }
 
+  /** The same text has another revision. Says whether it is the same. */
+  rebased(text: string, revision: number): boolean {
+    if (text !== this.base.toString()) return false;
+    this.revision = revision;
+    return true;
+  }
+
   /** Gives up what the program has not taken; returns the text it has. */
   drop(): Text {
     this.stop();
     this.sent = null;
+    this.draft = false;
     this.unsent = ChangeSet.empty(this.base.length);
     return this.base;
   }

@@ -7,7 +7,7 @@ import type { Use } from "../model/protocol.ts";
 import { classes, components, names } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { Button, Dialog } from "../parts/parts.tsx";
-import { Markdown } from "../parts/markdown.tsx";
+import { inline, Markdown } from "../parts/markdown.tsx";
 import { texts } from "../texts.ts";
 import * as actions from "./actions.ts";
 import { slots } from "./rows.ts";
@@ -49,7 +49,10 @@ function ChooserFor({ what, id, use, member }: { what: "add" | "replace"; id: nu
   const wanted = what === "add" ? slot?.member.class : parent && use ? classes.value.member(parent.class, use.member)?.class : component?.class;
   const offered = useComputed(() => (search.value, classes.value));
   const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
-  const list = (wanted ? offered.value.offered(wanted) : []).filter((c) => words.every((w) => `${c.name} ${c.summary}`.toLowerCase().includes(w)));
+  // What is called so comes before what is only told of so.
+  const list = (wanted ? offered.value.offered(wanted) : [])
+    .filter((c) => words.every((w) => `${c.name} ${c.summary}`.toLowerCase().includes(w)))
+    .sort((a, b) => rank(b.name, words[0]) - rank(a.name, words[0]));
   const named = what === "add" && slot ? names.value.filter((n) => matchesName(n.component, wanted ?? "")) : [];
   const info = list.find((c) => c.name === chosen.value) ?? list[0];
   useEffect(() => void (info && readPage(info.name)), [info?.name]);
@@ -92,8 +95,8 @@ function ChooserFor({ what, id, use, member }: { what: "add" | "replace"; id: nu
         <div class="columns">
           <div class="column list">
             <input
-              type="search" placeholder={t.search(list.length)} aria-label={t.search(list.length)} role="combobox" aria-expanded="true"
-              aria-controls="classes" aria-activedescendant={info ? `class-${info.name}` : undefined} value={search.value} autofocus
+              type="search" data-focus placeholder={t.search(list.length)} aria-label={t.search(list.length)} role="combobox" aria-expanded="true"
+              aria-controls="classes" aria-activedescendant={info ? `class-${info.name}` : undefined} value={search.value}
               onInput={(e) => (search.value = e.currentTarget.value)} onKeyDown={key}
             />
             <div id="classes" role="listbox" aria-label={t.classes} tabIndex={-1}>
@@ -136,6 +139,11 @@ function ChooserFor({ what, id, use, member }: { what: "add" | "replace"; id: nu
   );
 }
 
+function rank(name: string, word = ""): number {
+  const lower = name.toLowerCase();
+  return lower === word ? 3 : lower.startsWith(word) ? 2 : lower.includes(word) ? 1 : 0;
+}
+
 function matchesName(id: number | null, wanted: string): boolean {
   const component = id === null ? undefined : components.value.get(id);
   return component !== undefined && classes.value.isA(component.class, wanted);
@@ -146,7 +154,7 @@ function Page({ info }: { info: ClassInfo }): JSX.Element {
   return (
     <>
       <h3>{info.name}</h3>
-      <p>{info.summary}</p>
+      <p>{inline(info.summary)}</p>
       {info.source && <p class="dim">{info.source}</p>}
       {page && <Markdown text={withoutHead(page, info)} />}
       {ownGroupsFirst(info).map((g) => (
@@ -158,7 +166,7 @@ function Page({ info }: { info: ClassInfo }): JSX.Element {
                 <dt>
                   <code>{m.name}</code> <span class="dim">{m.class ?? m.type}{m.unit ? `, ${m.unit}` : ""}</span>
                 </dt>
-                <dd>{m.text}</dd>
+                <dd>{inline(m.text)}</dd>
               </div>
             ))}
           </dl>
@@ -193,7 +201,7 @@ function RenamingOf({ id, name, shared }: { id: number; name: string | null; sha
       <form onSubmit={(e) => void submit(e)}>
         <label class="stack">
           <span>{t.name}</span>
-          <input type="text" autofocus spellcheck={false} value={value.value} onInput={(e) => (value.value = e.currentTarget.value)} />
+          <input type="text" data-focus spellcheck={false} value={value.value} onInput={(e) => (value.value = e.currentTarget.value)} />
         </label>
         <p class="dim">{shared ? t.renameShared : t.renameHelp}</p>
         <footer>

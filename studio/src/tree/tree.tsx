@@ -88,7 +88,7 @@ export function Tree(): JSX.Element {
     else if (event.key === "Insert" && row) actions.choosing.value = { what: "add", component: row.component, use: row.use };
     else if (event.key === "F2" && row) actions.renaming.value = row.component;
     else if (command && event.key === "d") void actions.duplicate();
-    else if (event.key === "Enter") document.querySelector<HTMLElement>(".panel input, .panel select, .panel button")?.focus();
+    else if (event.key === "Enter") document.querySelector<HTMLElement>(".fields input, .fields select, .fields button, .panel button")?.focus();
     else return;
     event.preventDefault();
   };
