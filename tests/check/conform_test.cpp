@@ -54,6 +54,7 @@ const std::multimap<std::string, std::string> never_tried = {
     {"DirectRenderer", "pictures of known value"},
     {"WhittedRenderer", "pictures of known value"},
     {"BidirectionalPathTracer", "pictures of known value"},  // with members drawn that leave strategies out
+    {"ManyLights", "pictures of known value"},               // drawn without compensation
     {"PhotonMapper", "pictures of known value"},
     {"PrimarySampleMetropolis", "pictures of known value"},  // renderers that learn were drawn for inside
     // Few photons, which were drawn, are all noise.

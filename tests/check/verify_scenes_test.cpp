@@ -45,11 +45,12 @@ TEST_P(VerifyScenes, AnErrorIsNoticed) {
 // Each renderer that is made for it stands in some of them, not in all: chains and photons take their time.
 const std::string light = ",LightTracer", guided = ",GuidedPathTracer", distribution = ",DistributionRenderer",
                   photons = ",VertexConnectionMerging,ProgressivePhotonMapper",
+                  virtual_lights = ",InstantRadiosity{walks: 4},ManyLights{cut: 2}",
                   chains = ",PrimarySampleMetropolis{inner: PathTracer {}},MultiplexedMetropolis,PathSpaceMetropolis";
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, VerifyScenes,
-    ::testing::Values(VerifyScene{"cornell_box", 256, light + guided + distribution + photons + chains},
+    ::testing::Values(VerifyScene{"cornell_box", 256, light + guided + distribution + photons + chains + virtual_lights},
                       VerifyScene{"glossy_box", 192, light + guided + distribution},
                       VerifyScene{"caustic_through_glass", 512, photons}, VerifyScene{"door_ajar", 256, light},
                       VerifyScene{"mis_plates", 256, light + distribution},
@@ -58,7 +59,8 @@ INSTANTIATE_TEST_SUITE_P(
                       VerifyScene{"every_rough_shader", 256, guided}, VerifyScene{"every_mirror_shader", 512, guided},
                       VerifyScene{"every_emission", 256, light}, VerifyScene{"every_sky", 256, distribution},
                       VerifyScene{"nested_lamps", 192, light}, VerifyScene{"small_opening", 256, light + guided},
-                      VerifyScene{"tilted_normals", 512, distribution}, VerifyScene{"mirror_caustic", 256, photons},
+                      VerifyScene{"tilted_normals", 512, distribution},
+                      VerifyScene{"mirror_caustic", 256, photons + ",PathSpaceMetropolis"},
                       VerifyScene{"sunlit_pool", 256, photons}, VerifyScene{"iced_water_in_fog", 256, photons}),
     [](const auto& each) { return std::string(each.param.name); });
 

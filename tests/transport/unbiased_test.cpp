@@ -272,8 +272,9 @@ TEST(Unbiased, MapsAreFilteredOnRequestByOneWidth) {
       "Rectangle { corner: [-1, -1, 6], edge_u: [0, 2, 0], edge_v: [2, 0, 0], shader: PerfectSpecular {} }";
   // Walks from luminaires ask for maps as they are.
   const std::vector<std::string> from_both_ends = {
-      "BidirectionalPathTracer", "MultiplexedMetropolis",   "PhotonMapper",
-      "PrimarySampleMetropolis", "ProgressivePhotonMapper", "VertexConnectionMerging"};
+      "BidirectionalPathTracer", "InstantRadiosity",       "ManyLights",
+      "MultiplexedMetropolis",   "PhotonMapper",           "PrimarySampleMetropolis",
+      "ProgressivePhotonMapper", "VertexConnectionMerging"};
   for (const std::string& name : renderers_for_it()) {
     if (name == "AmbientOcclusionRenderer") continue;  // looks at no map
     const std::string show = name == "FeatureRenderer" ? ", feature: albedo" : "";
