@@ -147,7 +147,7 @@ Ref<Component> Converter::directional(const Element& e) {
 Ref<Component> Converter::environment(const Element& e) {
   Ref<Component> emission = make("EnvironmentEmission", e, "");
   set_member(*emission, "file", file(e), e.location_of("filename"));
-  set_member(*emission, "rows", "poles", e.at);
+  if (!e.old) set_member(*emission, "rows", "poles", e.at);  // row j at v = j / (height - 1)
   if (e.has("scale")) set_member(*emission, "scale", e.number("scale", 1), e.location_of("scale"));
   if (e.has("gamma")) {
     if (e.number("gamma", 0) == 1) set_member(*emission, "transfer", "linear", e.location_of("gamma"));

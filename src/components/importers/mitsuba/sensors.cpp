@@ -70,12 +70,16 @@ Ref<Component> Converter::camera(const Element& e) {
   }
   place(*camera, e);
   set_shutter(*camera, e);
-  // Rays start at near_clip there. What stands nearer is seen here, unless the camera can leave it out.
-  if (const Member* near_clip = camera->class_info().find("near"); near_clip) {
-    set_member(*camera, "near", e.number("near_clip", 1e-2), e.location_of("near_clip"));
-    if (e.has("far_clip")) set_member(*camera, "far", e.number("far_clip", 1e4), e.location_of("far_clip"));
+  // Rays start at near_clip there, and end at far_clip.
+  const bool clips = camera->class_info().find("near_clip") && camera->class_info().find("far_clip");
+  for (const char* clip : {"near_clip", "far_clip"}) {
+    if (!e.has(clip)) continue;
+    if (clips)
+      set_member(*camera, clip, e.number(clip, 0), e.location_of(clip));
+    else
+      importing_.inexact("what is nearer than near_clip or farther than far_clip is seen here", e.location_of(clip));
   }
-  e.ignore({"near_clip", "far_clip", "focus_distance", "srf"});
+  e.ignore({"focus_distance", "srf"});
   if (const Element* medium = e.nested("medium"); medium)
     importing_.inexact("a medium around the sensor is not expressed", e.location_of("medium"));
   return camera;
