@@ -68,7 +68,8 @@ def ply(kind):
     text = f"ply\nformat {kind} 1.0\ncomment made for a test\nelement vertex {len(CORNERS)}\n"
     text += "".join(f"property float {n}\n" for n in ("x", "y", "z", "nx", "ny", "nz", "u", "v"))
     text += "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-    text += f"element face {len(FACES)}\nproperty list uchar int vertex_indices\nend_header\n"
+    text += f"element face {len(FACES)}\nproperty list uchar int vertex_indices\n"
+    text += "property float weight_0\nproperty float weight_1\nend_header\n"
     body = b""
     for x, y, z in CORNERS:
         numbers = (x, y, z, 0, 0, 1, (x + 1) / 2, (y + 1) / 2)
@@ -78,9 +79,9 @@ def ply(kind):
             body += struct.pack(order + "8f3B", *numbers, 200, 100, 50)
     for face in FACES:
         if kind == "ascii":
-            body += (" ".join(map(str, (len(face), *face))) + "\n").encode()
+            body += (" ".join(map(str, (len(face), *face))) + " 0.5 0.25\n").encode()
         else:
-            body += struct.pack(f"{order}B{len(face)}i", len(face), *face)
+            body += struct.pack(f"{order}B{len(face)}i2f", len(face), *face, 0.5, 0.25)
     return text.encode() + body
 
 
@@ -101,6 +102,12 @@ def meshes():
 
 
 # ---- measured data --------------------------------------------------------------------------------------------------------
+
+
+def volume(channels):
+    """A cloud of 3 x 2 x 2 cells in Mitsuba's format."""
+    return b"VOL\3" + struct.pack(f"<5i6f{12 * channels}f", 1, 3, 2, 2, channels, -1, -1, -1, 1, 1, 1,
+                                  *((i % 5) / 4 for i in range(12 * channels)))
 
 
 def merl(half=3, difference=2, azimuth=4):
@@ -159,6 +166,10 @@ def tables():
     yield Seed("ies", "input.ies", IES, [RENDER], lamp, True)
     grid = {"scene.etd": scene('SignedDistanceGrid { file: "input.npy" }')}
     yield Seed("npy grid", "input.npy", numpy_array((4, 5, 6)), [RENDER], grid)
+    cloud = {"scene.etd": scene('Sphere { shader: PassThrough {}, interior: GridVolume { file: "input.vol", file_box: true, '
+                                'extinction: 1 } }')}
+    for channels in (1, 3):
+        yield Seed(f"vol {channels}", "input.vol", volume(channels), [RENDER], cloud)
     for kind in ("f4", "f8"):
         yield Seed("npy " + kind, "input.npy", numpy_array((3, 4, 3), kind), [["image", "info", "input.npy"]])
     yield Seed("merl", "input.binary", merl(), [RENDER], shading('MerlShader { file: "input.binary" }'))

@@ -206,6 +206,40 @@ TEST(AttributeMap, ListedColoursStayWithTheirCornersWhateverTheTransform) {
   EXPECT_NE(error_of("TriangleMesh", short_list).find("colors"), std::string::npos);
 }
 
+TEST(AttributeMap, FacesHaveTheirOwn) {
+  // A square of four corners, which becomes two triangles, beside a triangle; before both one without an area, which is left
+  // out. Numbers NAME_0, NAME_1, ... belong together.
+  const Folder folder("faces");
+  std::ofstream(folder / "f.ply")
+      << "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+         "property float tint_0\nproperty float tint_1\nproperty float tint_2\nelement face 3\n"
+         "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty list uchar int vertex_indices\n"
+         "property float weight_0\nproperty float color_0\nend_header\n"
+         "0 0 0 0.1 0.2 0.6\n1 0 0 0.1 0.2 0.6\n1 1 0 0.1 0.2 0.6\n0 1 0 0.1 0.2 0.6\n2 0 0 1 1 1\n2 1 0 1 1 1\n"
+         "9 9 9 3 0 1 1 7 7\n255 0 0 4 0 1 2 3 0.25 8\n0 128 0 3 1 4 5 0.75 9\n";
+  const Ref<SceneObject> mesh = create<SceneObject>("TriangleMesh", {{"file", folder / "f.ply"}});
+  const auto map = [](const char* name) { return create<ObjectMap>("AttributeMap", {{"name", name}, {"otherwise", 0.125}}); };
+  for (const auto& [x, y] : {std::pair{0.8f, 0.1f}, {0.1f, 0.8f}}) {
+    EXPECT_EQ(map("face_weight")->scalar(point_of(*mesh, x, y)), 0.25f);
+    EXPECT_NEAR(map("face_color")->scalar(point_of(*mesh, x, y)), 1 / 3.0f, 1e-6f);
+    EXPECT_NEAR(map("tint")->scalar(point_of(*mesh, x, y)), 0.3f, 1e-6f);
+    EXPECT_EQ(map("weight")->scalar(point_of(*mesh, x, y)), 0.125f);
+  }
+  EXPECT_EQ(map("face_weight")->scalar(point_of(*mesh, 1.7f, 0.2f)), 0.75f);
+  EXPECT_NEAR(map("face_color")->scalar(point_of(*mesh, 1.7f, 0.2f)), float(decode_transfer("srgb", 128 / 255.0)) / 3, 1e-6f);
+
+  const std::vector<double> positions{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, triangles{0, 1, 2, 1, 3, 2};
+  const Ref<SceneObject> listed = create<SceneObject>(
+      "TriangleMesh",
+      {{"positions", positions}, {"triangles", triangles}, {"face_colors", std::vector<double>{0.1, 0.1, 0.1, 0.9, 0.9, 0.9}}});
+  EXPECT_NEAR(map("face_color")->scalar(point_of(*listed, 0.2f, 0.2f)), 0.1f, 1e-6f);
+  EXPECT_NEAR(map("face_color")->scalar(point_of(*listed, 0.8f, 0.8f)), 0.9f, 1e-6f);
+  EXPECT_NE(error_of("TriangleMesh",
+                     {{"positions", positions}, {"triangles", triangles}, {"face_colors", std::vector<double>{0.1, 0.1, 0.1}}})
+                .find("face_colors"),
+            std::string::npos);
+}
+
 TEST(AttributeMap, BinaryFilesOfBothByteOrders) {
   const Folder folder("binary");
   for (const bool big : {false, true}) {

@@ -1,5 +1,6 @@
 // Transforms and shapes: areas, points on surfaces, sampling.
 
+#include "support/component_test_support.h"
 #include "support/geometry_support.h"
 
 namespace etendue {
@@ -189,6 +190,28 @@ TEST(ClosedForm, PerpendicularSquares) {
   const Ref<SceneObject> floor = object("Rectangle", {{"corner", {0, 0, 0}}}),
                          wall = object("Rectangle", {{"corner", {0, 0, 0}}, {"edge_u", {0, 1, 0}}, {"edge_v", {0, 0, 1}}});
   EXPECT_NEAR(form_factor(*floor, *wall, 200000) / 0.200044, 1, 5e-3);
+}
+
+// Polar surface coordinates: (x, y) = radius u (cos 2 pi v, sin 2 pi v), and tangents that are its derivatives.
+TEST(Disc, PolarCoordinates) {
+  const Ref<SceneObject> disc = test::create<SceneObject>("Disc", {{"radius", 2.0}, {"coordinates", "polar"}});
+  for (const auto& [x, y] : {std::pair{0.6f, 0.0f}, {0.0f, 1.0f}, {-0.9f, 0.7f}, {0.3f, -1.6f}, {-0.01f, -0.02f}}) {
+    Ray ray;
+    ray.origin = {x, y, 1};
+    ray.direction = {0, 0, -1};
+    Hit hit;
+    ASSERT_TRUE(disc->intersect(ray, hit));
+    SurfacePoint p;
+    disc->surface_point(ray, hit, p);
+    disc->tangents(p);
+    const double u = double(p.uv.x), v = 2 * M_PI * double(p.uv.y);
+    EXPECT_GE(p.uv.y, 0);
+    EXPECT_LT(p.uv.y, 1);
+    EXPECT_NEAR(2 * u * std::cos(v), double(x), 1e-5);
+    EXPECT_NEAR(2 * u * std::sin(v), double(y), 1e-5);
+    EXPECT_LT(length(p.dpdu - Vector3{float(2 * std::cos(v)), float(2 * std::sin(v)), 0}), 1e-4f);
+    EXPECT_LT(length(p.dpdv - Vector3{float(-4 * M_PI * u * std::sin(v)), float(4 * M_PI * u * std::cos(v)), 0}), 1e-4f);
+  }
 }
 
 TEST(ClosedForm, CoaxialDiscs) {

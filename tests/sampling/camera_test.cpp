@@ -28,7 +28,15 @@ std::vector<Case> cameras() {
        create<Camera>("PerspectiveCamera",
                       {{"from", from}, {"to", to}, {"up", up}, {"lens_radius", 0.3}, {"focus_distance", 0.9}}),
        true},
-      {"orthographic", create<Camera>("OrthographicCamera", {{"from", from}, {"to", to}, {"up", up}, {"width", 3.0}}), false}};
+      {"orthographic", create<Camera>("OrthographicCamera", {{"from", from}, {"to", to}, {"up", up}, {"width", 3.0}}), false},
+      {"shifted",
+       create<Camera>("PerspectiveCamera", {{"from", from},
+                                            {"to", to},
+                                            {"up", up},
+                                            {"lens_radius", 0.1},
+                                            {"focal_length", 0.05},
+                                            {"principal_point", std::vector<double>{0.15, -0.4}}}),
+       true}};
   for (const Case& c : list) c.camera->set_film(width, height);
   return list;
 }
@@ -50,6 +58,33 @@ TEST(Camera, FilmPointOfARayIsWhereItCameFrom) {
       EXPECT_NEAR(back->x, film.x, 1e-3f) << c.name;
       EXPECT_NEAR(back->y, film.y, 1e-3f) << c.name;
     }
+}
+
+// Directions over their part along the axis, of `perspective` of Mitsuba 3.9.1 with a film of 300 x 200 (its default is a focal
+// length of 50 mm over the diagonal of 36 x 24 mm; its offsets have the other sign; its first axis points to the left).
+TEST(PerspectiveCamera, FocalLengthDiagonalAndPrincipalPointAreThoseOfMitsuba) {
+  struct Row {
+    std::vector<test::Setting> settings;
+    Point2 film;
+    double right, down;
+  };
+  const std::vector<double> offset{-0.2, -0.1};
+  const Row rows[] = {{{{"focal_length", 0.05}}, {0, 0}, -0.36, -0.24},
+                      {{{"focal_length", 0.05}}, {0.7f, 0.4f}, 0.144, -0.048},
+                      {{{"focal_length", 0.05}, {"principal_point", offset}}, {0.5f, 0.5f}, 0.144, 0.048},
+                      {{{"focal_length", 0.05}, {"principal_point", offset}}, {0.7f, 0.4f}, 0.288, 0},
+                      {{{"focal_length", 0.035}}, {0, 0}, -0.514286, -0.342857},
+                      {{{"fov", 40.0}}, {0, 0}, -0.302842, -0.201894}};
+  for (const Row& row : rows) {
+    std::vector<test::Setting> settings = row.settings;
+    settings.insert(settings.end(), {{"fov_axis", "diagonal"}, {"to", std::vector<double>{0, 0, 1}}});
+    const Ref<Camera> camera = create<Camera>("PerspectiveCamera", settings);
+    camera->set_film(300, 200);
+    const Ray ray = camera->ray({row.film.x * 300, row.film.y * 200}, {0.5f, 0.5f}, 0);
+    const Vector3 right = cross(Vector3{0, 0, 1}, Vector3{0, 1, 0});  // the viewing direction times up
+    EXPECT_NEAR(double(dot(ray.direction, right) / ray.direction.z), row.right, 2e-5);
+    EXPECT_NEAR(double(-ray.direction.y / ray.direction.z), row.down, 2e-5);
+  }
 }
 
 TEST(Camera, SaysWhetherItsRaysLookAtTheLensPoint) {

@@ -174,6 +174,38 @@ TEST(NormalMapShader, ReadsVectors) {
   EXPECT_LT(length(normal(p, 1, "no") - normalize(Vector3{0.5f, -0.25f, 1})), 1e-4f);
 }
 
+TEST(NormalMapShader, TakesAMapThatHoldsThem) {
+  // Two texels beside each other along u: x = 0.5 and -0.5. As a file they are repeated 4 times; as a map, coordinates are.
+  const std::string file = image_file("normals2.ppm", 2, 1, 3, [](int x, int, int c) {
+    return c == 0 ? (x == 0 ? 0.75 : 0.25) : c == 1 ? 0.5 : 1;
+  });
+  const Ref<Shader> below = create<Shader>("Lambertian");
+  const Ref<ObjectMap> image = create<ObjectMap>("ImageMap", {{"file", file}, {"transfer", "linear"}}),
+                       moved = create<ObjectMap>("UvTransformMap", {{"map", image}, {"scale", std::vector<double>{4, 1}}});
+  const Ref<Shader> by_file = create<Shader>("NormalMapShader",
+                                             {{"shader", below}, {"file", file}, {"repeat", std::vector<double>{4, 1}}}),
+                    by_map = create<Shader>("NormalMapShader", {{"shader", below}, {"map", moved}});
+  Arena arena;
+  bool tilted = false;
+  for (const float u : {0.03f, 0.1f, 0.18f, 0.31f, 0.8f})
+    for (const float footprint : {0.0f, 0.4f}) {
+      SurfacePoint p = on_square();
+      p.uv = {u, 0.4f};
+      p.footprint = footprint;
+      const Vector3 a(by_file->bind(p, test::wavelengths(), arena)->frame().n),
+          b(by_map->bind(p, test::wavelengths(), arena)->frame().n);
+      EXPECT_LT(length(a - b), 2e-3f) << u;
+      tilted = tilted || std::abs(b.x) > 0.3f;
+    }
+  EXPECT_TRUE(tilted);
+  // Who has no such numbers is refused, not taken for grey.
+  EXPECT_THROW(create<Shader>("NormalMapShader", {{"shader", below}, {"map", create<ObjectMap>("CheckerMap")}}), Error);
+  EXPECT_THROW(create<Shader>("NormalMapShader",
+                              {{"shader", below},
+                               {"map", create<ObjectMap>("UvTransformMap", {{"map", create<ObjectMap>("CheckerMap")}})}}),
+               Error);
+}
+
 // ---- ThinFilm -----------------------------------------------------------------------------------------------------
 
 float film_reflectance(const Shader& film, double angle, float hero = 500, Lobes which = reflection_lobes) {

@@ -38,6 +38,9 @@ constexpr Example examples[] = {
      "MaskShader { shader: Lambertian { color: srgb(0.75, 0.35, 0.2) }, opacity: CheckerMap { repeat: [16, 8, 1] } }"},
     {"Principled",
      "Principled { base_color: srgb(0.6, 0.05, 0.04), base_metalness: 0.6, coat_weight: 1, specular_roughness: 0.4 }"},
+    {"DisneyPrincipled", "DisneyPrincipled { base_color: srgb(0.6, 0.05, 0.04), roughness: 0.3, clearcoat: 1, sheen: 0.5 }"},
+    {"DisneyThin", "DisneyThin { base_color: srgb(0.3, 0.5, 0.1), diff_trans: 1, spec_trans: 0.3 }"},
+    {"LossyPlastic", "LossyPlastic { color: srgb(0.1, 0.3, 0.6), roughness: 0.3 }"},
     {"SheenShader", "SheenShader { base: Lambertian { color: srgb(0.25, 0.02, 0.08) } }"},
     {"ThinFilm", "ThinFilm { thickness: 420, base_ior: metal(\"Cr\") }"},
     {"Subsurface", "Subsurface { color: srgb(0.9, 0.75, 0.6), mean_free_path: 10 cm }"},
@@ -84,6 +87,9 @@ constexpr Example examples[] = {
     {"OrthographicCamera", "OrthographicCamera { from: [0.4, -4.6, 1.6] m, to: [0, 0, 1] m, up: [0, 0, 1], width: 2.4 m }"},
     // media
     {"HomogeneousVolume", "HomogeneousVolume { scattering: 2, absorption: srgb(0.1, 0.5, 0.9) }"},
+    {"GridVolume",
+     "GridVolume { resolution: [2, 2, 2], density: [0, 1, 1, 0, 1, 0, 0, 1], extinction: 8, albedo: srgb(0.9, 0.6, 0.4), "
+     "filter: nearest, placement: translate([-1, -1, -1]) * scale(2) }"},
     // objects
     {"Curve", "Curve { points: [[-1, 0, 0], [-0.5, 1, 0.5], [0.5, -1, 0.8], [1, 0, 0.2]] m, radius: [0.12], basis: bezier }"},
     {"ImplicitSurface",

@@ -18,7 +18,7 @@ namespace {
 // of its rays, so for the whole film  1 = integral of W_e cos dw dA  with  W_e cos = p_direction p_position:
 // W_e = 1 / (A A_lens cos^4); for a pinhole the same without A_lens.
 
-enum class Axis : std::uint8_t { smaller, larger, width, height };
+enum class Axis : std::uint8_t { smaller, larger, width, height, diagonal };
 
 class PerspectiveCamera final : public Camera {
  public:
@@ -32,9 +32,23 @@ class PerspectiveCamera final : public Camera {
         .member<&PerspectiveCamera::transform>(
             "transform", "", "moves and turns the camera as from, to and up have placed it; may change with time")
         .group("View")
-        .member<&PerspectiveCamera::fov>("fov", "deg", "angle of view", Range{0, 179, true}, soft(10, 120))
-        .member<&PerspectiveCamera::fov_axis>("fov_axis", "", "the side of the picture the angle of view is measured across",
-                                              choices("smaller", "larger", "width", "height"))
+        .member<&PerspectiveCamera::fov>("fov", "deg", "angle of view", Range{0, 179, true}, soft(10, 120),
+                                         unless("focal_length"))
+        .member<&PerspectiveCamera::fov_axis>(
+            "fov_axis", "", "the side of the picture the angle of view, or the size of the sensor, is measured across",
+            choices("smaller", "larger", "width", "height", "diagonal"))
+        .member<&PerspectiveCamera::focal_length>(
+            "focal_length", "m",
+            "instead of an angle: the distance from the lens to a sensor that is as large as `sensor_size` says, as cameras "
+            "state it; 0: `fov` counts",
+            at_least(0), soft(0.01, 0.2), logarithmic)
+        .member<&PerspectiveCamera::sensor_size>("sensor_size", "m",
+                                                 "of the sensor across fov_axis; the default is the diagonal of 35 mm film",
+                                                 more_than(0), soft(0.005, 0.06), when("focal_length"))
+        .member<&PerspectiveCamera::principal_point>(
+            "principal_point", "1",
+            "where the axis meets the picture, from its middle: to the right in parts of its width, downwards in parts of its "
+            "height, as of a lens that is shifted")
         .group("Lens")
         .member<&PerspectiveCamera::lens_radius>("lens_radius", "m", "radius of the lens; 0: a pinhole, all is sharp",
                                                  at_least(0), soft(0.0005, 0.1), logarithmic)
@@ -46,6 +60,10 @@ class PerspectiveCamera final : public Camera {
   std::optional<Place> place() const override { return Place{transform.written(shutter_open)(from), length(to - from)}; }
   void prepare() override {
     check_shutter(*this);
+    if (!(std::isfinite(principal_point.x) && std::isfinite(principal_point.y)))
+      fail("principal_point", "must be finite numbers");
+    if (!std::isfinite(focal_length)) fail("focal_length", "must be finite");
+    if (!std::isfinite(sensor_size)) fail("sensor_size", "must be finite");
     placement_.set(*this, from, to, up, transform);
     focus_ = focus_distance > 0 ? focus_distance : float(length(to - from));
     update();
@@ -58,7 +76,8 @@ class PerspectiveCamera final : public Camera {
 
   Ray ray(Point2 film, Point2 lens, float time) const override {
     const Pose pose = placement_.at(time);
-    Vector3 direction{(2 * film.x / width_ - 1) * half_width_, (1 - 2 * film.y / height_) * half_height_, 1};
+    Vector3 direction{(2 * (film.x / width_ - principal_point.x) - 1) * half_width_,
+                      (1 - 2 * (film.y / height_ - principal_point.y)) * half_height_, 1};
     Ray r;
     r.origin = pose.position;
     if (lens_radius > 0) {
@@ -116,6 +135,8 @@ class PerspectiveCamera final : public Camera {
   AnimatedTransform transform;
   float fov = 40;
   Axis fov_axis = Axis::smaller;
+  float focal_length = 0, sensor_size = 0.0432666f;  // the latter of 36 mm by 24 mm
+  Vector2 principal_point{0, 0};
   float lens_radius = 0, focus_distance = 0;
 
  private:
@@ -128,7 +149,9 @@ class PerspectiveCamera final : public Camera {
   void update() {
     const bool across_width = fov_axis == Axis::width || (fov_axis == Axis::smaller && width_ <= height_) ||
                               (fov_axis == Axis::larger && width_ >= height_);
-    const float half = std::tan(radians(fov) / 2);
+    const float across = focal_length > 0 ? sensor_size / (2 * focal_length) : std::tan(radians(fov) / 2),
+                side = across_width ? width_ : height_,
+                half = fov_axis == Axis::diagonal ? across * side / std::hypot(width_, height_) : across;
     half_width_ = across_width ? half : half * width_ / height_;
     half_height_ = across_width ? half * height_ / width_ : half;
     area_ = 4 * half_width_ * half_height_;
@@ -141,7 +164,8 @@ class PerspectiveCamera final : public Camera {
   /// The film point of a ray from a point of the lens, in camera coordinates.
   void project(const Vector3& lens, const Vector3& direction, Seen& seen) const {
     const float x = direction.x / direction.z + lens.x / focus_, y = direction.y / direction.z + lens.y / focus_;
-    seen.film = {(x / half_width_ + 1) / 2 * width_, (1 - y / half_height_) / 2 * height_};
+    seen.film = {((x / half_width_ + 1) / 2 + principal_point.x) * width_,
+                 ((1 - y / half_height_) / 2 + principal_point.y) * height_};
     seen.on_film = seen.film.x >= 0 && seen.film.x < width_ && seen.film.y >= 0 && seen.film.y < height_;
   }
 

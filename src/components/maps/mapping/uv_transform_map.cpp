@@ -1,12 +1,13 @@
 // A map over changed surface coordinates.
 
+#include "components/maps/rgb_source.h"
 #include "mapping.h"
 
 namespace etendue {
 namespace {
 
 // (u', v') = A (u, v) + b. The tangents follow by the inverse: dp/du' = dp/du du/du' + dp/dv dv/du'.
-class UvTransformMap final : public ObjectMap {
+class UvTransformMap final : public ObjectMap, public RgbSource {
  public:
   static void describe(Description<UvTransformMap>& d) {
     d.summary("Looks another map up at surface coordinates that are scaled, then turned, then shifted.")
@@ -29,6 +30,8 @@ class UvTransformMap final : public ObjectMap {
     return map->color(changed(p), w, use);
   }
   float scalar(const SurfacePoint& p) const override { return map->scalar(changed(p)); }
+  bool has_rgb() const override { return map && rgb_source(*map); }
+  void rgb(const SurfacePoint& p, float out[3]) const override { rgb_source(*map)->rgb(changed(p), out); }
 
   Ref<ObjectMap> map = etendue::constant(0.5f);
   Vector2 scale{1, 1}, shift{0, 0};

@@ -1,5 +1,6 @@
 // Numbers that belong to an object's surface, such as the colours of a mesh's vertices.
 
+#include "components/maps/rgb_source.h"
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
 #include "etendue/scene_object.h"
@@ -8,14 +9,15 @@
 namespace etendue {
 namespace {
 
-class AttributeMap final : public ObjectMap {
+class AttributeMap final : public ObjectMap, public RgbSource {
  public:
   static void describe(Description<AttributeMap>& d) {
     d.summary("What an object's surface itself tells, such as the colours of a mesh's vertices.")
         .member<&AttributeMap::name>("name", "",
                                      "of the attribute: \"color\" (red, green and blue of a PLY file's vertices, or the colors "
-                                     "of a TriangleMesh), or any "
-                                     "other number of a PLY file's vertices by its name there")
+                                     "of a TriangleMesh), or any other number of a PLY file's vertices by its name there; of "
+                                     "NAME_0, NAME_1, ... together: NAME. What its faces have, likewise with face_ before it: "
+                                     "\"face_color\"")
         .member<&AttributeMap::color_space>("color_space", "", "primaries and white of an attribute of three numbers",
                                             rgb_space_names())
         .member<&AttributeMap::otherwise>("otherwise", "1", "the map where the object has no such attribute");
@@ -44,6 +46,12 @@ class AttributeMap final : public ObjectMap {
     float sum = 0;
     for (int i = 0; i < channels; ++i) sum += values[i];
     return sum / float(channels);
+  }
+
+  void rgb(const SurfacePoint& p, float out[3]) const override {
+    float values[4];
+    const int count = look_up(p, values);
+    for (int i = 0; i < 3; ++i) out[i] = count == 0 ? otherwise->scalar(p) : count == 1 ? values[0] : i < count ? values[i] : 0;
   }
 
   std::string name = "color", color_space = "srgb";

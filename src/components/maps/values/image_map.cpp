@@ -2,6 +2,7 @@
 
 #include "components/maps/footprint.h"
 #include "components/maps/image_texture.h"
+#include "components/maps/rgb_source.h"
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
 #include "images/linear_image.h"
@@ -18,7 +19,7 @@ enum class Interpolation : std::uint8_t { nearest, bilinear };
 //
 // An RGB value becomes a spectrum at each lookup. That is not the spectrum between those of the texels, as the fit
 // is not linear, but it has the colour between theirs, which is what an image says.
-class ImageMap final : public ObjectMap {
+class ImageMap final : public ObjectMap, public RgbSource {
  public:
   static void describe(Description<ImageMap>& d) {
     d.summary("An image file over the surface coordinates: its lower left corner is at (0, 0), its upper right one at (1, 1).")
@@ -60,6 +61,8 @@ class ImageMap final : public ObjectMap {
     const int channels = look_up(p, rgb);
     return channels == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
   }
+
+  void rgb(const SurfacePoint& p, float out[3]) const override { look_up(p, out); }
 
   float largest() const override {
     float most = 0;

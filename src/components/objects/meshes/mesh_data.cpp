@@ -64,6 +64,9 @@ void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Poi
       ++without_area;
       continue;
     }
+    for (VertexAttribute& f : mesh.face_attributes)
+      std::copy_n(f.values.begin() + (&t - mesh.triangles.data()) * f.width, f.width,
+                  f.values.begin() + std::ptrdiff_t(kept) * f.width);
     mesh.triangles[kept++] = t;
   }
   if (kept == 0 && !mesh.triangles.empty())
@@ -71,6 +74,7 @@ void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Poi
                 std::to_string(not_finite) + " with coordinates that are not finite, " + std::to_string(without_area) +
                 " without area)");
   mesh.triangles.resize(kept);
+  for (VertexAttribute& a : mesh.face_attributes) a.values.resize(kept * size_t(a.width));
   if (not_finite > 0)
     warn(whose + ": left out " + std::to_string(not_finite) + " triangles with coordinates that are not finite");
   if (without_area > 0) warn(whose + ": left out " + std::to_string(without_area) + " triangles without area");

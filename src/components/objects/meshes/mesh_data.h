@@ -12,7 +12,7 @@
 
 namespace etendue {
 
-/// Numbers by vertex, `width` for each.
+/// Numbers by vertex, or by triangle, `width` for each.
 struct VertexAttribute {
   std::string name;
   int width = 1;
@@ -26,8 +26,9 @@ struct MeshData {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Normal3> normals;  ///< a zero normal: the vertex has none
   std::vector<Point2> uvs;
-  std::vector<VertexAttribute> attributes;  ///< "color" (linear sRGB) and whatever else a file tells of its vertices
-  std::vector<std::string> materials;       ///< names of those that the file uses, each once; nothing more is read of them
+  std::vector<VertexAttribute> attributes;       ///< "color" (linear sRGB) and whatever else a file tells of its vertices
+  std::vector<VertexAttribute> face_attributes;  ///< of triangles: those of the faces they are part of; "face_" and a name
+  std::vector<std::string> materials;            ///< names of those that the file uses, each once; nothing more is read of them
 };
 
 // The readers take the file's contents. They throw Error("what is wrong"), with the line for text, without the file's name.

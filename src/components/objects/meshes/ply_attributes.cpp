@@ -6,30 +6,72 @@
 
 namespace etendue::ply {
 
+std::vector<Group> groups_of(const Element& e, std::vector<bool> taken) {
+  std::vector<Group> groups;
+  const auto free = [&](int p) { return p >= 0 && !e.properties[size_t(p)].list && !taken[size_t(p)]; };
+  const auto add = [&](const std::string& name, const std::vector<int>& properties, Column::Meaning meaning) {
+    for (const int p : properties) taken[size_t(p)] = true;
+    if (std::ranges::none_of(groups, [&](const Group& g) { return g.name == name; }))
+      groups.push_back({name, properties, meaning});
+  };
+  const std::vector<int> rgb{e.find({"red", "r", "diffuse_red"}), e.find({"green", "g", "diffuse_green"}),
+                             e.find({"blue", "b", "diffuse_blue"})};
+  if (std::ranges::all_of(rgb, free)) add("color", rgb, Column::Meaning::color);
+  for (size_t p = 0; p < e.properties.size(); ++p) {
+    if (groups.size() >= 256) break;  // more than anyone has; names are compared with one another
+    if (!free(int(p))) continue;
+    const std::string& name = e.properties[p].name;
+    if (name.size() > 2 && name.ends_with("_0")) {
+      const std::string stem = name.substr(0, name.size() - 2);
+      std::vector<int> parts{int(p)};
+      for (int k = 1; k < 4; ++k) {
+        const int next = e.find({stem + "_" + std::to_string(k)});
+        if (!free(next)) break;
+        parts.push_back(next);
+      }
+      // Colours in this form are numbers as they are: who writes it writes floats.
+      add(stem, parts, Column::Meaning::number);
+    } else {
+      add(name, {int(p)}, name == "alpha" ? Column::Meaning::fraction : Column::Meaning::number);
+    }
+  }
+  return groups;
+}
+
 void add_attributes(const Element& e, std::vector<Column>& columns, MeshData& mesh) {
   std::vector<bool> taken(e.properties.size());
   for (const Column& c : columns) taken[size_t(c.property)] = true;
-  const auto free = [&](int p) { return p >= 0 && !e.properties[size_t(p)].list && !taken[size_t(p)]; };
-  const auto add = [&](const std::string& name, int width) {
-    mesh.attributes.push_back({name, width, std::vector<float>(size_t(e.count) * size_t(width))});
-    return reinterpret_cast<char*>(mesh.attributes.back().values.data());
-  };
-  const int rgb[3] = {e.find({"red", "r", "diffuse_red"}), e.find({"green", "g", "diffuse_green"}),
-                      e.find({"blue", "b", "diffuse_blue"})};
-  if (free(rgb[0]) && free(rgb[1]) && free(rgb[2])) {
-    char* const to = add("color", 3);
-    for (int c = 0; c < 3; ++c) {
-      columns.push_back({rgb[c], to + 4 * c, 12, Column::Meaning::color});
-      taken[size_t(rgb[c])] = true;
-    }
+  for (const Group& g : groups_of(e, taken)) {
+    const size_t width = g.properties.size();
+    mesh.attributes.push_back({g.name, int(width), std::vector<float>(size_t(e.count) * width)});
+    char* const to = reinterpret_cast<char*>(mesh.attributes.back().values.data());
+    for (size_t c = 0; c < width; ++c) columns.push_back({g.properties[c], to + 4 * c, 4 * width, g.meaning});
   }
-  for (size_t p = 0; p < e.properties.size(); ++p) {
-    if (mesh.attributes.size() >= 256) break;  // more than anyone has; names are compared with one another
-    const std::string& name = e.properties[p].name;
-    const auto same = [&](const VertexAttribute& a) { return a.name == name; };
-    if (!free(int(p)) || std::any_of(mesh.attributes.begin(), mesh.attributes.end(), same)) continue;
-    columns.push_back({int(p), add(name, 1), 4, name == "alpha" ? Column::Meaning::fraction : Column::Meaning::number});
+}
+
+FaceAttributes::FaceAttributes(const Element& e, int indices, MeshData& mesh) : element_(e), mesh_(mesh) {
+  std::vector<bool> taken(e.properties.size());
+  taken[size_t(indices)] = true;
+  groups_ = groups_of(e, taken);
+  for (const Group& g : groups_) mesh.face_attributes.push_back({"face_" + g.name, int(g.properties.size()), {}});
+}
+
+void FaceAttributes::add(const std::vector<float>& row) {
+  for (; triangles_ < mesh_.triangles.size(); ++triangles_)
+    for (size_t g = 0; g < groups_.size(); ++g)
+      for (const int p : groups_[g].properties) mesh_.face_attributes[g].values.push_back(row[size_t(p)]);
+}
+
+void FaceAttributes::finish() {
+  Element triangles = element_;
+  triangles.count = triangles_;
+  std::vector<Column> columns;
+  for (size_t g = 0; g < groups_.size(); ++g) {
+    const size_t width = groups_[g].properties.size();
+    char* const to = reinterpret_cast<char*>(mesh_.face_attributes[g].values.data());
+    for (size_t c = 0; c < width; ++c) columns.push_back({groups_[g].properties[c], to + 4 * c, 4 * width, groups_[g].meaning});
   }
+  decode_fractions(triangles, columns);
 }
 
 void decode_fractions(const Element& e, const std::vector<Column>& columns) {

@@ -212,10 +212,16 @@ void read_faces(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polyg
     body.advance(size_t(at - body.at()));
   }
   std::vector<std::uint32_t> corners;
-  for (; face < e.count; ++face)
+  MeshData unused;
+  FaceAttributes attributes(e, indices, polygons ? unused : mesh);
+  std::vector<float> row(e.properties.size());
+  for (; face < e.count; ++face) {
     for (const Property& p : e.properties) {
       if (&p != &list) {
-        body.skip(p);
+        if (p.list || polygons)
+          body.skip(p);
+        else
+          row[size_t(&p - e.properties.data())] = float(body.number(p.type));
         continue;
       }
       const std::uint64_t n = body.count(p);
@@ -232,6 +238,9 @@ void read_faces(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polyg
         polygons->corners.insert(polygons->corners.end(), corners.begin(), corners.end());
       }
     }
+    if (!polygons && !attributes.empty()) attributes.add(row);
+  }
+  if (!polygons) attributes.finish();
 }
 
 MeshData parse(std::string_view file, PolygonMesh* polygons) {

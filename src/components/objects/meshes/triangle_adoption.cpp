@@ -128,7 +128,8 @@ ObjectNotes TriangleObject::notes() const {
   ObjectNotes notes;
   notes.without_uv = mesh_.uvs.empty();
   if (data_) {
-    for (const VertexAttribute& a : data_->attributes) notes.attributes.push_back(a.name);
+    for (const auto* list : {&data_->attributes, &data_->face_attributes})
+      for (const VertexAttribute& a : *list) notes.attributes.push_back(a.name);
     notes.materials = data_->materials;
   }
   return notes;

@@ -30,7 +30,7 @@ class TriangleMesh final : public TriangleObject {
   std::vector<std::uint32_t> triangles;
   std::vector<Normal3> normals;
   std::vector<Point2> uvs;
-  std::vector<Vector3> colors;
+  std::vector<Vector3> colors, face_colors;
   bool flat = false;
   std::vector<float> times;
   std::vector<FilePath> motion_files;
@@ -56,6 +56,8 @@ class TriangleMesh final : public TriangleObject {
                                        "red, green and blue (linear, of sRGB) for each vertex, or none; for "
                                        "AttributeMap, as are those of a PLY file",
                                        Effect::rebuild)
+        .member<&TriangleMesh::face_colors>(
+            "face_colors", "1", "likewise for each triangle, or none; for AttributeMap as \"face_color\"", Effect::rebuild)
         .member<&TriangleMesh::flat>("flat", "", "ignores normals of vertices: the surface is shaded as it is", Effect::rebuild)
         .group("Motion")
         .member<&TriangleMesh::times>("times", "s", "of the keys, increasing: the first is that of `file` or `positions`",
@@ -74,7 +76,8 @@ class TriangleMesh final : public TriangleObject {
     std::shared_ptr<const MeshData> mesh;
     const bool moves = !motion_files.empty() || !motion_positions.empty();
     if (!file.empty()) {
-      if (!positions.empty() || !triangles.empty() || !normals.empty() || !uvs.empty() || !colors.empty())
+      if (!positions.empty() || !triangles.empty() || !normals.empty() || !uvs.empty() || !colors.empty() ||
+          !face_colors.empty())
         fail("file", "a mesh comes from a file or from lists, not from both");
       mesh = from_file("file", file, moves);
     } else {
@@ -93,13 +96,19 @@ class TriangleMesh final : public TriangleObject {
     if (!file.empty()) warn_if_coarse(*mesh);
     attributes_.clear();
     for (const VertexAttribute& a : mesh->attributes)
-      attributes_.push_back({attribute_number(a.name), a.width, a.values.data()});
+      attributes_.push_back({attribute_number(a.name), a.width, a.values.data(), false});
+    for (const VertexAttribute& a : mesh->face_attributes)
+      attributes_.push_back({attribute_number(a.name), a.width, a.values.data(), true});
     adopt(std::move(mesh), std::move(motion));
   }
 
   int attribute(int number, const SurfacePoint& p, float* values) const override {
     for (const Attribute& a : attributes_) {
       if (a.number != number) continue;
+      if (a.of_faces) {
+        std::copy_n(a.values + size_t(p.primitive) * size_t(a.width), a.width, values);
+        return a.width;
+      }
       const auto& t = corner_indices(p.primitive);
       const size_t width = size_t(a.width);
       const float *v0 = &a.values[t[0] * width], *v1 = &a.values[t[1] * width], *v2 = &a.values[t[2] * width];
@@ -114,6 +123,7 @@ class TriangleMesh final : public TriangleObject {
     int number;  // see attribute_number
     int width;
     const float* values;  // of the mesh that was adopted
+    bool of_faces;
   };
 
   /// What a file holds; as long as some mesh uses it, and the file is the same, it is read once. `whole`: with the triangles
@@ -273,6 +283,13 @@ class TriangleMesh final : public TriangleObject {
       VertexAttribute& color = mesh.attributes.emplace_back(VertexAttribute{"color", 3, {}});
       color.values.reserve(3 * n);
       for (const Vector3& c : colors) color.values.insert(color.values.end(), {c.x, c.y, c.z});
+    }
+    if (!face_colors.empty()) {
+      if (face_colors.size() != triangles.size() / 3)
+        fail("face_colors",
+             std::to_string(face_colors.size()) + " colours for " + std::to_string(triangles.size() / 3) + " triangles");
+      VertexAttribute& color = mesh.face_attributes.emplace_back(VertexAttribute{"face_color", 3, {}});
+      for (const Vector3& c : face_colors) color.values.insert(color.values.end(), {c.x, c.y, c.z});
     }
     mesh.triangles.reserve(triangles.size() / 3);
     for (size_t i = 0; i < triangles.size(); i += 3) {

@@ -7,14 +7,19 @@ namespace etendue {
 
 class Disc final : public SceneObject {
   float radius = 1;
+  enum class Coordinates : std::uint8_t { square, polar } coordinates = Coordinates::square;
 
  public:
   static void describe(Description<Disc>& d) {
     d.summary(
          "A disc about the origin in the xy plane, facing +z. u goes along x and v along y, from 0 to 1 over the square around "
-         "it.")
+         "it; or, by `coordinates`, outwards and around.")
         .group("Shape")
-        .member<&Disc::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild, soft(0.01, 100), logarithmic);
+        .member<&Disc::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild, soft(0.01, 100), logarithmic)
+        .member<&Disc::coordinates>("coordinates", "",
+                                    "surface coordinates; square: those of the square around it; polar: u from 0 in the middle "
+                                    "to 1 at the rim, v from 0 to 1 around from x towards y",
+                                    choices("square", "polar"));
   }
 
   void prepare() override {
@@ -63,8 +68,15 @@ class Disc final : public SceneObject {
     if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
     World scratch;
     const World& w = world(p.time, scratch);
-    p.dpdu = 2 * w.axis_u;
-    p.dpdv = 2 * w.axis_v;
+    if (coordinates == Coordinates::square) {
+      p.dpdu = 2 * w.axis_u;
+      p.dpdv = 2 * w.axis_v;
+      return;
+    }
+    // (x, y) = u (cos 2 pi v, sin 2 pi v); in the middle, where v has no direction, that of v = 0.
+    const float r = std::hypot(p.u, p.v), c = r > 0 ? p.u / r : 1, s = r > 0 ? p.v / r : 0;
+    p.dpdu = c * w.axis_u + s * w.axis_v;
+    p.dpdv = (2 * pi * std::max(r, 1e-6f)) * (c * w.axis_v - s * w.axis_u);
   }
 
   NormalCone normals() const override {
@@ -126,7 +138,12 @@ class Disc final : public SceneObject {
     p.error = w.error;
     p.normal = w.normal;
     p.shading_normal = w.normal;
-    p.uv = {(on_disc.x + 1) / 2, (on_disc.y + 1) / 2};
+    if (coordinates == Coordinates::square) {
+      p.uv = {(on_disc.x + 1) / 2, (on_disc.y + 1) / 2};
+    } else {
+      const float turn = std::atan2(on_disc.y, on_disc.x) / (2 * pi);
+      p.uv = {std::hypot(on_disc.x, on_disc.y), turn < 0 ? std::min(turn + 1, one_minus_epsilon) : turn};
+    }
     p.dpdu = {};
     p.dpdv = {};
     p.time = time;

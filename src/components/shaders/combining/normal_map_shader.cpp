@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "components/maps/rgb_source.h"
 #include "components/shaders/tangent_frame.h"
 #include "etendue/core/error.h"
 #include "images/linear_image.h"
@@ -22,25 +23,36 @@ class NormalMapShader final : public PerturbedNormalShader {
   static void describe(Description<NormalMapShader>& d) {
     d.summary(
          "Tilts the normal that shading uses by an image of normals in the surface's frame, laid over the surface coordinates "
-         "like that of an ImageMap.",
+         "like that of an ImageMap, or by a map.",
          "Cohen, Olano & Manocha 1998, Appearance-preserving simplification")
         .member<&NormalMapShader::shader>("shader", "", "the surface that gets the normals", required)
         .member<&NormalMapShader::file>(
-            "file", "", "the image: red, green, blue in [0, 1] are x (along u), y (along v), z in [-1, 1]", required)
+            "file", "", "the image: red, green, blue in [0, 1] are x (along u), y (along v), z in [-1, 1]; none: `map`")
+        .member<&NormalMapShader::map>(
+            "map", "1",
+            "instead, a map that holds such red, green and blue: an ImageMap (mostly with transfer linear), an AttributeMap, "
+            "or one of these below a UvTransformMap",
+            Meaning::number, unless("file"))
         .member<&NormalMapShader::strength>("strength", "1", "multiplies the tilt: 0 is flat, 1 as in the image", at_least(0),
                                             soft(0, 2))
         .member<&NormalMapShader::flip_y>("flip_y", "", "whether green grows against v, as in images made for DirectX")
         .member<&NormalMapShader::transfer>("transfer", "",
                                             "how the image's numbers are encoded; nearly all images of normals are linear",
-                                            image_transfer_names())
-        .member<&NormalMapShader::repeat>("repeat", "1", "how many times the image is laid along u and along v");
+                                            image_transfer_names(), when("file"))
+        .member<&NormalMapShader::repeat>("repeat", "1", "how many times the image is laid along u and along v", when("file"));
   }
 
   void prepare() override {
     if (!shader) fail("shader", "a shader is needed");
-    if (file.empty()) fail("file", "an image file is needed");
+    if (file.empty() && !map) fail("file", "an image file is needed, or a map");
     if (!(strength >= 0 && strength < infinity)) fail("strength", "must be a finite number, 0 or more");
     if (!(std::isfinite(repeat.x) && std::isfinite(repeat.y))) fail("repeat", "must be finite numbers");
+    source_ = nullptr;
+    if (file.empty()) {
+      source_ = rgb_source(*map);
+      if (!source_) fail("map", "a " + map->class_info().name + " cannot tell red, green and blue as they are");
+      return;
+    }
     try {
       const LinearImage image = read_linear_image(file.resolved(), transfer);
       width_ = image.width;
@@ -57,6 +69,7 @@ class NormalMapShader final : public PerturbedNormalShader {
   }
 
   FilePath file;
+  Ref<ObjectMap> map;
   float strength = 1;
   bool flip_y = false;
   std::string transfer = "linear";
@@ -64,7 +77,7 @@ class NormalMapShader final : public PerturbedNormalShader {
 
  protected:
   Vector3 tilted(const SurfacePoint& p) const override {
-    Vector3 v = look_up(p.uv.x * repeat.x, p.uv.y * repeat.y);
+    Vector3 v = source_ ? ask(p) : look_up(p.uv.x * repeat.x, p.uv.y * repeat.y);
     v.x *= strength;
     v.y *= flip_y ? -strength : strength;
     v.z = std::max(v.z, 1e-3f);
@@ -74,6 +87,14 @@ class NormalMapShader final : public PerturbedNormalShader {
   }
 
  private:
+  Vector3 ask(SurfacePoint p) const {
+    p.footprint = 0;  // not averaged, see above
+    float c[3];
+    source_->rgb(p, c);
+    const Vector3 v{2 * c[0] - 1, 2 * c[1] - 1, 2 * c[2] - 1};
+    return is_finite(v) ? v : Vector3{0, 0, 1};
+  }
+
   /// Bilinear between texel centres, repeated; row 0 of the image is at v = 1.
   Vector3 look_up(float u, float v) const {
     const float x = (u - std::floor(u)) * float(width_) - 0.5f, y = (1 - (v - std::floor(v))) * float(height_) - 0.5f;
@@ -94,6 +115,7 @@ class NormalMapShader final : public PerturbedNormalShader {
   // Sixteen bits hold what images of normals have; as floats a large one would take twice the memory.
   std::vector<std::uint16_t> texels_;
   int width_ = 0, height_ = 0;
+  const RgbSource* source_ = nullptr;  // of `map`, when there is no file
 };
 
 const Register<NormalMapShader> registered;

@@ -1,0 +1,155 @@
+// GridVolume: a medium whose density is given on a grid.
+
+#include <fmt/format.h>
+
+#include "colored_volume.h"
+#include "etendue/core/transform.h"
+#include "etendue/describe/color.h"
+#include "files/regular_file.h"
+#include "files/whole_file.h"
+#include "volume_grid.h"
+
+namespace etendue {
+namespace {
+
+// With d(p) what the grid says at p and c the coefficients, each is c d(p), and the bound of the extinction that tracking needs
+// is the largest value of the grid, as what is between is a mean. An albedo given on a grid takes the place of the colour.
+// Values of three channels are read as colours, for each point after interpolation: RGB that is a coefficient becomes a
+// spectrum that nowhere exceeds twice the largest component.
+class GridVolume final : public ColoredVolume {
+ public:
+  static void describe(Description<GridVolume>& d) {
+    d.summary(
+        "A medium whose density is given on a grid, with the Henyey-Greenstein phase function: all coefficients are multiplied "
+        "by it. The grid fills the unit cube from (0, 0, 0) to (1, 1, 1) of its own coordinates; cells' values are those in "
+        "their "
+        "middles.");
+    d.group("Density")
+        .member<&GridVolume::file>(
+            "file", "",
+            "the densities: a volume as Mitsuba has them (.vol), or a NumPy array (.npy) of shape (nz, ny, nx); with three "
+            "channels they are RGB factors. None: the numbers below")
+        .member<&GridVolume::resolution>("resolution", "1", "how many densities there are along x, y and z", unless("file"))
+        .member<&GridVolume::density>("density", "1", "the densities, x running fastest, z slowest", unless("file"))
+        .group("Place")
+        .member<&GridVolume::placement>("placement", "",
+                                        "from the unit cube of the grid to the coordinates of the object whose inside it fills")
+        .member<&GridVolume::file_box>(
+            "file_box", "", "whether the grid fills, instead of the unit cube, the box that its file names", when("file"))
+        .member<&GridVolume::filter>("filter", "", "what is between the middles of cells", choices("nearest", "trilinear"))
+        .member<&GridVolume::outside>(
+            "outside", "",
+            "what lies outside the cube; clamp: as at its border; repeat and mirror: the grid again; empty: nothing, "
+            "which the cells at the border already fade to; cut: nothing, from the border on",
+            choices("clamp", "repeat", "mirror", "empty", "cut"));
+    describe_colors(d, " where the density is 1");
+    d.group("Albedo of each cell")
+        .member<&GridVolume::albedo_file>(
+            "albedo_file", "",
+            "a grid (.vol, .npy), of the same place, that says instead how much of the extinction "
+            "scatters: one channel, or RGB")
+        .member<&GridVolume::color_space>("color_space", "", "primaries and white of RGB in grids", rgb_space_names());
+  }
+
+  void prepare() override {
+    prepare_colors();
+    space_ = &rgb_space(color_space);
+    if (file.empty())
+      take_list();
+    else
+      grid_ = read("file", file);
+    albedo_grid_ = {};
+    if (!albedo_file.empty()) albedo_grid_ = read("albedo_file", albedo_file);
+    largest_ = grid_.largest() * (grid_.channels == 3 ? 2 : 1);
+    if (!placement.valid()) fail("placement", "must be finite, and have an inverse");
+  }
+
+  VolumeCoefficients coefficients(const Point3& p, float time, const Wavelengths& w) const override {
+    const Point3 unit = in_grid(p, time);
+    const Spectrum d = density_at(unit, w);
+    if (d.black()) return {};
+    VolumeCoefficients c = colors(w);
+    if (!albedo_grid_.values.empty()) {
+      const Spectrum whole = c.extinction();
+      c.scattering = whole * albedo_at(unit, w);
+      c.absorption = max(whole - c.scattering, 0);
+    }
+    c.absorption *= d;
+    c.scattering *= d;
+    c.emission *= d;
+    return c;
+  }
+  bool homogeneous() const override { return false; }
+  Spectrum majorant(const Wavelengths& w) const override { return colors(w).extinction() * (largest_ * 1.00001f); }
+
+  FilePath file, albedo_file;
+  std::vector<int> resolution{1, 1, 1};
+  std::vector<float> density{1};
+  AnimatedTransform placement;
+  bool file_box = false;
+  VoxelFilter filter = VoxelFilter::trilinear;
+  Beyond outside = Beyond::clamp;
+  std::string color_space = "srgb";
+
+ private:
+  Point3 in_grid(const Point3& p, float time) const {
+    Point3 q = placement.animated() ? placement.written(time).back(p) : placement.still().back(p);
+    if (file_box && !file.empty())
+      for (int k = 0; k < 3; ++k) q[k] = (q[k] - grid_.low[k]) / (grid_.high[k] - grid_.low[k]);
+    return q;
+  }
+  Spectrum density_at(const Point3& unit, const Wavelengths& w) const {
+    float v[3];
+    grid_.look_up(unit, filter, outside, v);
+    if (grid_.channels == 1) return Spectrum(v[0]);
+    return rgb_spectrum(*space_, v[0], v[1], v[2], ColorUse::coefficient, w);
+  }
+  Spectrum albedo_at(const Point3& unit, const Wavelengths& w) const {
+    float v[3];
+    // Where there is no density the albedo does not matter.
+    albedo_grid_.look_up(unit, filter, outside == Beyond::empty || outside == Beyond::cut ? Beyond::clamp : outside, v);
+    if (albedo_grid_.channels == 1) return Spectrum(std::min(v[0], 1.0f));
+    return rgb_spectrum(*space_, v[0], v[1], v[2], ColorUse::reflectance, w);
+  }
+
+  VolumeGrid read(const char* member, const FilePath& path) const {
+    const std::string resolved = path.resolved();
+    try {
+      VolumeGrid grid = read_volume_grid(resolved);
+      if (file_box && member == std::string("file"))
+        for (int k = 0; k < 3; ++k)
+          if (!(grid.high[k] > grid.low[k] && std::isfinite(grid.high[k] - grid.low[k])))
+            throw Error("the box it names is empty or not finite");
+      return grid;
+    } catch (const Error& error) {
+      fail(member, "'" + resolved + "': " + error.what());
+    } catch (const std::bad_alloc&) {
+      fail(member, "'" + resolved + "': " + no_memory_to_read);
+    }
+  }
+
+  void take_list() {
+    if (resolution.size() != 3) fail("resolution", "three numbers are needed: how many densities along x, y and z");
+    grid_ = {};
+    std::uint64_t count = 1;
+    for (size_t k = 0; k < 3; ++k) {
+      if (resolution[k] < 1) fail("resolution", "at least 1 is needed along each axis");
+      grid_.size[k] = resolution[k];
+      count *= std::uint64_t(resolution[k]);
+      if (count > std::uint64_t(1) << 31) fail("resolution", "too many densities");
+    }
+    if (density.size() != count) fail("density", fmt::format("{} densities for a grid of {}", density.size(), count));
+    for (const float v : density)
+      if (!(v >= 0 && std::isfinite(v))) fail("density", fmt::format("{} is no density", v));
+    grid_.values = density;
+  }
+
+  const RgbSpace* space_ = nullptr;
+  VolumeGrid grid_, albedo_grid_;
+  float largest_ = 1;  // of what the coefficients are multiplied by
+};
+
+const Register<GridVolume> registered;
+
+}  // namespace
+}  // namespace etendue

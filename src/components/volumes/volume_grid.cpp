@@ -1,0 +1,145 @@
+#include "volume_grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "etendue/core/error.h"
+#include "files/regular_file.h"
+#include "files/whole_file.h"
+#include "images/numpy_array.h"
+
+namespace etendue {
+namespace {
+
+constexpr std::uint64_t most_cells = std::uint64_t(1) << 31;
+
+/// Where cell i lies along an axis of n cells; -1: nowhere.
+int wrapped(int i, int n, Beyond beyond) {
+  if (i >= 0 && i < n) return i;
+  switch (beyond) {
+    case Beyond::clamp:
+    case Beyond::cut: return i < 0 ? 0 : n - 1;
+    case Beyond::repeat: return ((i % n) + n) % n;
+    case Beyond::mirror: {
+      const int k = ((i % (2 * n)) + 2 * n) % (2 * n);
+      return k < n ? k : 2 * n - 1 - k;
+    }
+    case Beyond::empty: break;
+  }
+  return -1;
+}
+
+void check_values(const VolumeGrid& grid) {
+  for (const float v : grid.values)
+    if (!(v >= 0 && std::isfinite(v))) throw Error(fmt::format("it holds {}, which is no density", v));
+}
+
+// The header: "VOL", version 3 (a byte), encoding, cells along x, y, z and channels (int32), the box's corners (6 floats); then
+// the values, channels fastest, then x. All little endian.
+VolumeGrid read_vol(const std::string& path) {
+  RegularFile file(path);
+  char magic[4];
+  std::int32_t numbers[5];
+  float box[6];
+  constexpr std::uint64_t header = sizeof magic + sizeof numbers + sizeof box;
+  if (file.size() < header) throw Error("it is too short for a volume");
+  file.read(magic, sizeof magic);
+  if (std::memcmp(magic, "VOL", 3) != 0) throw Error("it does not begin with \"VOL\", as volumes do");
+  if (magic[3] != 3) throw Error(fmt::format("version {} of the format is not known, only 3", int(magic[3])));
+  file.read(numbers, sizeof numbers);
+  file.read(box, sizeof box);
+  const int encoding = numbers[0];
+  if (encoding != 1 && encoding != 3)
+    throw Error(fmt::format("its numbers are encoded as kind {}; known are 1, floats, and 3, bytes", encoding));
+  VolumeGrid grid;
+  grid.size = {numbers[1], numbers[2], numbers[3]};
+  grid.channels = numbers[4];
+  const std::string shape = fmt::format("{} x {} x {} cells of {} channels", numbers[1], numbers[2], numbers[3], numbers[4]);
+  std::uint64_t count = 1;
+  for (int i = 1; i < 5; ++i) {
+    if (numbers[i] < 1 || std::uint64_t(numbers[i]) > most_cells / count) throw Error("of no size that makes sense: " + shape);
+    count *= std::uint64_t(numbers[i]);
+  }
+  if (grid.channels != 1 && grid.channels != 3) throw Error("one channel or three are needed: " + shape);
+  const std::uint64_t bytes = encoding == 1 ? 4 : 1, needed = header + count * bytes;
+  if (file.size() != needed) throw Error(fmt::format("{} take {} bytes, but it is {} bytes long", shape, needed, file.size()));
+  for (int k = 0; k < 3; ++k) {
+    grid.low[k] = box[k];
+    grid.high[k] = box[k + 3];
+  }
+  grid.values.resize(count);
+  if (encoding == 1) {
+    file.read(grid.values.data(), count * sizeof(float));
+  } else {
+    std::vector<std::uint8_t> raw(count);
+    file.read(raw.data(), count);
+    for (size_t i = 0; i < raw.size(); ++i) grid.values[i] = float(raw[i]) / 255;
+  }
+  return grid;
+}
+
+VolumeGrid read_npy(const std::string& path) {
+  const FileContents contents(path);
+  const NumpyArray array = parse_numpy_header(contents.text());
+  const size_t dimensions = array.shape.size();
+  if (!(dimensions == 3 || (dimensions == 4 && (array.shape[3] == 1 || array.shape[3] == 3))) || array.count() == 0)
+    throw Error("an array of shape (nz, ny, nx) or (nz, ny, nx, 3) is needed");
+  VolumeGrid grid;
+  for (size_t k = 0; k < 3; ++k) {
+    if (array.shape[2 - k] > most_cells) throw Error("its shape makes no sense");
+    grid.size[k] = int(array.shape[2 - k]);
+  }
+  grid.channels = dimensions == 4 ? int(array.shape[3]) : 1;
+  grid.values.resize(array.count());
+  for (size_t i = 0; i < grid.values.size(); ++i) grid.values[i] = float(array[i]);
+  return grid;
+}
+
+}  // namespace
+
+float VolumeGrid::largest() const { return values.empty() ? 0 : *std::max_element(values.begin(), values.end()); }
+
+void VolumeGrid::look_up(const Point3& p, VoxelFilter filter, Beyond beyond, float* out) const {
+  std::fill(out, out + channels, 0.0f);
+  int first[3];
+  float fraction[3];
+  for (int k = 0; k < 3; ++k) {
+    const float n = float(size[size_t(k)]);
+    if ((beyond == Beyond::empty || beyond == Beyond::cut) && !(p[k] >= 0 && p[k] <= 1)) return;
+    // Far outside nothing is known of a float's place in a cell; within an int's reach it stays.
+    const float at = std::clamp(p[k] * n, -1e9f, 1e9f) - (filter == VoxelFilter::trilinear ? 0.5f : 0);
+    if (!std::isfinite(at)) return;
+    const float floor = std::floor(at);
+    first[k] = int(floor);
+    fraction[k] = filter == VoxelFilter::trilinear ? at - floor : 0;
+    if (filter == VoxelFilter::nearest && p[k] == 1) first[k] = size[size_t(k)] - 1;
+  }
+  const int corners = filter == VoxelFilter::trilinear ? 8 : 1;
+  for (int corner = 0; corner < corners; ++corner) {
+    float weight = 1;
+    size_t place = 0, stride = 1;
+    bool there = true;
+    for (int k = 0; k < 3; ++k) {
+      const int step = (corner >> k) & 1, i = wrapped(first[k] + step, size[size_t(k)], beyond);
+      weight *= step ? fraction[k] : 1 - fraction[k];
+      there = there && i >= 0;
+      if (!there) break;
+      place += size_t(i) * stride;
+      stride *= size_t(size[size_t(k)]);
+    }
+    if (!there || !(weight > 0)) continue;
+    const float* value = &values[place * size_t(channels)];
+    for (int c = 0; c < channels; ++c) out[c] += weight * value[c];
+  }
+}
+
+VolumeGrid read_volume_grid(const std::string& path) {
+  VolumeGrid grid = path.ends_with(".npy") ? read_npy(path) : read_vol(path);
+  check_values(grid);
+  return grid;
+}
+
+}  // namespace etendue
