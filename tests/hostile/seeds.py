@@ -225,7 +225,7 @@ Material "translucent" Shape "hyperboloid" "point p1" [ 1 0 0 ] "point p2" [ .5 
 def scenes_of_others():
     yield Seed("pbrt v4", "input.pbrt", PBRT, [["check", "input.pbrt"]], {}, True)
     yield Seed("pbrt v3", "input.pbrt", PBRT_V3, [["check", "input.pbrt"]], {}, True)
-    whole = {"scene.pbrt": b'Film "rgb" WorldBegin Include "input.pbrt" Shape "sphere"'}
+    whole = {"scene.pbrt": b'Camera "perspective" Film "rgb" WorldBegin Include "input.pbrt" Shape "sphere"'}
     yield Seed("pbrt included", "input.pbrt", PBRT.split(b"comment")[1], [["check", "scene.pbrt"]], whole, True)
 
 
