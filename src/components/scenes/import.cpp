@@ -15,9 +15,11 @@ class Import final : public Scene {
  public:
   static void describe(Description<Import>& d) {
     d.summary(
-         "What a file of another program holds, at any place in a scene: a model of glTF, OBJ, FBX and others. Its camera and what "
+         "What a file of another program holds, at any place in a scene: a model of glTF, OBJ, FBX and others. Its camera and "
+         "what "
          "lies at infinity are left out; what it could not express is told when it is read.")
-        .member<&Import::file>("file", "", "the model, or a scene of another program", required, Effect::rebuild)
+        .member<&Import::file>("file", "", "the model (glTF, OBJ, PLY, FBX, USD, …), or a scene of another program", required,
+                               Effect::rebuild)
         .member<&Import::time>("time", "s", "of what moves in it", Effect::rebuild);
   }
 
@@ -62,7 +64,8 @@ class Import final : public Scene {
       prepare_tree(*object);
       if (!object->infinite() || object->delta()) objects.push_back(object);
     }
-    if (objects.size() < scene->objects.size()) warn("what lies at infinity in '" + path + "' is left out", location_of("file"));
+    if (objects.size() < scene->objects.size())
+      warn("what lies at infinity in '" + path + "' is left out", location_of("file"));
     read_ = path;
     read_at_ = time;
   }
