@@ -79,6 +79,18 @@ void add_light(const aiScene& scene, Glb& glb, const aiLight& light, size_t pare
              {"extensions", {{"KHR_lights_punctual", {{"light", index}}}}}});
 }
 
+/// Whether a camera looks past the box: some formats' readers take its direction from the wrong place.
+bool sees_nothing(const aiScene& scene, const aiCamera& camera, const aiVector3D& low, const aiVector3D& high) {
+  const aiMatrix4x4 place = global(scene.mRootNode->FindNode(camera.mName));
+  const aiVector3D from = place * camera.mPosition;
+  aiVector3D forward = aiMatrix3x3(place) * camera.mLookAt;
+  forward.NormalizeSafe();
+  const double radius = double((high - low).Length()) / 2, distance = double(((low + high) * 0.5f - from).Length());
+  if (low.x > high.x || distance <= radius) return false;
+  const double cosine = double(forward * ((low + high) * 0.5f - from)) / distance;
+  return std::acos(std::clamp(cosine, -1.0, 1.0)) > std::asin(radius / distance) + double(camera.mHorizontalFOV) / 2;
+}
+
 void add_camera(Glb& glb, const aiCamera& camera, size_t parent) {
   const std::string name = clean(camera.mName.C_Str());
   const double aspect = camera.mAspect > 0 && std::isfinite(camera.mAspect) ? double(camera.mAspect) : 4.0 / 3;
@@ -107,7 +119,10 @@ void convert_lights(const aiScene& scene, Glb& glb, size_t (*node_of)(const void
   for (unsigned i = 0; i < scene.mNumLights; ++i)
     add_light(scene, glb, *scene.mLights[i], node_of(names, scene.mLights[i]->mName.C_Str()), middle);
   for (unsigned i = 0; i < scene.mNumCameras; ++i)
-    add_camera(glb, *scene.mCameras[i], node_of(names, scene.mCameras[i]->mName.C_Str()));
+    if (sees_nothing(scene, *scene.mCameras[i], low, high))
+      glb.note("a camera that sees nothing of the model is left out");
+    else
+      add_camera(glb, *scene.mCameras[i], node_of(names, scene.mCameras[i]->mName.C_Str()));
 }
 
 }  // namespace etendue::assimp_helper

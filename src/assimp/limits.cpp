@@ -72,7 +72,6 @@ void limit_process(std::uint64_t file_size) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_AS, 1024 * mega + 64 * file_size);  // the libraries themselves map some hundred megabytes
   limit(RLIMIT_CPU, 20 + file_size / (2 * mega));
-  limit(RLIMIT_FSIZE, 0);
   ::close_range(3, ~0u, 0);
   forbid_calls();
 }

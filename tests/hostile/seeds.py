@@ -4,6 +4,7 @@
 of `Seed.beside`, and runs the program with one of `Seed.commands` in that folder.
 """
 import dataclasses
+import json
 import pathlib
 import struct
 import subprocess
@@ -99,6 +100,80 @@ def meshes():
             yield Seed(f"ply {kind} {thing}", "input.ply", ply(kind), [RENDER], {"scene.etd": text}, kind == "ascii")
     for thing in ("TriangleMesh", "SubdivisionSurface"):
         yield Seed(f"obj {thing}", "input.obj", obj(), [RENDER], {"scene.etd": scene(f'{thing} {{ file: "input.obj" }}')}, True)
+
+
+# ---- models ---------------------------------------------------------------------------------------------------------------
+
+SMALL = ["--quiet", "--set", "image.width=4", "--set", "image.height=4", "--set", "renderer.samples=1", "-o", "out.npy"]
+
+
+def gltf_json(uri=None):
+    positions = struct.pack("<15f", *(x for c in CORNERS for x in c))
+    indices = struct.pack("<12H", *(i for f in FACES[:4] for i in f))
+    times = struct.pack("<2f", 0, 1)
+    moved = struct.pack("<6f", 0, 0, 0, 1, 0, 0)
+    pieces = [positions, indices, times, moved]
+    views, offset = [], 0
+    for piece in pieces:
+        views.append({"buffer": 0, "byteOffset": offset, "byteLength": len(piece)})
+        offset += len(piece)
+    text = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 2]}],
+        "nodes": [{"children": [1], "scale": [1, 2, 1]}, {"mesh": 0, "translation": [0, 1, 0]}, {"camera": 0, "translation": [0, 0, 5]}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "aspectRatio": 1.0, "znear": 0.1}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.2, 0.7], "baseColorTexture": {"index": 0}},
+                       "alphaMode": "MASK", "extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1}}}],
+        "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 33071}],
+        "images": [{"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="}],
+        "animations": [{"samplers": [{"input": 2, "output": 3}], "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 5},
+                      {"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 12},
+                      {"bufferView": 2, "componentType": 5126, "type": "SCALAR", "count": 2},
+                      {"bufferView": 3, "componentType": 5126, "type": "VEC3", "count": 2}],
+        "bufferViews": views, "buffers": [{"byteLength": offset, **({"uri": uri} if uri else {})}],
+    }
+    return json.dumps(text).encode(), b"".join(pieces)
+
+
+def glb():
+    text, binary = gltf_json()
+    text += b" " * (-len(text) % 4)
+    binary += bytes(-len(binary) % 4)
+    return (b"glTF" + struct.pack("<III", 2, 28 + len(text) + len(binary), len(text)) + b"JSON" + text
+            + struct.pack("<I", len(binary)) + b"BIN\0" + binary)
+
+
+def stl_binary():
+    data = b"made for a test".ljust(80) + struct.pack("<I", 4)
+    for face in FACES[:4]:
+        data += struct.pack("<12fH", 0, 0, 1, *(x for i in face for x in CORNERS[i]), 0)
+    return data
+
+
+def stl_text():
+    lines = ["solid test"]
+    for face in FACES[:4]:
+        lines += ["facet normal 0 0 1", "outer loop", *("vertex %g %g %g" % CORNERS[i] for i in face), "endloop", "endfacet"]
+    return "\n".join(lines + ["endsolid"]).encode()
+
+
+OFF = ("OFF\n5 5 0\n" + "".join("%g %g %g\n" % c for c in CORNERS) + "".join(f"{len(f)} {' '.join(map(str, f))}\n" for f in FACES)).encode()
+MTL = (b"newmtl a\nKd 0.5 0.2 0.1\nKs 0.5 0.5 0.5\nNs 50\nillum 2\nmap_Kd -s 2 2 -o 0.5 0 -clamp on none.png\nnewmtl b\nPr 0.2\nPm 1\n"
+       b"d 0.5\nKe 1 1 1\nTf 1 1 1\nNi 1.5\nbump -bm 0.2 none.png\n")
+
+
+def models():
+    text, binary = gltf_json("input.bin")
+    yield Seed("glb", "input.glb", glb(), [["render", "input.glb", *SMALL], ["convert", "input.glb", "-o", "-"]])
+    yield Seed("gltf", "input.gltf", text, [["render", "input.gltf", *SMALL]], {"input.bin": binary}, True)
+    yield Seed("obj model", "input.obj", b"mtllib input.mtl\n" + obj() + b"usemtl a\nf 1 2 3\ns 1\nusemtl b\nf 1 3 4\n",
+               [["render", "input.obj", *SMALL]], {"input.mtl": MTL}, True)
+    yield Seed("mtl", "input.mtl", MTL, [["render", "model.obj", *SMALL]],
+               {"model.obj": b"mtllib input.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n"}, True)
+    yield Seed("stl binary", "input.stl", stl_binary(), [["render", "input.stl", *SMALL]])
+    yield Seed("stl text", "input.stl", stl_text(), [["render", "input.stl", *SMALL]], {}, True)
+    yield Seed("off", "input.off", OFF, [["render", "input.off", *SMALL]], {}, True)
 
 
 # ---- measured data --------------------------------------------------------------------------------------------------------
@@ -254,7 +329,8 @@ def checkpoints(program, folder):
 
 
 def seeds(program, plugin, folder):
-    found = list(images()) + list(meshes()) + list(tables()) + list(descriptions()) + list(scenes_of_others()) + checkpoints(program, folder)
+    found = (list(images()) + list(meshes()) + list(models()) + list(tables()) + list(descriptions()) + list(scenes_of_others()) +
+             checkpoints(program, folder))
     if plugin:
         data = pathlib.Path(plugin).read_bytes()
         found.append(Seed("plugin", "libinput.so", data, [["classes", "--plugin", "./libinput.so"]]))

@@ -12,9 +12,8 @@ namespace etendue {
 namespace {
 
 const std::vector<std::string>& endings() {
-  static const std::vector<std::string> all{"3ds",  "3mf", "ac",   "ase", "b3d", "blend", "cob", "dae", "dxf",
-                                            "fbx",  "hmp", "irr",  "lwo", "lws", "lxo",   "md2", "md3", "md5mesh",
-                                            "ms3d", "nff", "ogex", "q3o", "smd", "x",     "x3d"};
+  static const std::vector<std::string> all{"3ds", "3mf", "ac",  "ase",     "b3d",  "blend", "dae",
+                                            "fbx", "lwo", "lws", "md5mesh", "ms3d", "x",     "x3d"};
   return all;
 }
 

@@ -220,6 +220,7 @@ std::optional<MadeCamera> SceneBuilder::camera() const {
   if (cameras_.empty()) return std::nullopt;
   size_t which = 0;
   if (const auto said = importing_.parameter("camera")) {
+    if (*said == "none") return std::nullopt;
     which = cameras_.size();
     std::vector<std::string> names;
     for (size_t i = 0; i < cameras_.size(); ++i) {

@@ -1,0 +1,57 @@
+// UsdImporter: Universal Scene Description, read by Pixar's own library in a process of its own (a Python program beside this
+// library), which gives a .glb: what is read here is always glTF, and checked as such.
+
+#include <cstdlib>
+
+#include "components/importers/assimp/helper_process.h"
+#include "components/importers/gltf/document.h"
+#include "components/importers/gltf/import_document.h"
+#include "components/importers/gltf/primitive.h"
+#include "components/objects/meshes/mesh_data.h"
+#include "files/contained_file.h"
+
+namespace etendue {
+namespace {
+
+const std::vector<std::string>& endings() {
+  static const std::vector<std::string> all{"usd", "usda", "usdc", "usdz"};
+  return all;
+}
+
+std::string convert(const std::string& path, const Importing& importing) {
+  const std::string script = helper_path("etendue_usd.py");
+  if (script.empty()) throw Error("the program 'etendue_usd.py', which reads USD, is not there: install it too");
+  const char* chosen = std::getenv("ETENDUE_PYTHON");
+  std::vector<std::string> arguments{script, path, fmt::format("{}", importing.options().time)};
+  for (const std::string& folder : importing.options().allowed_folders) arguments.push_back(folder);
+  return run_program(chosen && *chosen ? chosen : "python3", arguments, "etendue_usd.py");
+}
+
+MeshData read_part(const std::string& path, const std::string& part) {
+  return gltf::read_primitive(*gltf::Document::open(path), gltf::PartName::parse(part));
+}
+
+std::string unpack(const std::string& container, const std::string& name) {
+  return gltf::Document::open(container)->image_bytes(name);
+}
+
+const bool known_converter = gltf::register_converter(endings(), convert);
+const bool known_meshes = register_mesh_format(endings(), read_part);
+const bool known_container = register_container(endings(), unpack);
+
+class UsdImporter final : public Importer {
+ public:
+  static void describe(Description<UsdImporter>& d) {
+    d.summary(
+        "Universal Scene Description (.usd, .usda, .usdc, .usdz), read by the Python package usd-core, which must be installed "
+        "(pip install usd-core; ETENDUE_PYTHON names the Python that has it).",
+        "Pixar, Universal Scene Description");
+  }
+  std::vector<std::string> extensions() const override { return endings(); }
+  Ref<Component> import(Importing& importing) const override { return gltf::import_document(importing); }
+};
+
+const Register<UsdImporter> registered;
+
+}  // namespace
+}  // namespace etendue

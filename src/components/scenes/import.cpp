@@ -1,0 +1,81 @@
+// Import: what a file of another program holds, as an object of a scene.
+
+#include "etendue/importer.h"
+
+#include "etendue/render/job.h"
+#include "etendue/scene.h"
+#include "etendue/shader.h"
+
+namespace etendue {
+namespace {
+
+// The file is read when the object is prepared. What it holds become the objects of this scene, so that all who look through a
+// scene find them; another scene over the same objects finds what rays meet.
+class Import final : public Scene {
+ public:
+  static void describe(Description<Import>& d) {
+    d.summary(
+         "What a file of another program holds, at any place in a scene: a model of glTF, OBJ, FBX and others. Its camera and "
+         "what "
+         "lies at infinity are left out; what it could not express is told when it is read.")
+        .member<&Import::file>("file", "", "the model (glTF, OBJ, PLY, FBX, USD, …), or a scene of another program", required,
+                               Effect::rebuild)
+        .member<&Import::time>("time", "s", "of what moves in it", Effect::rebuild);
+  }
+
+  bool nearest(const Ray& ray, Hit& hit) const override { return over_->nearest(ray, hit); }
+  bool any(const Ray& ray) const override { return over_->any(ray); }
+  void all(const Ray& ray, HitList& list) const override { over_->all(ray, list); }
+
+  void prepare() override {
+    if (!over_ || read_ != file.resolved() || read_at_ != time) {
+      if (!over_ && !objects.empty()) fail("objects", "the objects of an Import are those of its file");
+      read();
+    }
+    Scene::prepare();
+  }
+
+  FilePath file;
+  double time = 0;
+
+ protected:
+  void build(std::span<const SceneObject* const>) override {
+    over_->objects = objects;
+    over_->prepare();
+  }
+
+ private:
+  void read() {
+    const std::string path = file.resolved();
+    if (file.empty()) fail("file", "a file is needed");
+    const Ref<Importer> importer = importer_of(path);
+    if (!importer) fail("file", "'" + path + "' is of no format that is imported");
+    ImportOptions options;
+    options.time = time;
+    Importing importing(path, options);
+    const Ref<Component> imported = importer->import(importing);
+    for (const Error& note : importing.notes()) warn(note.what(), note.location);
+    const Ref<Job> job = ref_cast<Job>(imported);
+    const Ref<Scene> scene = job ? job->scene : ref_cast<Scene>(imported);
+    if (!scene) fail("file", "'" + path + "' holds nothing that can be seen");
+    over_ = ref_cast<Scene>(Registry::instance().create("EmbreeScene"));
+    objects.clear();
+    for (const Ref<SceneObject>& object : scene->objects) {
+      prepare_tree(*object);
+      if (!object->infinite() || object->delta()) objects.push_back(object);
+    }
+    if (objects.size() < scene->objects.size())
+      warn("what lies at infinity in '" + path + "' is left out", location_of("file"));
+    read_ = path;
+    read_at_ = time;
+  }
+
+  Ref<Scene> over_;
+  std::string read_;
+  double read_at_ = 0;
+};
+
+const Register<Import> registered;
+
+}  // namespace
+}  // namespace etendue
