@@ -96,8 +96,10 @@ test("every class is created and every member edited; saved, read again, undone"
     if (!id) outcomes.problems.push(`${info.name} was not created`);
     for (const m of id ? info.members : []) {
       const offered = m.type === "component" ? concrete.filter((c) => isA(c.name, m.class)).map((c) => c.name).sort() : [];
+      const started = Date.now();
       const outcome = await page.evaluate(([i, member]) => driver.edit(i, member), [id, { ...m, offered }]);
       ++edits;
+      if (process.env.ETENDUE_TELL) console.error(`${info.name}.${m.name}: ${outcome}, ${Date.now() - started} ms`);
       if (outcome === "changed") ++outcomes.changed;
       else if (/^refused|^alone|^files/.test(outcome)) outcomes.refused.push(`${info.name}.${m.name} (${m.type}): ${outcome}`);
       else outcomes.problems.push(`${info.name}.${m.name} (${m.type}): ${outcome}`);
