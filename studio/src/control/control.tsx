@@ -58,7 +58,7 @@ export function ControlStrip(): JSX.Element {
             {p.bad_samples > 0 && <Fact label={t.bad} value={String(p.bad_samples)} />}
           </div>
         )}
-        <span class="spring" />
+        {(!p || p.state === "empty") && <span class="spring" />}
         <button type="button" class="button" aria-expanded={open.value} aria-controls="control-more" onClick={toggle}>
           {t.details}
           {queue.value.entries.length > 0 && <span class="badge">{queue.value.entries.length}</span>}
