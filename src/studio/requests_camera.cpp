@@ -156,7 +156,7 @@ Json orbit(const Call& call) {
   constexpr double highest = 1.55;
   y = std::clamp(height + y, -highest, highest) - height;
   const Axes axes = axes_of(pose);
-  const auto turn = [&](const DoublePoint3& p) { return about + turned(turned(p - about, axes.right, -y), up, -x); };
+  const auto turn = [&](const DoublePoint3& p) { return about + turned(turned(p - about, axes.right, -y), up, x); };
   pose.from = turn(pose.from);
   pose.to = turn(pose.to);
   return placed(call, camera, pose);

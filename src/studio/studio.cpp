@@ -132,6 +132,7 @@ void Studio::request(const std::shared_ptr<Browser>& from, std::string text) {
 }
 
 void Studio::answer() {
+  pthread_setname_np(pthread_self(), "answerer");
   std::unique_lock lock(tasks_guard_);
   while (!ending_) {
     const auto ready = [&] { return ending_ || !tasks_.empty(); };

@@ -124,6 +124,7 @@ class Studio {
     std::shared_ptr<const Frame> frame;
   };
   void tell_queue();
+  void note_shape(const Image& picture);
   void answer();
   void answer(const Task&);
   void look();
@@ -140,6 +141,12 @@ class Studio {
   std::map<int, Watch> watches_;
   std::map<Watch, std::shared_ptr<const Frame>> frames_;
   int next_browser_ = 1;
+  struct Shape {
+    std::uint32_t generation = 0;
+    int width = 0, height = 0;
+    std::vector<std::string> layers;
+  };
+  Shape shape_;  // of the picture that was looked at last
   std::uint64_t frame_number_ = 0;
   std::map<std::string, std::shared_ptr<const Image>> pins_;
   std::atomic<std::int64_t> queue_told_{0};

@@ -95,21 +95,26 @@ Json Studio::progress_json() {
     json["samples_per_second"] = p.samples_per_second;
     json["error"] = finite(now.film.relative_error());
     json["bad_samples"] = now.film.bad_samples();
-    const Image picture = now.picture();
-    json["width"] = picture.width;
-    json["height"] = picture.height;
-    Json layers = Json::array();
-    std::set<std::string> seen;
-    for (size_t i = 3; i < picture.channels.size(); ++i)
-      if (const std::string layer = picture.channels[i].substr(0, picture.channels[i].find('.')); seen.insert(layer).second)
-        layers.push_back(layer);
-    json["layers"] = std::move(layers);
+    const std::lock_guard lock(browsers_guard_);
+    if (shape_.generation != generation) note_shape(now.picture());
+    json["width"] = shape_.width;
+    json["height"] = shape_.height;
+    json["layers"] = shape_.layers;
   }
   json["errors"] = errors_json(status.errors, nullptr);
   return json;
 }
 
+void Studio::note_shape(const Image& picture) {
+  shape_ = {generation, picture.width, picture.height, {}};
+  for (size_t i = 3; i < picture.channels.size(); ++i) {
+    const std::string layer = picture.channels[i].substr(0, picture.channels[i].find('.'));
+    if (std::find(shape_.layers.begin(), shape_.layers.end(), layer) == shape_.layers.end()) shape_.layers.push_back(layer);
+  }
+}
+
 void Studio::look() {
+  pthread_setname_np(pthread_self(), "viewer");
   std::uint64_t seen_changes = 0, seen_generation = 0;
   Clock::time_point told{};
   auto pause = Clock::duration(shortest);
@@ -227,6 +232,7 @@ bool Studio::look_once(bool) {
     }
   }
   const std::lock_guard lock(browsers_guard_);
+  note_shape(picture);
   frames_ = std::move(frames);
   for (const auto& [number, weak] : browsers_)
     if (const auto browser = weak.lock()) browser->frame_ready();

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <random>
+#include <set>
 
 #include "check/conform/draw.h"
 #include "etendue/language/language.h"
@@ -286,6 +287,7 @@ std::string host(const ClassInfo& info, const std::string& text, const conform::
 
 TEST_F(StudioDocument, EveryMemberOfEveryClassIsEditedSavedAndReloadedEqual) {
   std::mt19937_64 random(3);
+  const std::set<std::string> of_tests{"Gadget", "Lamp", "LanguageConstant", "LanguageNeedy", "LanguagePart", "Widget"};
   std::vector<std::string> homeless;
   int classes = 0, members = 0, refused = 0;
   for (const ClassInfo* info : Registry::instance().all()) {
@@ -296,7 +298,8 @@ TEST_F(StudioDocument, EveryMemberOfEveryClassIsEditedSavedAndReloadedEqual) {
     if (!text.starts_with(info->name)) text = info->name + " {}";  // a plain value would stand for it
     const std::string whole = info->name == "Job" ? std::string(scene) : host(*info, text, fixtures_, 3);
     if (whole.empty()) {
-      homeless.push_back(info->name);
+      // Other tests of this program register classes that nothing holds.
+      if (!of_tests.contains(info->name)) homeless.push_back(info->name);
       continue;
     }
     SCOPED_TRACE(info->name);
@@ -341,7 +344,7 @@ TEST_F(StudioDocument, EveryMemberOfEveryClassIsEditedSavedAndReloadedEqual) {
               homeless.size());
   for (const std::string& name : homeless) std::printf("  %s\n", name.c_str());
   EXPECT_LT(double(refused), 0.1 * members);
-  EXPECT_LE(homeless.size(), 3u);
+  EXPECT_TRUE(homeless.empty());
 }
 
 }  // namespace

@@ -10,20 +10,27 @@
 
 namespace etendue::studio {
 
+namespace {
+
+/// What Render::edit says of a circle, which there may be between two edits of several.
+constexpr std::string_view a_part_cannot_hold_itself = "a part cannot hold itself";
+
+}  // namespace
+
 std::shared_ptr<Render> Document::render() const {
   const std::lock_guard lock(render_guard_);
   return render_;
 }
 
-void Document::take_text(std::string text) {
-  outline_ = std::make_unique<Outline>(std::move(text), name_);
+void Document::take_text(std::unique_ptr<Outline> outline) {
+  outline_ = std::move(outline);
   places_ = std::make_unique<Places>(outline_->text());
   ++revision_;
 }
 
-Ref<Job> Document::load(const std::string& text, const std::map<std::string, std::string>& overrides) const {
-  if (!trusts_all_) require_allowed(files_loaded_by(Outline(text, name_), folder_));
-  Ref<Job> job = load_job_text(text, name_, folder_);
+Ref<Job> Document::load(const Outline& outline, const std::map<std::string, std::string>& overrides) const {
+  if (!trusts_all_) require_allowed(files_loaded_by(outline, folder_));
+  Ref<Job> job = load_job_text(outline.text(), name_, folder_);
   if (!trusts_all_) require_allowed(files_named_by(*job));
   for (const auto& [path, expression] : overrides) set_path(*job, path, expression);
   job->metadata["file"] = file_;
@@ -132,17 +139,18 @@ std::vector<int> Document::concerned(const Merge& merge, const TextChange& chang
 Applied Document::follow(const std::string& text, const std::map<std::string, std::string>& overrides) {
   Applied result;
   result.change = outline_ ? difference(outline_->text(), text) : TextChange{0, 0, text};
-  Ref<Job> now = load(text, overrides);
+  auto next = std::make_unique<Outline>(text, name_);
+  Ref<Job> now = load(*next, overrides);
   if (!valid()) {
     replace_render(now);
-    take_text(text);
+    take_text(std::move(next));
     number_parts();
     result.structure = true;
     return result;
   }
 
   // Which old part a new one is, by where it stood before the change; those of other files stand where they did.
-  const Outline fresh(text, name_);
+  const Outline& fresh = *next;
   std::unordered_map<size_t, Component*> by_begin;
   std::map<std::tuple<std::string_view, int, int>, Component*> elsewhere;
   for (const Ref<Component>& part : components_) {
@@ -173,23 +181,23 @@ Applied Document::follow(const std::string& text, const std::map<std::string, st
     return found == by_begin.end() ? nullptr : found->second;
   };
   Merge merge = studio::merge(job(), *now, counterpart);
-  std::exception_ptr reason;
+  bool anew = false;
   try {
     edit_render(merge);
-  } catch (...) {
-    reason = std::current_exception();
+  } catch (const Error& error) {
+    // Parts that change places with what holds them cannot be edited one by one: then all is made anew.
+    anew = std::string_view(error.what()).ends_with(a_part_cannot_hold_itself);
+    if (!anew) throw;
   }
-  if (reason) {
-    // Parts that change places with what holds them cannot be edited one by one; then all is made anew, if it can be at all.
-    if (!merge.structure) std::rethrow_exception(reason);
-    now = load(text, overrides);
+  if (anew) {
+    now = load(*next, overrides);
     const Pairs pairs = pairs_of(job(), *now, counterpart);
     replace_render(now);
     for (const auto& [part, old] : pairs)
       if (const int id = id_of(*old)) ids_.emplace(part, id);
   }
-  take_text(text);
-  result.structure = merge.structure || reason;
+  take_text(std::move(next));
+  result.structure = merge.structure;
   if (result.structure)
     number_parts();
   else

@@ -2,6 +2,7 @@
 // A description that is edited: its text, which is the truth, the job that was made of it, and the job's render. Every edit is
 // one of the text; the render follows by the edits that lead from its job to that of the new text (merge.h).
 
+#include <array>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -112,11 +113,12 @@ class Document {
   void take(Document&&);
   static TextChange backward(const Step&);
   void require_allowed(const std::vector<NamedFile>&) const;
-  Ref<Job> load(const std::string& text, const std::map<std::string, std::string>& overrides) const;
+  Ref<Job> load(const Outline&, const std::map<std::string, std::string>& overrides) const;
   Applied follow(const std::string& text, const std::map<std::string, std::string>& overrides);
   void replace_render(Ref<Job>);
   void edit_render(Merge&);
-  void take_text(std::string text);
+  void take_text(std::unique_ptr<Outline>);
+  void note_disk(std::string text);
   void number_parts();
   std::vector<int> concerned(const Merge&, const TextChange&) const;
   Applied step(std::vector<Step>& from, std::vector<Step>& to, bool back);
@@ -126,6 +128,7 @@ class Document {
   std::set<std::string> trusted_;  ///< files it named when it was opened
   bool trusts_all_ = false;        ///< while it is opened
   std::string file_, folder_, saved_text_, disk_text_;
+  mutable std::array<std::int64_t, 4> disk_state_{};  ///< device, number, size and time of the file when it held that text
   const char* name_ = "";
   int revision_ = 0, saved_revision_ = 0, next_id_ = 1;
   std::unique_ptr<Outline> outline_;

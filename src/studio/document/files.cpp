@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <sys/stat.h>
+
 #include <filesystem>
 
 #include "document.h"
@@ -31,6 +33,14 @@ std::vector<Error> errors_at_hand() {
   } catch (const std::exception& error) {
     return {Error(error.what())};
   }
+}
+
+/// What tells whether a file was written to; none when it is not there.
+std::optional<std::array<std::int64_t, 4>> state_of(const std::string& path) {
+  struct stat s{};
+  if (::stat(path.c_str(), &s) != 0) return {};
+  return std::array{std::int64_t(s.st_dev), std::int64_t(s.st_ino), std::int64_t(s.st_size),
+                    std::int64_t(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec};
 }
 
 /// The smallest description that can be rendered, as a person would begin it.
@@ -76,10 +86,11 @@ void Document::open(const std::string& file) {
     for (const NamedFile& named : files_named_by(next.job())) next.trusted_.insert(canonical_path(named.path));
   } catch (...) {
     next.set_draft(text, errors_at_hand());
-    next.take_text("");
+    next.take_text(std::make_unique<Outline>("", next.name_));
   }
   if (!converted) {
-    next.saved_text_ = next.disk_text_ = disk;
+    next.saved_text_ = disk;
+    next.note_disk(disk);
     next.saved_revision_ = next.revision_;
   }
   take(std::move(next));
@@ -101,6 +112,7 @@ void Document::take(Document&& next) {
   folder_ = std::move(next.folder_);
   saved_text_ = std::move(next.saved_text_);
   disk_text_ = std::move(next.disk_text_);
+  disk_state_ = next.disk_state_;
   name_ = next.name_;
   revision_ = next.revision_;
   saved_revision_ = next.saved_revision_;
@@ -122,10 +134,19 @@ void Document::take(Document&& next) {
 
 void Document::drop_draft() { draft_.reset(); }
 
+void Document::note_disk(std::string text) {
+  disk_text_ = std::move(text);
+  disk_state_ = state_of(file_).value_or(std::array<std::int64_t, 4>{});
+}
+
 bool Document::changed_on_disk() const {
   if (file_.empty() || disk_text_.empty()) return false;
+  const auto state = state_of(file_);
+  if (state && *state == disk_state_) return false;
   try {
-    return read_regular_file(file_, largest_text) != disk_text_;
+    const bool other = read_regular_file(file_, largest_text) != disk_text_;
+    if (!other && state) disk_state_ = *state;  // it was only touched
+    return other;
   } catch (const Error&) {
     return true;
   }
@@ -137,7 +158,8 @@ void Document::save(const std::string& file) {
   const std::string folder = fs::path(file).parent_path().string();
   const bool moved = folder != folder_;
   file_ = file;
-  saved_text_ = disk_text_ = whole;
+  saved_text_ = whole;
+  note_disk(whole);
   saved_revision_ = revision_;
   if (!moved) return;
   // Names of files in it count from another folder now: what they lead to is for its reader to see.
@@ -145,7 +167,7 @@ void Document::save(const std::string& file) {
 }
 
 void Document::reload() {
-  Ref<Job> job = load(text(), overrides_);
+  Ref<Job> job = load(*outline_, overrides_);
   replace_render(std::move(job));
   number_parts();
 }

@@ -47,8 +47,7 @@ class Matcher {
           if (after[i] && i < before.size() && before[i]) pair(*before[i], *after[i]);
         }
         for (Component* part : after)
-          if (const auto found = pairs_.find(part); part && found != pairs_.end())
-            rest.emplace_back(found->second, part);
+          if (const auto found = pairs_.find(part); part && found != pairs_.end()) rest.emplace_back(found->second, part);
       }
     }
   }

@@ -26,8 +26,8 @@ struct Merge {
   bool structure = false;
 };
 
-/// `counterpart` gives the old part that a new one stands for by its place in the text, or null. Where places tell nothing, parts
-/// of one class that stand in the same member of parts that belong together do.
+/// `counterpart` gives the old part that a new one stands for by its place in the text, or null. Where places tell nothing,
+/// parts of one class that stand in the same member of parts that belong together do.
 Pairs pairs_of(const Job& old, Job& now, const std::function<Component*(const Component&)>& counterpart);
 
 /// The same with the edits that follow. Members of the new job's parts that refer to parts which have an old one are set to
