@@ -19,8 +19,8 @@ import { TopBar } from "./top_bar.tsx";
 import { Chooser, Renaming, Sharing } from "./tree/chooser.tsx";
 import { Tree } from "./tree/tree.tsx";
 
-const left = signal(remembered("left", 270));
-const right = signal(remembered("right", 350));
+const left = signal(remembered("left", window.innerWidth < 1250 ? 216 : 270));
+const right = signal(remembered("right", window.innerWidth < 1250 ? 296 : 350));
 
 function resize(which: "left" | "right") {
   return (size: number): void => {

@@ -33,8 +33,13 @@ export async function startStudio(t, text, ...more) {
   const child = spawn(program, ["studio", "--no-browser", "--page", page, ...more, ...(text === null ? [] : [file])], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
   let errors = "";
   child.stderr.on("data", (data) => (errors += data));
+  let wanted = false;
   const ended = new Promise((done) => child.on("exit", done));
+  child.on("exit", (code, signal) => {
+    if (!wanted) console.error(`the studio ended by itself: ${code ?? signal}: ${errors}`);
+  });
   t.after(async () => {
+    wanted = true;
     child.kill("SIGTERM");
     await ended;
   });

@@ -49,16 +49,16 @@ export function ControlStrip(): JSX.Element {
         <span class={`state state-${p?.state ?? "empty"}`}>{t.states[p?.state ?? "empty"]}</span>
         <progress max={1} value={p?.fraction ?? 0} aria-label={t.progress} />
         {p && p.state !== "empty" && (
-          <>
+          <div class="facts-row">
             <Fact label={t.samples} value={t.of(brief(p.samples), brief(p.samples_wanted))} />
             <Fact label={t.time} value={duration(p.seconds)} />
             {p.state === "rendering" && <Fact label={t.left} value={p.seconds_left === null ? "–" : duration(p.seconds_left)} />}
             <Fact label={t.error} value={p.error === null ? "–" : percent(p.error)} />
             <Fact label={t.rate} value={t.perSecond(brief(p.samples_per_second, 3))} />
             {p.bad_samples > 0 && <Fact label={t.bad} value={String(p.bad_samples)} />}
-          </>
+          </div>
         )}
-        <span class="spring" />
+        {(!p || p.state === "empty") && <span class="spring" />}
         <button type="button" class="button" aria-expanded={open.value} aria-controls="control-more" onClick={toggle}>
           {t.details}
           {queue.value.entries.length > 0 && <span class="badge">{queue.value.entries.length}</span>}

@@ -37,6 +37,7 @@ export type Data =
 
 export interface MemberState {
   written: boolean;
+  /** As it is written, or would be; left out where a component's is long. */
   text: string;
   begin?: number;
   end?: number;

@@ -34,7 +34,7 @@ export function ComponentField({ component, member, state, id }: FieldProps): JS
   if (literal(child) && child.members.value) {
     return (
       <div class="reference literal">
-        <ColorEntry id={id} component={component} member={member} state={{ text: state.text }} color={colorOf(child.members.value.value)} />
+        <ColorEntry id={id} component={component} member={member} state={{ text: state.text ?? "" }} color={colorOf(child.members.value.value)} />
         <Button icon="ObjectMap" label={t.replaceMap(member.name)} onClick={() => (choosing.value = { what: "replace", component: child, use })} />
       </div>
     );

@@ -21,7 +21,7 @@ const t = texts.panel;
 /** The member that is told of below the panel: it must not move what a mouse is about to press. */
 const explained = signal<Member | null>(null);
 
-function explain(member: Member): void {
+export function explain(member: Member | null): void {
   explained.value = member;
 }
 

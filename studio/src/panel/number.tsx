@@ -13,6 +13,7 @@ export function NumberField({ component, member, state, id }: FieldProps): JSX.E
   const scale: Scale | null = member.slider ? { low: member.slider[0], high: member.slider[1], logarithmic: member.logarithmic ?? false, integer } : null;
   const unit = member.unit ?? "";
   const plain = /^\s*[-+]?[\d.]+(e[-+]?\d+)?\s*$/i.test(state.text);
+  const same = unit !== "" && new RegExp(`^\\s*[-+]?[\\d.]+(e[-+]?\\d+)?\\s*${unit}\\s*$`, "i").test(state.text); // it says it itself
 
   const step = (by: number, key: boolean): void => {
     if (value === null) return;
@@ -39,7 +40,7 @@ export function NumberField({ component, member, state, id }: FieldProps): JSX.E
         }}
         onBlur={() => (drag.current = null)}
       />
-      {unit && <span class={`unit${plain ? "" : " told"}`}>{plain ? unit : value === null ? "" : `= ${brief(value, 4)} ${unit}`}</span>}
+      {unit && !same && <span class={`unit${plain ? "" : " told"}`}>{plain ? unit : value === null ? "" : `= ${brief(value, 4)} ${unit}`}</span>}
       {!unit && !plain && value !== null && <span class="unit told">= {brief(value, 4)}</span>}
       {scale && (
         <input

@@ -11,13 +11,16 @@ import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
 import { choosing, renaming } from "../tree/actions.ts";
 import { forgetWrong } from "./edit.ts";
-import { Field } from "./field.tsx";
+import { explain, Field } from "./field.tsx";
 
 const t = texts.panel;
 
 export function Panel(): JSX.Element {
   const component = selectedComponent.value;
-  useEffect(forgetWrong, [component?.id]);
+  useEffect(() => {
+    forgetWrong();
+    explain(null);
+  }, [component?.id]);
   if (!component) return <section class="panel" aria-label={t.label}><p class="empty-note">{t.none}</p></section>;
   const info = classes.value.find(component.class);
   const elsewhere = component.written === "elsewhere";

@@ -25,7 +25,7 @@ export function expose(to: number): void {
   exposed = true;
   stops.value = Number(to.toFixed(2));
 }
-export const curve = signal<Curve>("filmic");
+export const curve = signal<Curve>("linear");
 export const falseColor = signal(false);
 export const falseRange = signal<[number, number]>([-8, 4]);
 export const markBad = signal(true);

@@ -86,7 +86,12 @@ async function complete(context: CompletionContext): Promise<CompletionResult | 
     return {
       from: first.begin,
       to: first.end,
-      options: items.map((i) => ({ label: i.label, apply: i.insert, detail: i.detail ?? "", type: type[i.kind] ?? "text" })),
+      options: items.map((i) => {
+        const [short = "", ...long] = (i.detail ?? "").split(/(?<=^[\w ,]{1,24}): /);
+        const brief = short.length <= 28;
+        const more = brief ? long.join(": ") : (i.detail ?? "");
+        return { label: i.label, apply: i.insert, detail: brief ? short : "", ...(more ? { info: more } : {}), type: type[i.kind] ?? "text" };
+      }),
       validFor: /^[\w]*$/,
     };
   } catch {
@@ -223,8 +228,7 @@ export function Editor(): JSX.Element {
   return (
     <div class="editor">
       <div class="toolbar">
-        <span class="dim">{t.keys}</span>
-        <span class="spring" />
+        <span class="dim keys-hint">{t.keys}</span>
         <Button label={t.showSelected} disabled={chosen?.begin === undefined} onClick={() => chosen?.begin !== undefined && showPlace(chosen.begin, chosen.end)} />
         {locked.value === "draft" && <Button label={t.dropDraft} onClick={() => void dropDraft()} />}
       </div>

@@ -1,31 +1,16 @@
-// The window in which a class is chosen: all that may stand in a place, with what they are and their pages of the manual.
-import { signal, useComputed, useSignal } from "@preact/signals";
+// The window in which a class is chosen: all that may stand in a place, with what they are and their members.
+import { useComputed, useSignal } from "@preact/signals";
 import type { JSX } from "preact";
-import { useEffect } from "preact/hooks";
 import { ownGroupsFirst, type ClassInfo } from "../model/classes.ts";
 import type { Use } from "../model/protocol.ts";
 import { classes, components, names } from "../model/state.ts";
-import { demand } from "../model/studio.ts";
 import { Button, Dialog } from "../parts/parts.tsx";
-import { inline, Markdown } from "../parts/markdown.tsx";
+import { inline } from "../parts/markdown.tsx";
 import { texts } from "../texts.ts";
 import * as actions from "./actions.ts";
 import { slots } from "./rows.ts";
 
 const t = texts.chooser;
-const pages = signal<ReadonlyMap<string, string>>(new Map());
-
-async function readPage(name: string): Promise<void> {
-  if (pages.value.has(name)) return;
-  pages.value = new Map(pages.value).set(name, "");
-  try {
-    const { markdown } = await demand<{ markdown: string }>("manual", { class: name });
-    pages.value = new Map(pages.value).set(name, markdown);
-  } catch {
-    // its summary stands above in any case
-  }
-}
-
 export function Chooser(): JSX.Element | null {
   const choice = actions.choosing.value;
   if (!choice) return null;
@@ -55,7 +40,6 @@ function ChooserFor({ what, id, use, member }: { what: "add" | "replace"; id: nu
     .sort((a, b) => rank(b.name, words[0]) - rank(a.name, words[0]));
   const named = what === "add" && slot ? names.value.filter((n) => matchesName(n.component, wanted ?? "")) : [];
   const info = list.find((c) => c.name === chosen.value) ?? list[0];
-  useEffect(() => void (info && readPage(info.name)), [info?.name]);
   if (!component) return null;
 
   const take = (): void => {
@@ -150,13 +134,11 @@ function matchesName(id: number | null, wanted: string): boolean {
 }
 
 function Page({ info }: { info: ClassInfo }): JSX.Element {
-  const page = pages.value.get(info.name);
   return (
     <>
       <h3>{info.name}</h3>
       <p>{inline(info.summary)}</p>
       {info.source && <p class="dim">{info.source}</p>}
-      {page && <Markdown text={withoutHead(page, info)} />}
       {ownGroupsFirst(info).map((g) => (
         <section key={g.name}>
           {g.name && <h4>{g.name}</h4>}
@@ -174,11 +156,6 @@ function Page({ info }: { info: ClassInfo }): JSX.Element {
       ))}
     </>
   );
-}
-
-/** The page without its title and summary, which stand above it, and its table of members, which stands below. */
-function withoutHead(page: string, info: ClassInfo): string {
-  return page.replace(/^#\s.*\n+/, "").replace(info.summary, "").replace(/^!\[.*\)$/m, "").replace(/^Source: .*$/m, "").replace(/^## Members[^]*?(?=^## |$(?![^]))/m, "");
 }
 
 export function Renaming(): JSX.Element | null {
