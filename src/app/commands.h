@@ -20,6 +20,7 @@ inline constexpr int interrupted = 130;  ///< as a shell reports Ctrl-C
 void add_render_command(CLI::App& program, Run& run);
 void add_check_command(CLI::App& program, Run& run);
 void add_save_command(CLI::App& program, Run& run);
+void add_format_command(CLI::App& program, Run& run);
 void add_classes_command(CLI::App& program, Run& run);
 void add_schema_command(CLI::App& program, Run& run);
 void add_manual_command(CLI::App& program, Run& run);

@@ -2,6 +2,10 @@
 
 #include "scene_options.h"
 
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 
 #include "etendue/language/language.h"
@@ -35,11 +39,27 @@ void SceneOptions::add_overrides_to(CLI::App& command) {
   command.add_option("--plugin", plugins, "Load a shared library of further classes; may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
+  command.add_option("--frame", frame, "What 'frame' means in the file, and with it 'time', which is frame / fps [0]")
+      ->type_name("N")
+      ->check(CLI::Range(0, most_frames).description(""));
+  command.add_option("--fps", fps, "Frames in a second of 'time' [24]")->type_name("F");
+}
+
+double SceneOptions::frames_per_second() const {
+  if (fps.empty()) return default_fps;
+  double value = 0;
+  const auto [end, error] = std::from_chars(fps.data(), fps.data() + fps.size(), value);
+  if (error == std::errc() && end == fps.data() + fps.size() && value > 0 && std::isfinite(value)) return value;
+  throw Error(fmt::format("'{}' is no number of frames in a second: give one above 0, such as 24 or 29.97", fps),
+              {intern("--fps"), 0, 0});
 }
 
 Ref<Job> SceneOptions::load() const {
   for (const std::string& plugin : plugins) Registry::instance().load_plugin(plugin);
   LoadOptions options;
+  options.frame = frame.value_or(0);
+  options.time = options.frame / frames_per_second();
+  options.animated = animated;
   for (const std::string& define : defines) options.defines.push_back(split("-D", define, "name=value"));
   Ref<Job> job = load_job(file, options);
   std::vector<Error> errors;
@@ -64,6 +84,8 @@ std::string SceneOptions::overrides_line() const {
   for (const std::string& define : defines) text += " -D " + shell_quoted(define);
   for (const std::string& set : sets) text += " --set " + shell_quoted(set);
   for (const std::string& plugin : plugins) text += " --plugin " + shell_quoted(plugin);
+  if (frame) text += fmt::format(" --frame {}", *frame);
+  if (!fps.empty()) text += " --fps " + shell_quoted(fps);
   return text;
 }
 
