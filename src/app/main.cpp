@@ -20,6 +20,7 @@ First steps
   etendue render box.etd -o box.png --samples 16         a quick look
   etendue render box.etd -o box.exr --time 5m            as good as five minutes make it
   etendue check box.etd                                  says what is wrong with a file, without rendering
+  etendue format box.etd                                 gives a file the usual layout
   etendue classes                                        everything a file can contain
   etendue classes PathTracer                             one class: its members, units, defaults and ranges
   etendue image diff a.exr b.exr                         how much two pictures differ
@@ -59,6 +60,7 @@ int run_program(int argument_count, char** arguments) {
   add_save_command(program, run);
   add_convert_command(program, run);
   add_export_command(program, run);
+  add_format_command(program, run);
   add_classes_command(program, run);
   add_schema_command(program, run);
   add_manual_command(program, run);

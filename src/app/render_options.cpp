@@ -15,7 +15,16 @@
 namespace etendue {
 
 void RenderOptions::add_to(CLI::App& command) {
-  SceneOptions::add_to(command);
+  command.add_option("FILE", files, "The render descriptions (.etd, or .json), one after the other")->required()->type_name("");
+  SceneOptions::add_overrides_to(command);
+  command
+      .add_option(
+          "--frames", frames,
+          "Render these frames, B not included: 'frame' and 'time' in the file say which, and #### in the names of files "
+          "that are written is replaced by the number")
+      ->type_name("A:B[:STEP]")
+      ->excludes("--frame");
+  command.add_flag("--skip-existing", skip_existing, "Leave out what has whole pictures of the same file and options already");
   command
       .add_option("-o,--output", outputs,
                   "Write to this file instead of those the file names; its ending chooses the format; may be repeated")
@@ -186,6 +195,8 @@ std::string RenderOptions::resume_command() const {
   return text + " --resume " + shell_quoted(checkpoint_file());
 }
 
+std::string RenderOptions::stem() const { return stem_of(file) + (frame ? fmt::format(".{:04}", *frame) : std::string()); }
+
 std::string RenderOptions::file_hash() const {
   // FNV-1a, 64 bits: it tells files apart, it does not protect them.
   std::uint64_t hash = 0xcbf29ce484222325ull;
@@ -196,6 +207,7 @@ std::string RenderOptions::file_hash() const {
   add(read_file(file));
   for (const std::string& define : defines) add("-D" + define);
   for (const std::string& set : sets) add("--set" + set);
+  if (frame) add(fmt::format("--frame{} of {}", *frame, frames_per_second()));
   for (const Override& override : overrides()) add(override.path + "=" + override.expression);
   return fmt::format("{:016x}", hash);
 }

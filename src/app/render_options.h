@@ -12,6 +12,10 @@
 namespace etendue {
 
 struct RenderOptions : SceneOptions {
+  std::vector<std::string> files;  ///< those to be rendered, of which `file` is the one it is at
+  std::string frames;              ///< as written
+  bool skip_existing = false;
+  bool in_series = false;  ///< several frames are rendered: a picture that is not finished is not written
   std::vector<std::string> outputs;
   std::string samples, time, error, seed, size, crop;  ///< as written; empty: as the file says
   int threads = 0;
@@ -38,6 +42,8 @@ struct RenderOptions : SceneOptions {
   std::string picture_command() const;
   /// The command line that goes on with this render from its checkpoint.
   std::string resume_command() const;
+  /// The names of pictures that nothing else names begin with it: the file's name, with the number of the frame.
+  std::string stem() const;
   /// 16 hexadecimal digits that change with the file's text and every override of it.
   std::string file_hash() const;
   /// Whether something other than a number of samples is to stop the render.

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 
 #include "etendue/language/language.h"
@@ -46,13 +48,30 @@ void SceneOptions::add_overrides_to(CLI::App& command) {
                   "Of other programs' files: they may name files in this folder too, not in their own alone; may be repeated")
       ->type_name("FOLDER")
       ->allow_extra_args(false);
+  command.add_option("--frame", frame, "What 'frame' means in the file, and with it 'time', which is frame / fps [0]")
+      ->type_name("N")
+      ->check(CLI::Range(0, most_frames).description(""));
+  command.add_option("--fps", fps, "Frames in a second of 'time' [24]")->type_name("F");
+}
+
+double SceneOptions::frames_per_second() const {
+  if (fps.empty()) return default_fps;
+  double value = 0;
+  const auto [end, error] = std::from_chars(fps.data(), fps.data() + fps.size(), value);
+  if (error == std::errc() && end == fps.data() + fps.size() && value > 0 && std::isfinite(value)) return value;
+  throw Error(fmt::format("'{}' is no number of frames in a second: give one above 0, such as 24 or 29.97", fps),
+              {intern("--fps"), 0, 0});
 }
 
 LoadOptions SceneOptions::load_options() const {
   for (const std::string& plugin : plugins) Registry::instance().load_plugin(plugin);
   LoadOptions options;
+  options.frame = frame.value_or(0);
+  options.time = options.frame / frames_per_second();
+  options.animated = animated;
   for (const std::string& define : defines) options.defines.push_back(split("-D", define, "name=value"));
   options.import = import;
+  options.import.time = options.time;
   return options;
 }
 
@@ -98,6 +117,8 @@ std::string SceneOptions::overrides_line() const {
   for (const std::string& plugin : plugins) text += " --plugin " + shell_quoted(plugin);
   if (import.strict) text += " --strict";
   for (const std::string& folder : import.allowed_folders) text += " --allow-path " + shell_quoted(folder);
+  if (frame) text += fmt::format(" --frame {}", *frame);
+  if (!fps.empty()) text += " --fps " + shell_quoted(fps);
   return text;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // What every command takes that reads a render description: the file, and what replaces parts of it.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +17,13 @@ struct SceneOptions {
   std::vector<std::string> defines;  ///< "name=value"
   std::vector<std::string> sets;     ///< "path=value"
   std::vector<std::string> plugins;
-  ImportOptions import;  ///< for files of other programs
+  ImportOptions import;      ///< for files of other programs
+  std::optional<int> frame;  ///< what `frame` means in the file; without it 0
+  std::string fps;           ///< frames in a second of `time`, as written; empty: default_fps
+  bool animated = false;     ///< the file is one of several frames
+
+  static constexpr double default_fps = 24;
+  static constexpr int most_frames = 999'999'999;
 
   void add_to(CLI::App& command);
   /// All but the file, for commands that take several.
@@ -26,6 +33,8 @@ struct SceneOptions {
   Ref<Job> load() const;
   /// The same for a file of another program, with what is not as there. Throws when no Importer reads it.
   ImportedJob load_imported() const;
+  /// Frames in a second of `time`. Throws Error for what is none.
+  double frames_per_second() const;
   /// These options as they are written on a command line, quoted for a shell, each with a blank before it.
   std::string command_line() const;
   /// The same without the file.

@@ -213,12 +213,25 @@ Json root_schema() {
   };
   Json& properties = root["properties"];
   properties["$schema"] = {{"type", "string"}};
-  properties["$include"] = texts;
+  const Json parameters = table("What params of the file are to be.");
+  const Json inclusion = {
+      {"type", "object"},
+      {"required", Json::array({"file"})},
+      {"additionalProperties", false},
+      {"properties",
+       {{"file", {{"type", "string"}}},
+        {"with", parameters},
+        {"as",
+         {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}, {"description", "What stands before its names."}}}}}};
+  properties["$include"] = {{"type", "array"}, {"items", {{"anyOf", Json::array({{{"type", "string"}}, inclusion})}}}};
   properties["$include"]["description"] = "Descriptions whose names become known here.";
   properties["$plugin"] = texts;
   properties["$plugin"]["description"] = "Shared libraries whose classes become known here.";
   properties["$params"] = table("Names that -D replaces.");
-  properties["$names"] = table("Names for components and values, shared by reference wherever an expression says the name.");
+  properties["$names"] = table(
+      "Names for components and values, shared by reference wherever an expression says the name; and "
+      "functions, with their parameters behind the name: \"ball(x, r = 1 m)\".");
+  properties["$names"]["propertyNames"]["pattern"] = "^[A-Za-z_][A-Za-z0-9_]*(\\(.*\\))?$";
   return root;
 }
 
@@ -239,7 +252,8 @@ std::string json_schema() {
       {"minLength", 1},
       {"description",
        "An expression of the render description language: a name of \"$names\" or \"$params\", a number with its unit such as "
-       "\"10 cm\", a call such as \"blackbody(2856 K)\", or arithmetic."}};
+       "\"10 cm\", a call such as \"blackbody(2856 K)\", arithmetic, a condition, a list such as \"[ball(i) for i in "
+       "0..9]\"."}};
   const auto numbers = [](int count) {
     return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", count}, {"maxItems", count}};
   };

@@ -21,6 +21,7 @@ std::optional<Value> Evaluator::component(Node& node, const std::string& given_n
     for (Node& child : node.children) evaluate(child, {nullptr, false, true});
     return std::nullopt;
   }
+  if (repeating_ > 0) charge_part(node.at);
   made->origin = std::make_unique<Component::Origin>();
   made->origin->location = node.at;
   made->origin->name = given_name;

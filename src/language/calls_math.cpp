@@ -1,6 +1,8 @@
-// Functions of numbers.
+// Functions of numbers and lists.
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "calls.h"
 
@@ -58,6 +60,44 @@ Value power(const Arguments& a) {
   return plain(a, std::pow(a.number(0), a.number(1)));
 }
 
+Value whole_below(const Arguments& a) {
+  if (a.count() != 1) a.wrong_count();
+  return plain(a, std::floor(a.number(0)));
+}
+
+/// What remains of a division, with the sign of the divisor: mod(-1, 4) is 3.
+Value remainder(const Arguments& a) {
+  if (a.count() != 2) a.wrong_count();
+  const double x = a.number(0), y = a.number(1);
+  if (y == 0) a.fail(1, "division by zero");
+  return plain(a, x - y * std::floor(x / y));
+}
+
+/// A number from 0 to 1 (1 not included) that the arguments choose: the same for the same, unrelated for others. Their bits are
+/// mixed one after the other by the finalizer of MurmurHash3 with the constants of D. Stafford's "Mix13" (2011).
+Value random(const Arguments& a) {
+  if (a.count() == 0) a.wrong_count();
+  std::uint64_t state = 0x9E3779B97F4A7C15u;
+  for (size_t i = 0; i < a.count(); ++i) {
+    std::uint64_t x = std::bit_cast<std::uint64_t>(a.number(i) + 0.0) + state;  // -0 is 0
+    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+    x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+    state = (x ^ (x >> 31)) + 0x9E3779B97F4A7C15u;
+  }
+  return Value(Number{double(state >> 11) * 0x1p-53});
+}
+
+/// One list of the entries of several.
+Value join(const Arguments& a) {
+  Value::List entries;
+  for (size_t i = 0; i < a.count(); ++i) {
+    if (!a.as<Numbers>(i) && !a.as<Value::List>(i)) a.wrong(i, "a list");
+    if (entries.size() + list_size(a[i], a[i].location) > 1'000'000) a.fail(i, "join gives 1000000 entries at most");
+    for (size_t k = 0; k < list_size(a[i], a[i].location); ++k) entries.push_back(list_entry(a[i], k));
+  }
+  return packed(std::move(entries), a.count() > 0 ? a[0].location : Location{});
+}
+
 constexpr Function functions[] = {
     {"sqrt", "sqrt(number)", square_root},
     {"sin", "sin(angle)", [](const Arguments& a) { return Value(Number{std::sin(angle(a))}); }},
@@ -67,6 +107,12 @@ constexpr Function functions[] = {
     {"max", "max(number, number, …)", [](const Arguments& a) { return extreme(a, std::greater<>()); }},
     {"abs", "abs(number)", absolute},
     {"pow", "pow(base, exponent)", power},
+    {"floor", "floor(number)", whole_below},
+    {"mod", "mod(number, divisor)", remainder},
+    {"random", "random(number, …)", random},
+    {"join", "join(list, …)", join},
+    // Counted where it is called, without a copy of the list.
+    {"count", "count(list)", [](const Arguments& a) { return Value(Number{double(list_size(a[0], a[0].location))}); }},
 };
 
 }  // namespace

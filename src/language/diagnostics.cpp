@@ -18,12 +18,27 @@
 namespace etendue {
 namespace language {
 
+std::string Diagnostics::words_of_trail(const Location& seen_from) const {
+  constexpr int most = 6;  // of a function that calls itself the innermost ones say enough
+  std::string text;
+  int count = 0;
+  for (const Trail* way = trail; way; way = way->outer()) {
+    const std::string words = way->words(seen_from);
+    if (words.empty() || text.find(words) != std::string::npos) continue;  // a function that calls itself
+    if (++count > most) {
+      text += ", …";
+      break;
+    }
+    text += (text.empty() ? "" : ", ") + words;
+  }
+  return text.empty() ? text : " (" + text + ")";
+}
+
 void Diagnostics::add(const Error& error) {
-  const auto same = [&](const Error& e) {
-    return e.location == error.location && std::string_view(e.what()) == std::string_view(error.what());
-  };
-  if (std::any_of(errors_.begin(), errors_.end(), same)) return;
-  errors_.push_back(error);
+  for (size_t i = 0; i < errors_.size(); ++i)
+    if (errors_[i].location == error.location && bare_[i] == error.what()) return;
+  bare_.emplace_back(error.what());
+  errors_.emplace_back(error.what() + words_of_trail(error.location), error.location);
   if (errors_.size() >= limit) throw TooManyErrors{};
 }
 

@@ -17,6 +17,7 @@ std::optional<Value> Evaluator::evaluate(Node& node, const Context& context) {
     diagnostics_.add(Error(fmt::format("definitions are nested too deeply: at most {} levels", height_limit), node.at));
     return std::nullopt;
   }
+  if (repeating_ > 0) charge(1, node.at);
   ++depth_;
   reach_ = std::max(reach_, depth_);
   std::optional<Value> value = value_of(node, context);
@@ -29,12 +30,14 @@ std::optional<Value> Evaluator::value_of(Node& node, const Context& context) {
     case NodeType::none: return Value(std::monostate(), node.at);
     case NodeType::boolean: return Value(node.number != 0, node.at);
     case NodeType::number: return Value(Number{node.number}, node.at);
-    case NodeType::numbers:  // every node is evaluated once
+    case NodeType::numbers:
       if (node.json && context.member) return json_numbers(node, *context.member);
-      return Value(std::move(*node.numbers), node.at);
+      if (repeating_ == 0) return Value(std::move(*node.numbers), node.at);
+      charge(node.numbers->values.size(), node.at);
+      return Value(*node.numbers, node.at);
     case NodeType::json_text: return json_text(node, context);
     case NodeType::string: {
-      Value value(std::move(node.text), node.at);
+      Value value(repeating_ == 0 ? std::move(node.text) : node.text, node.at);
       value.folder = folders_[node.at.file];
       return value;
     }
@@ -48,12 +51,7 @@ std::optional<Value> Evaluator::value_of(Node& node, const Context& context) {
       const Label& label = node.labels[0];
       const Unit* unit = find_unit(label.text);
       if (unit) return reporting(label.at, [&] { return with_unit(std::move(*inner), *unit, label.at); });
-      std::vector<std::string> known;
-      for (const Unit& u : units()) known.emplace_back(u.name);
-      std::string meant = translation(label.text, foreign_units());
-      if (meant.empty()) meant = suggestion(label.text, known);
-      if (meant.empty()) meant = fmt::format("; known are {}", fmt::join(known, ", "));
-      diagnostics_.add(Error(fmt::format("unknown unit '{}'{}", label.text, meant), label.at));
+      unknown_unit(label);
       return std::nullopt;
     }
     case NodeType::negation: {
@@ -73,9 +71,27 @@ std::optional<Value> Evaluator::value_of(Node& node, const Context& context) {
         return value;
       });
     }
+    case NodeType::range: return range(node, context);
+    case NodeType::comparison: return comparison(node, context);
+    case NodeType::conjunction:
+    case NodeType::disjunction:
+    case NodeType::inversion: return connection(node, context);
+    case NodeType::conditional: return conditional(node, context);
+    case NodeType::index: return index(node, context);
+    case NodeType::comprehension: return comprehension(node, context);
+    case NodeType::argument:  // calls take them apart
     case NodeType::bad: break;
   }
   return std::nullopt;
+}
+
+void Evaluator::unknown_unit(const Label& label) {
+  std::vector<std::string> known;
+  for (const Unit& u : units()) known.emplace_back(u.name);
+  std::string meant = translation(label.text, foreign_units());
+  if (meant.empty()) meant = suggestion(label.text, known);
+  if (meant.empty()) meant = fmt::format("; known are {}", fmt::join(known, ", "));
+  diagnostics_.add(Error(fmt::format("unknown unit '{}'{}", label.text, meant), label.at));
 }
 
 std::optional<Value> Evaluator::chain(Node& node, const Context& context) {
@@ -111,6 +127,7 @@ std::optional<Value> Evaluator::list(Node& node, const Context& context) {
       items.push_back(std::move(*item));
     else
       good = false;
+    if (!good && repeating_ > 0) break;  // one failure is enough where each may take long, or doubles
   }
   if (!good) return std::nullopt;
   return reporting(node.at, [&] {
@@ -120,26 +137,21 @@ std::optional<Value> Evaluator::list(Node& node, const Context& context) {
   });
 }
 
-namespace {
-
-/// How many single values a list holds with all lists within it.
-size_t entries(const Value& value) {
+size_t value_count(const Value& value) {
   if (const auto* numbers = value.as<Numbers>()) return numbers->values.size();
   const auto* list = value.as<Value::List>();
   if (!list) return 1;
   size_t count = 0;
-  for (const Value& item : *list) count += entries(item);
+  for (const Value& item : *list) count += value_count(item);
   return count;
 }
-
-}  // namespace
 
 // Lists of numbers or rows are packed, and as long as what was written. Lists of lists that are names grow by a factor from
 // name to name: [a, a], [b, b], … (No member takes lists within lists within lists: it can only be a mistake.)
 void Evaluator::check_size(const Node& node, const Value::List& list) const {
   size_t count = 0, most = 0, largest = 0;
   for (size_t i = 0; i < list.size(); ++i) {
-    const size_t here = entries(list[i]);
+    const size_t here = value_count(list[i]);
     count += here;
     if (here > most) most = here, largest = i;
   }
@@ -154,117 +166,51 @@ void Evaluator::check_size(const Node& node, const Value::List& list) const {
 }
 
 std::optional<Value> Evaluator::call_function(Node& node, const Context& context) {
+  Entry* own = find(node.text);
+  if (own && own->definition.function) return call_own(*own, node, context);
+  if (own && !is_function(node.text)) {
+    not_a_function(*own, node);
+    return std::nullopt;
+  }
+  if (node.text == "count") return count(node, context);
   std::vector<Value> arguments;
   bool good = true;
   for (Node& child : node.children) {
+    if (child.type == NodeType::argument) {
+      diagnostics_.add(
+          Error(fmt::format("'{}' takes its arguments by their place: write the value alone", node.text), child.at));
+      good = false;
+      continue;
+    }
     std::optional<Value> argument = evaluate(child, {nullptr, false, context.lenient});
     if (argument)
       arguments.push_back(std::move(*argument));
     else
       good = false;
   }
-  if (!good && is_function(node.text)) return std::nullopt;
+  if (!is_function(node.text)) {
+    unknown_function(node);
+    return std::nullopt;
+  }
+  if (!good) return std::nullopt;
   std::optional<Value> value = reporting(node.at, [&] { return call(node.text, arguments, node.at, allow_files_); });
   if (!value) return value;
+  if (repeating_ > 0) charge(value->as<Color>() ? 150 : 10, node.at);  // a colour may hold a table
   value->location = node.at;
   if (node.text == "rotate") note_turn(node, arguments);
-  if (node.text == "keyframes") warn_of_long_turns(node);
+  if (node.text == "keyframes" && !node.damaged) node.damaged = warn_of_long_turns(node);  // told once
   return value;
 }
 
 // ---- names ----------------------------------------------------------------------------------------------------------
 
-void Evaluator::define(Definition definition) {
-  const Label label = definition.name;
-  if (const Entry* first = find(label.text)) {
-    if (definition.value.type != NodeType::bad)
-      diagnostics_.add(Error(
-          fmt::format("'{}' is already defined at {}", label.text, place(first->definition.name.at, label.at)), label.at));
-    return;
-  }
-  entries_.emplace_back().definition = std::move(definition);
-  by_name_[label.text] = &entries_.back();
-}
-
-void Evaluator::redefine(const std::string& name, const std::string& text) {
-  const Location at{intern("-D " + name), 0, 0};
-  Entry* entry = find(name);
-  if (!entry || !entry->definition.parameter) {
-    std::vector<std::string> known;
-    for (const Entry& e : entries_)
-      if (e.definition.parameter) known.push_back(e.definition.name.text);
-    const std::string wrong = entry ? "'{}' is not a param: only those can be replaced{}" : "there is no param '{}'{}";
-    diagnostics_.add(Error(fmt::format(fmt::runtime(wrong), name, suggestion(name, known)), at));
-    return;
-  }
-  entry->replaced = true;
-  const Source& source = replacements_.emplace_back(Source{at.file, {}, text});
-  remember_text(source.name, text);
-  set_folder(source.name, {});
-  Node& value = entry->definition.value;
-  const size_t begin = text.find_first_not_of(" \t\r\n");
-  // A string of JSON is an expression; when that is a text, it is replaced by a text.
-  if (value.type == NodeType::json_text && value.text.starts_with('"')) value.type = NodeType::string;
-  if (value.type == NodeType::string && (begin == std::string::npos || text[begin] != '"')) {
-    value.text = text;
-    value.at = {source.name, 1, 1};
-    return;
-  }
-  if (const auto wrong = invalid_utf8(text)) {
-    diagnostics_.add(Error("is not valid UTF-8", at));
-    value.type = NodeType::bad;
-    return;
-  }
-  if (auto parsed = parse_expression(source, diagnostics_))
-    value = std::move(*parsed);
-  else
-    value.type = NodeType::bad;
-}
-
-Evaluator::Entry* Evaluator::find(const std::string& name) {
-  const auto found = by_name_.find(name);
-  return found == by_name_.end() ? nullptr : found->second;
-}
-
-std::optional<Value> Evaluator::name(Node& node, const Context& context) {
-  const std::string& text = node.text;
-  const auto word = [&] {
-    Value value(text, node.at);
-    value.folder = folders_[node.at.file];
-    return value;
-  };
-  const Member* member = context.member;
-  const bool choice = member && member->kind == Kind::choice;
-  if (choice && std::find(member->choices.begin(), member->choices.end(), text) != member->choices.end()) {
-    if (const Entry* entry = find(text))
-      warn(fmt::format("'{0}' is the choice here, not the '{0}' defined at {1}", text,
-                       place(entry->definition.name.at, node.at)),
-           node.at);
-    return word();
-  }
-  if (text == "pi") return Value(Number{3.14159265358979323846}, node.at);
-  if (Entry* entry = find(text)) return named(*entry, node.at);
-  if (choice || context.words) return word();  // a choice that there is not is for the member to reject
-  if (!context.lenient && !incomplete_) undefined(text, node.at);
-  return std::nullopt;
-}
-
-void Evaluator::undefined(const std::string& text, Location at) {
-  if (Registry::instance().find(text) && is_json(at.file)) {
-    diagnostics_.add(Error(fmt::format("'{0}' is a class: write {{ \"class\": \"{0}\" }}", text), at));
-  } else if (Registry::instance().find(text)) {
-    diagnostics_.add(Error(fmt::format("'{0}' is a class: write {0} {{}}", text), at));
-  } else if (is_function(text)) {
-    diagnostics_.add(Error(fmt::format("'{0}' is a function: write {0}(…)", text), at));
-  } else {
-    std::vector<std::string> known = {"true", "false", "none", "pi"};
-    for (const Entry& e : entries_) known.push_back(e.definition.name.text);
-    diagnostics_.add(Error(fmt::format("'{}' is not defined{}", text, suggestion(text, known)), at));
-  }
-}
-
 std::optional<Value> Evaluator::named(Entry& entry, Location at) {
   entry.used = true;
+  if (entry.definition.function) {
+    const std::string& called = entry.definition.name.text;
+    diagnostics_.add(Error(fmt::format("'{0}' is a function: write {0}(…)", called), at));
+    return std::nullopt;
+  }
   if (entry.state == State::active) {
     std::string chain;
     const auto first = std::find(active_.begin(), active_.end(), &entry);
@@ -282,19 +228,21 @@ std::optional<Value> Evaluator::named(Entry& entry, Location at) {
     return std::nullopt;
   }
   reach_ = std::max(reach_, depth_ + entry.height);
+  if (repeating_ > 0 || entry.generated) charge(copied_size(entry.value), at);
   Value value = entry.value;
   value.location = at;
   return value;
 }
 
-std::vector<Evaluator::Entry*> Evaluator::waiting_names(const Node& node) {
+std::vector<Evaluator::Entry*> Evaluator::waiting_names(const Node& node, Space& space) {
   std::vector<Entry*> found;
   std::vector<const Node*> rest = {&node};
   while (!rest.empty()) {
     const Node& next = *rest.back();
     rest.pop_back();
     if (next.type == NodeType::name)
-      if (Entry* entry = find(next.text); entry && entry->state == State::waiting) found.push_back(entry);
+      if (Entry* entry = find(next.text, space); entry && !entry->definition.function && entry->state == State::waiting)
+        found.push_back(entry);
     for (const Node& child : next.children) rest.push_back(&child);
   }
   return found;
@@ -311,7 +259,7 @@ void Evaluator::settle_with_all_it_needs(Entry& first) {
   std::vector<Step> way;
   const auto visit = [&](Entry& entry) {
     entry.pending = true;
-    way.push_back({&entry, waiting_names(entry.definition.value)});
+    way.push_back({&entry, waiting_names(entry.definition.value, *entry.space)});
   };
   visit(first);
   while (way.size() > 1 || !way.back().needs.empty()) {
@@ -334,28 +282,36 @@ void Evaluator::settle_with_all_it_needs(Entry& first) {
   circle_ = false;
 }
 
-namespace {
-
-/// Whether a value refers to components; numbers, texts, colours and transforms are all there is of them.
 bool keeps_parts(const Value& value) {
   const auto* list = value.as<Value::List>();
   return list ? std::any_of(list->begin(), list->end(), keeps_parts) : value.as<Ref<Component>>() != nullptr;
 }
 
-}  // namespace
-
 void Evaluator::settle(Entry& entry) {
+  if (entry.definition.function) {
+    check_function(entry);
+    return;
+  }
+  const Elsewhere elsewhere(*this, *entry.space);
+  repeating_ = 0;
+  const SpaceTrail trail(entry.home->label);
+  diagnostics_.trail = &trail;
   entry.state = State::active;
   active_.push_back(&entry);
   const int outer = std::exchange(reach_, depth_);
   Node& node = entry.definition.value;
+  entry.generated = node.type != NodeType::numbers && node.type != NodeType::list;
   std::optional<Value> value;
   if (node.type == NodeType::component) {
     ++depth_;
-    value = component(node, entry.definition.name.text);
+    value = component(node, given_name(entry));
     --depth_;
   } else {
     value = evaluate(node, {});
+    // What a function or a condition makes is known by the name that it is given here.
+    const auto* part = value ? value->as<Ref<Component>>() : nullptr;
+    if (part && *part && (*part)->origin && (*part)->origin->name.empty() && node.type != NodeType::index)
+      (*part)->origin->name = given_name(entry);
   }
   entry.height = value && !keeps_parts(*value) ? 0 : reach_ - depth_;
   reach_ = std::max(outer, reach_);
@@ -363,22 +319,6 @@ void Evaluator::settle(Entry& entry) {
   entry.state = value ? State::done : State::failed;
   if (value) entry.value = std::move(*value);
   node = {};
-}
-
-void Evaluator::check_unused(const char* source) {
-  std::vector<Entry*> unused;
-  for (Entry& entry : entries_)
-    if (!entry.used) unused.push_back(&entry);
-  for (Entry* entry : unused)
-    if (entry->state == State::waiting) settle_with_all_it_needs(*entry);
-  if (!diagnostics_.empty()) return;
-  for (const Entry* entry : unused) {
-    const Label& label = entry->definition.name;
-    if (!entry->used && entry->replaced)
-      warn(fmt::format("has no effect: nothing uses the param '{}'", label.text), {intern("-D " + label.text), 0, 0});
-    else if (!entry->used && label.at.file == source)
-      warn(fmt::format("'{}' is defined but not used", label.text), label.at);
-  }
 }
 
 }  // namespace etendue::language

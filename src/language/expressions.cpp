@@ -6,6 +6,84 @@
 
 namespace etendue::language {
 
+Node Parser::expression() {
+  const size_t begin = token_.begin;
+  Node node = begins("if") ? conditional() : disjunction();
+  node.begin = begin;  // brackets around it belong to it
+  node.end = last_end_;
+  return node;
+}
+
+bool Parser::joins() const {
+  if (token_.type != TokenType::name) return false;
+  for (const char* word : {"and", "or", "then", "else", "for", "if"})
+    if (token_.text == word) return true;
+  return false;
+}
+
+bool Parser::begins(std::string_view word) const {
+  return token_.is_word(word) && !lexer_.ends_line() && !lexer_.followed_by("{}]),;:=<>!+*/^");
+}
+
+Node Parser::words(NodeType type, std::string_view word, Node (Parser::*operand)()) {
+  Node left = (this->*operand)();
+  if (!continues() || !token_.is_word(word)) return left;
+  Node node;
+  node.type = type;
+  node.at = left.at;
+  node.children.push_back(std::move(left));
+  while (continues() && token_.is_word(word)) {
+    node.labels.push_back({std::string(word), take().at});
+    node.children.push_back((this->*operand)());
+  }
+  return node;
+}
+
+Node Parser::disjunction() { return words(NodeType::disjunction, "or", &Parser::conjunction); }
+
+Node Parser::conjunction() { return words(NodeType::conjunction, "and", &Parser::inversion); }
+
+Node Parser::inversion() {
+  if (!begins("not")) return comparison();
+  const Level level(*this, token_.at);
+  Node node;
+  node.type = NodeType::inversion;
+  node.at = take().at;
+  node.children.push_back(inversion());
+  return node;
+}
+
+Node Parser::comparison() {
+  const auto compares = [&] {
+    constexpr char which[] = {symbols::equal, symbols::different, symbols::at_most, symbols::at_least, '<', '>'};
+    return continues() && token_.type == TokenType::symbol &&
+           std::string_view(which, sizeof(which)).find(token_.symbol) != std::string_view::npos;
+  };
+  Node left = range();
+  if (!compares()) return left;
+  Node node;
+  node.type = NodeType::comparison;
+  node.at = left.at;
+  node.children.push_back(std::move(left));
+  node.labels.push_back({symbol_text(token_.symbol), token_.at});
+  take();
+  node.children.push_back(range());
+  if (compares()) fail("comparisons do not follow each other: write a < b and b < c", token_.at);
+  return node;
+}
+
+Node Parser::range() {
+  Node first = sum();
+  if (!continues() || !token_.is(symbols::range)) return first;
+  Node node;
+  node.type = NodeType::range;
+  node.at = first.at;
+  node.labels.push_back({"..", take().at});
+  node.children.push_back(std::move(first));
+  node.children.push_back(sum());
+  return node;
+}
+
 // Chains such as a + b - c become one node, not a tree that is as deep as the chain is long.
 Node Parser::chain(NodeType type, char first, char second, Node (Parser::*operand)()) {
   Node left = (this->*operand)();
@@ -19,14 +97,6 @@ Node Parser::chain(NodeType type, char first, char second, Node (Parser::*operan
     take();
     node.children.push_back((this->*operand)());
   }
-  return node;
-}
-
-Node Parser::expression() {
-  const size_t begin = token_.begin;
-  Node node = sum();
-  node.begin = begin;  // brackets around it belong to it
-  node.end = last_end_;
   return node;
 }
 
@@ -62,8 +132,10 @@ Node Parser::power() {
 // A value and its unit.
 Node Parser::postfix() {
   const bool literal = token_.type == TokenType::number || token_.is('[') || token_.is('(');
+  const bool list = token_.is('[');
   Node value = primary();
-  if (!literal || token_.type != TokenType::name || token_.first_in_line) return value;
+  if (!list) value = indexed(std::move(value));
+  if (!literal || token_.type != TokenType::name || token_.first_in_line || joins()) return value;
   if (lexer_.followed_by(":") && !blocks_.empty() && open_.empty()) {
     report(fmt::format("expected ',' or a new line before '{}'", token_.text), token_.at);
     comma_told_ = true;
@@ -77,6 +149,45 @@ Node Parser::postfix() {
   node.at = value.at;
   node.labels.push_back({std::move(unit.text), unit.at});
   node.children.push_back(std::move(value));
+  return node;
+}
+
+// A place in a list: points[3]. A blank before the bracket makes it an item of its own, which lacks a comma before it.
+Node Parser::indexed(Node list) {
+  if (list.type == NodeType::number || list.type == NodeType::string || list.type == NodeType::component) return list;
+  constexpr int most = 16;
+  for (int places = 0; token_.is('[') && token_.joined; ++places) {
+    if (places == most) fail(fmt::format("lists have no more than {} levels", most), token_.at);
+    const Level level(*this, token_.at);
+    Node node;
+    node.type = NodeType::index;
+    node.at = list.at;
+    const Location opened = token_.at;
+    node.labels.push_back({"[", opened});
+    const Lines lines(*this, true);
+    take();
+    open_ += '[';
+    node.children.push_back(std::move(list));
+    node.children.push_back(expression());
+    if (token_.type == TokenType::end) not_closed('[', opened);
+    if (!token_.is(']')) unexpected("']' behind the place in the list");
+    open_.pop_back();
+    take();
+    list = std::move(node);
+  }
+  return list;
+}
+
+// Of a call: a value, or name = value.
+Node Parser::argument() {
+  if (token_.type != TokenType::name || !lexer_.followed_by_assignment()) return expression();
+  Node node;
+  node.type = NodeType::argument;
+  const Token name = take();
+  node.at = name.at;
+  node.text = name.text;
+  take();
+  node.children.push_back(expression());
   return node;
 }
 
@@ -169,8 +280,12 @@ void Parser::items(Node& node, char close, const Location& opened) {
   bool whole = true;
   while (!token_.is(close)) {
     if (token_.type == TokenType::end) not_closed(opening, opened);
-    node.children.push_back(expression());
-    if (token_.is(',')) {
+    node.children.push_back(is_list ? expression() : argument());
+    if (is_list && token_.is_word("for") && (!token_.first_in_line || lexer_.followed_by_name("in"))) {
+      comprehension(node);
+      if (token_.type == TokenType::end) not_closed(opening, opened);
+      if (!token_.is(close)) unexpected("'for', 'if' or ']'");
+    } else if (token_.is(',')) {
       take();
     } else if (token_.type == TokenType::end) {
       not_closed(opening, opened);

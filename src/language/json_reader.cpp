@@ -53,7 +53,8 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     Frame frame = std::move(frames_.back());
     frames_.pop_back();
     // The root says what it wants of its own; its tables of names are no components.
-    const bool table = frames_.size() == 1 && frames_.back().key.text.starts_with("$");
+    const bool table = !frames_.empty() &&
+                       (frames_[0].key.text == "$include" || (frames_.size() == 1 && frames_[0].key.text.starts_with("$")));
     if (frame.node.text.empty() && !frames_.empty() && !table) {
       diagnostics_.add(Error("an object must say its class: \"class\": \"…\"", frame.node.at));
       frame.node.type = NodeType::bad;
@@ -188,6 +189,60 @@ void read_paths(const Node& value, const std::string& key, std::vector<Label>& o
     add(value);
 }
 
+/// "file", or { "file": …, "with": { param: value }, "as": name }.
+void read_include(Node& value, Document& document, Diagnostics& diagnostics) {
+  Inclusion made;
+  const auto wrong = [&](const std::string& message, Location at) { diagnostics.add(Error(message, at)); };
+  const auto text = [&](const Node& node, const std::string& key) {
+    if (node.type != NodeType::json_text) wrong(fmt::format("\"{}\" expects a text", key), node.at);
+    return Label{node.text, node.at};
+  };
+  if (value.type != NodeType::component || !value.text.empty()) {
+    if (value.type != NodeType::json_text)
+      return wrong("\"$include\" expects files in quotes, or { \"file\": \"…\", … }", value.at);
+    made.path = {value.text, value.at};
+  }
+  for (size_t i = 0; i < value.children.size(); ++i) {
+    const Label& key = value.labels[i];
+    Node& child = value.children[i];
+    if (key.text == "file") {
+      made.path = text(child, key.text);
+    } else if (key.text == "as") {
+      made.name = text(child, key.text);
+      if (!is_name(made.name.text)) wrong(fmt::format("'{}' cannot be a name", made.name.text), child.at);
+    } else if (key.text == "with" && child.type == NodeType::component && child.text.empty()) {
+      for (size_t k = 0; k < child.children.size(); ++k)
+        made.replaced.push_back({child.labels[k], true, std::move(child.children[k])});
+    } else if (key.text == "with") {
+      wrong("\"with\" expects an object of params and what they are to be", child.at);
+    } else {
+      wrong(fmt::format("there is no key \"{}\"{}", key.text, suggestion(key.text, {"file", "with", "as"})), key.at);
+    }
+  }
+  if (!made.path.at.known()) return wrong("an include in braces needs its \"file\"", value.at);
+  document.includes.push_back(std::move(made));
+}
+
+void read_includes(Node& value, Document& document, Diagnostics& diagnostics) {
+  if (value.type != NodeType::list) return read_include(value, document, diagnostics);
+  for (Node& child : value.children) read_include(child, document, diagnostics);
+}
+
+std::vector<int> columns_of(const std::string& written, int column);
+
+/// A name such as "tree(height, radius = 1 m)" defines a function.
+bool read_function(const Label& name, Node& body, Document& document, Diagnostics& diagnostics) {
+  Source source{name.at.file, {}, name.text + " = none"};
+  source.line = name.at.line;
+  source.columns = columns_of(source.text, name.at.column + 1);
+  source.columns.resize(source.text.size() + 1, source.columns.back());
+  Document head = parse_document(source, diagnostics);
+  if (head.definitions.size() != 1 || !head.definitions[0].function) return false;
+  Definition& made = document.definitions.emplace_back(std::move(head.definitions[0]));
+  if (made.value.type != NodeType::bad) made.value = std::move(body);
+  return true;
+}
+
 void read_definitions(Node& table, const std::string& key, bool parameters, Document& document, Diagnostics& diagnostics) {
   if (table.type != NodeType::component || !table.text.empty()) {
     diagnostics.add(Error(fmt::format("\"{}\" expects an object of names and what they stand for", key), table.at));
@@ -195,8 +250,11 @@ void read_definitions(Node& table, const std::string& key, bool parameters, Docu
   }
   for (size_t i = 0; i < table.children.size(); ++i) {
     const Label& name = table.labels[i];
-    if (!is_name(name.text) || name.text == "true" || name.text == "false" || name.text == "none" || name.text == "pi")
-      diagnostics.add(Error(fmt::format("'{}' cannot be a name: names are letters, digits and '_'", name.text), name.at));
+    const std::string& text = name.text;
+    const bool function = !parameters && is_name(text.substr(0, text.find('('))) && text.find('(') != std::string::npos;
+    if (function && read_function(name, table.children[i], document, diagnostics)) continue;
+    if (!is_name(text) || text == "true" || text == "false" || text == "none" || text == "pi")
+      diagnostics.add(Error(fmt::format("'{}' cannot be a name: names are letters, digits and '_'", text), name.at));
     else
       document.definitions.push_back({name, parameters, std::move(table.children[i])});
   }
@@ -225,7 +283,7 @@ Document parse_json(const Source& source, Diagnostics& diagnostics) {
     const std::string& key = root.labels[i].text;
     Node& value = root.children[i];
     if (key == "$include") {
-      read_paths(value, key, document.includes, diagnostics);
+      read_includes(value, document, diagnostics);
     } else if (key == "$plugin") {
       read_paths(value, key, document.plugins, diagnostics);
     } else if (key == "$params" || key == "$names") {

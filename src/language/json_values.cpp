@@ -27,14 +27,18 @@ bool takes_color(const Member& member) {
 }  // namespace
 
 // A text where the member is one, else an expression.
-std::optional<Value> Evaluator::json_text(Node& node, const Context& context) {
+bool Evaluator::is_json_text(const Node& node, const Context& context) {
   const Member* member = context.member;
-  bool text = member && (member->kind == Kind::string || member->kind == Kind::file);
-  if (member && member->kind == Kind::choice) {
-    const auto& choices = member->choices;
-    text = std::find(choices.begin(), choices.end(), node.text) != choices.end() || !find(node.text);
-  }
-  if (text) {
+  if (!member) return false;
+  if (member->kind == Kind::string || member->kind == Kind::file) return true;
+  if (member->kind != Kind::choice) return false;
+  const auto& choices = member->choices;
+  if (std::find(choices.begin(), choices.end(), node.text) != choices.end()) return true;
+  return !node.text.starts_with("if ") && !find(node.text) && !local(node.text);
+}
+
+std::optional<Value> Evaluator::json_text(Node& node, const Context& context) {
+  if (is_json_text(node, context)) {
     Value value(node.text, node.at);
     value.folder = folders_[node.at.file];
     return value;
@@ -64,7 +68,9 @@ std::optional<Value> Evaluator::json_numbers(Node& node, const Member& member) {
       value.location = node.at;
       return value;
     });
-  return Value(std::move(*node.numbers), node.at);
+  if (repeating_ == 0) return Value(std::move(*node.numbers), node.at);
+  charge(numbers.values.size(), node.at);
+  return Value(numbers, node.at);
 }
 
 }  // namespace etendue::language

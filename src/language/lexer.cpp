@@ -10,9 +10,42 @@ namespace {
 
 bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
-bool symbol(char c) { return c != 0 && std::string_view("{}[](),:;=+-*/^").find(c) != std::string_view::npos; }
+bool symbol(char c) { return c != 0 && std::string_view("{}[](),:;=+-*/^<>").find(c) != std::string_view::npos; }
+
+struct LongSymbol {
+  std::string_view text;
+  char symbol;
+};
+constexpr LongSymbol long_symbols[] = {{"==", symbols::equal},
+                                       {"!=", symbols::different},
+                                       {"<=", symbols::at_most},
+                                       {">=", symbols::at_least},
+                                       {"..", symbols::range}};
+
+/// The number at the beginning of a text, and where it ends. "0..3" begins with 0: the points belong to the range.
+std::from_chars_result read_double(const char* begin, const char* end, double& value) {
+  std::from_chars_result result = std::from_chars(begin, end, value);
+  if (result.ptr < end && *result.ptr == '.' && result.ptr > begin && result.ptr[-1] == '.')
+    result = std::from_chars(begin, result.ptr - 1, value);
+  return result;
+}
 
 }  // namespace
+
+std::string symbol_text(char symbol) {
+  for (const LongSymbol& s : long_symbols)
+    if (s.symbol == symbol) return std::string(s.text);
+  return {symbol};
+}
+
+bool is_qualified_name(std::string_view text) {
+  for (;;) {
+    const size_t point = text.find('.');
+    if (!is_name(text.substr(0, point))) return false;
+    if (point == std::string_view::npos) return true;
+    text.remove_prefix(point + 1);
+  }
+}
 
 bool is_name(std::string_view text) {
   if (text.empty() || !letter(text.front())) return false;
@@ -25,7 +58,7 @@ std::string Token::words() const {
   switch (type) {
     case TokenType::end: return "the end of the text";
     case TokenType::string: return "a string";
-    case TokenType::symbol: return fmt::format("'{}'", symbol);
+    case TokenType::symbol: return fmt::format("'{}'", symbol_text(symbol));
     default: return fmt::format("'{}'", text);
   }
 }
@@ -65,9 +98,34 @@ void Lexer::skip_blanks() {
   }
 }
 
+// With the points between names: small.trunk is one.
+void Lexer::read_name(Token& token) {
+  const size_t begin = s_.position;
+  while (letter(peek()) || digit(peek()) || (peek() == '.' && letter(peek(1)))) ++s_.position;
+  token.type = TokenType::name;
+  token.text = text_.substr(begin, s_.position - begin);
+}
+
+bool Lexer::read_symbol(Token& token) {
+  const std::string_view rest = std::string_view(text_).substr(s_.position);
+  token.type = TokenType::symbol;
+  for (const LongSymbol& s : long_symbols)
+    if (rest.starts_with(s.text)) {
+      token.symbol = s.symbol;
+      s_.position += s.text.size();
+      return true;
+    }
+  if (!symbol(rest.front())) return false;
+  token.symbol = rest.front();
+  ++s_.position;
+  return true;
+}
+
 Token Lexer::next() {
+  const size_t before = s_.position;
   skip_blanks();
   Token token;
+  token.joined = s_.position == before;
   token.first_in_line = s_.first_in_line;
   token.at = location();
   token.begin = token.end = s_.position;
@@ -75,19 +133,12 @@ Token Lexer::next() {
   if (at_end()) return token;
   const char c = peek();
   if (letter(c)) {
-    const size_t begin = s_.position;
-    while (letter(peek()) || digit(peek())) ++s_.position;
-    token.type = TokenType::name;
-    token.text = text_.substr(begin, s_.position - begin);
+    read_name(token);
   } else if (digit(c) || (c == '.' && digit(peek(1)))) {
     read_number(token);
   } else if (c == '"') {
     read_string(token);
-  } else if (symbol(c)) {
-    token.type = TokenType::symbol;
-    token.symbol = c;
-    ++s_.position;
-  } else {
+  } else if (!read_symbol(token)) {
     const size_t begin = s_.position++;
     while (!at_end() && (static_cast<unsigned char>(peek()) & 0xC0) == 0x80) ++s_.position;
     const auto code = static_cast<unsigned char>(c);
@@ -117,6 +168,21 @@ bool Lexer::followed_by(std::string_view characters) const {
   return at < text_.size() && characters.find(text_[at]) != std::string_view::npos;
 }
 
+bool Lexer::followed_by_assignment() const {
+  const size_t at = after_blanks(s_.position);
+  return at < text_.size() && text_[at] == '=' && (at + 1 == text_.size() || text_[at + 1] != '=');
+}
+
+bool Lexer::followed_by_name(std::string_view then) const {
+  size_t at = after_blanks(s_.position);
+  if (at >= text_.size() || !letter(text_[at])) return false;
+  if (then.empty()) return true;
+  while (at < text_.size() && (letter(text_[at]) || digit(text_[at]))) ++at;
+  at = after_blanks(at);
+  const std::string_view rest = std::string_view(text_).substr(std::min(at, text_.size()));
+  return rest.starts_with(then) && (rest.size() == then.size() || (!letter(rest[then.size()]) && !digit(rest[then.size()])));
+}
+
 bool Lexer::ends_line() const {
   size_t at = s_.position;
   while (at < text_.size() && (text_[at] == ' ' || text_[at] == '\t' || text_[at] == '\r')) ++at;
@@ -134,7 +200,7 @@ std::string Lexer::following_member(int& closing) const {
 
 void Lexer::read_number(Token& token) {
   const char* begin = text_.data() + s_.position;
-  const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), token.number);
+  const auto [end, error] = read_double(begin, text_.data() + text_.size(), token.number);
   token.type = TokenType::number;
   token.text.assign(begin, end);
   s_.position += size_t(end - begin);

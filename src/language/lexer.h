@@ -18,21 +18,34 @@ enum class TokenType : std::uint8_t {
   bad  ///< already reported
 };
 
+/// Symbols of two characters, as Token::symbol has them.
+namespace symbols {
+inline constexpr char equal = 1, different = 2, at_most = 3, at_least = 4, range = 5;
+}  // namespace symbols
+
+/// A symbol as it is written: "{", "==", "..".
+std::string symbol_text(char symbol);
+
 struct Token {
   TokenType type = TokenType::end;
   char symbol = 0;
   bool first_in_line = false;  ///< nothing but blanks and comments stand before it in its line
+  bool joined = false;         ///< nothing at all stands between it and the token before
   double number = 0;
   std::string text;  ///< the name, the string without its quotes, or the number as written
   Location at;
   size_t begin = 0, end = 0;  ///< bytes in the text
 
   bool is(char c) const { return type == TokenType::symbol && symbol == c; }
+  /// Whether it is this word, which has a meaning in some places and is a name like any other elsewhere.
+  bool is_word(std::string_view word) const { return type == TokenType::name && text == word; }
   /// As messages call it: "'{'", "the end of the file", …
   std::string words() const;
 };
 
 bool is_name(std::string_view);
+/// A name, or names with points between: of what an included file defines that was given a name of its own.
+bool is_qualified_name(std::string_view);
 
 class Lexer {
  public:
@@ -40,10 +53,16 @@ class Lexer {
   Lexer(const Source&, Diagnostics&, size_t begin = 0);
 
   Token next();
+  /// Right behind the last token [bytes].
+  size_t position() const { return s_.position; }
   /// Says nothing of bad tokens while this is true: where the parser is lost, they follow from what made it so.
   void set_quiet(const bool* quiet) { quiet_ = quiet; }
   /// Whether what follows the last token, blanks and comments aside, is one of these characters.
   bool followed_by(std::string_view characters) const;
+  /// Whether what follows is a '=' that is not the first half of "==".
+  bool followed_by_assignment() const;
+  /// Whether a name follows, or one that is followed by this word.
+  bool followed_by_name(std::string_view then = {}) const;
   /// Whether nothing but blanks and comments stands behind the last token in its line.
   bool ends_line() const;
   /// The name that follows the last token and any '}' behind it, which are counted, if a ':' stands behind the name; else "".
@@ -74,6 +93,8 @@ class Lexer {
   }
   void read_string(Token&);
   void read_number(Token&);
+  void read_name(Token&);
+  bool read_symbol(Token&);
   bool skip_separator();
   bool read_row(std::vector<double>&, int& count);
 

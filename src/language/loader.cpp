@@ -34,7 +34,7 @@ Location start_of(const std::string& path) { return {intern(path), 0, 0}; }
 void Loader::add_file(const std::string& path) {
   main_ = intern(path);
   try {
-    load(path, start_of(path));
+    load(path, start_of(path), evaluator_.root(), false);
   } catch (const TooManyErrors&) {
     diagnostics_.raise();
   }
@@ -44,41 +44,87 @@ void Loader::add_text(const std::string& text, const std::string& name, const st
   main_ = intern(name);
   remember_text(main_, text);
   try {
-    add({main_, folder, text});
+    add({main_, folder, text}, evaluator_.root());
   } catch (const TooManyErrors&) {
     diagnostics_.raise();
   }
 }
 
-void Loader::load(const std::string& path, Location named_at) {
+// A file that is included under a name is read for that name, whoever has read it before; another only once, here or further
+// out.
+bool Loader::load(const std::string& path, Location named_at, Space& space, bool again) {
   const std::string spelling = canonical(path);
   const auto active = std::find_if(active_.begin(), active_.end(), [&](const auto& a) { return a.first == spelling; });
   if (active != active_.end()) {
     std::string chain;
     for (auto i = active; i != active_.end(); ++i) chain += i->second + " → ";
     diagnostics_.add(Error(fmt::format("the file includes itself: {}{}", chain, path), named_at));
-    return;
+    return false;
   }
-  if (std::find(files_.begin(), files_.end(), spelling) != files_.end()) return;
+  if (!again && included_at(spelling, space)) return false;
   if (active_.size() >= include_limit) {
     diagnostics_.add(Error("files are included too deeply: more than 64 levels", named_at));
-    return;
+    return false;
   }
-  files_.push_back(spelling);
+  files_.emplace(std::pair(spelling, &space), named_at);
   Source source;
   try {
     source = {intern(path), std::filesystem::path(path).parent_path().string(), read_text_file(path, named_at)};
   } catch (const Error& e) {
     diagnostics_.add(e);
     whole_ = false;
-    return;
+    return false;
   }
+  if (&space != &evaluator_.root() && !may_read_again(source.text.size(), named_at)) return false;
   active_.emplace_back(spelling, path);
-  add(std::move(source));
+  add(std::move(source), space);
   active_.pop_back();
+  return true;
 }
 
-void Loader::add(Source source) {
+// Where the file was included before, for this space or one around it.
+const Location* Loader::included_at(const std::string& spelling, Space& space) const {
+  for (Space* outer = &space; outer; outer = evaluator_.around(*outer))
+    if (const auto found = files_.find({spelling, outer}); found != files_.end()) return &found->second;
+  return nullptr;
+}
+
+// Files that include files under names, several times each, would double with every level.
+bool Loader::may_read_again(size_t size, Location named_at) {
+  constexpr size_t most = 1000, most_bytes = size_t(256) << 20;
+  bytes_again_ += size;
+  if (++again_ <= most && bytes_again_ <= most_bytes) return true;
+  diagnostics_.add(Error(
+      fmt::format("too much is included under names: at most {} files, and {} bytes in all", most, most_bytes), named_at));
+  throw TooManyErrors{};
+}
+
+void Loader::include(Inclusion& inclusion, const std::string& folder, Space& space) {
+  const Label& file = inclusion.path;
+  if (!options_.allow_files) return diagnostics_.add(Error("files are not allowed here", file.at));
+  if (file.text.empty()) return diagnostics_.add(Error("the file name is empty", file.at));
+  const std::string path = FilePath{file.text, folder}.resolved();
+  const bool named = !inclusion.name.text.empty();
+  Space* made = named ? evaluator_.make_space(space, inclusion.name) : &space;
+  if (!made) return;
+  Space& target = *made;
+  const Location* before = named ? nullptr : included_at(canonical(path), space);
+  if (before && !inclusion.replaced.empty()) {
+    diagnostics_.add(
+        Error(fmt::format("'{}' is included already, at {}: include it as a name of its own to give it other params: "
+                          "… }} as name",
+                          file.text, place(*before, file.at)),
+              file.at));
+    return;
+  }
+  const bool whole_before = std::exchange(whole_, true);
+  load(path, file.at, target, named);
+  for (Definition& definition : inclusion.replaced)
+    if (whole_) evaluator_.replace(std::move(definition), target, space, file.text);
+  whole_ = whole_ && whole_before;
+}
+
+void Loader::add(Source source, Space& space) {
   if (const auto wrong = invalid_utf8(source.text)) {
     const std::string_view before = std::string_view(source.text).substr(0, *wrong);
     const size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
@@ -108,16 +154,12 @@ void Loader::add(Source source) {
   source.text = {};  // may be as large as all that was made of it
   whole_ = whole_ && document.whole;
   for (const Label& plugin : document.plugins) open_plugin(plugin, folder);
-  for (Definition& definition : document.definitions) evaluator_.define(std::move(definition));
-  for (Node& component : document.components) components_.push_back(std::move(component));
-  for (const Label& include : document.includes) {
-    if (!options_.allow_files)
-      diagnostics_.add(Error("files are not allowed here", include.at));
-    else if (include.text.empty())
-      diagnostics_.add(Error("the file name is empty", include.at));
-    else
-      load(FilePath{include.text, folder}.resolved(), include.at);
-  }
+  for (Definition& definition : document.definitions) evaluator_.define(std::move(definition), space);
+  for (Node& component : document.components) components_.emplace_back(std::move(component), &space);
+  // First those whose names are known here as well: what is included under a name uses them.
+  for (const bool named : {false, true})
+    for (Inclusion& inclusion : document.includes)
+      if (inclusion.name.text.empty() != named) include(inclusion, folder, space);
 }
 
 void Loader::open_plugin(const Label& plugin, const std::string& folder) {
@@ -147,7 +189,7 @@ void Loader::replace_params() {
 Node* Loader::root(bool job) {
   const Location nowhere = {main_, 0, 0};
   Node* found = nullptr;
-  for (Node& node : components_) {
+  for (auto& [node, space] : components_) {
     if (job && node.text != "Job") {
       const std::string near = suggestion(node.text, {"Job"});
       diagnostics_.add(Error(
@@ -171,13 +213,16 @@ Ref<Component> Loader::result(bool job) {
     if (whole_) replace_params();
     Node* node = root(job);
     if (!whole_) evaluator_.set_incomplete();
-    if (node) value = evaluator_.evaluate(*node, {});
-    for (Node& other : components_)  // those that should not be there may be wrong in other ways as well
-      if (&other != node) evaluator_.evaluate(other, {});
+    for (auto& [other, space] : components_)
+      if (&other == node) value = evaluator_.evaluate_in(*space, other);
+    for (auto& [other, space] : components_)  // those that should not be there may be wrong in other ways as well
+      if (&other != node) evaluator_.evaluate_in(*space, other);
     evaluator_.check_unused(main_);
   } catch (const TooManyErrors&) {
   }
   diagnostics_.raise();
+  if (options_.animated && !evaluator_.moment_used())
+    warn("nothing in it depends on frame or time: all its frames show the same", {main_, 0, 0});
   return value && value->as<Ref<Component>>() ? *value->as<Ref<Component>>() : nullptr;
 }
 

@@ -115,6 +115,7 @@ void Parser::statement(Document& document) {
   if (lexer_.followed_by(":")) return go_on_with_last(document);
   Token name = take();
   if (token_.is('=')) return definition(document, std::move(name), false);
+  if (token_.is('(') && !token_.first_in_line) return function(document, name);
   if (token_.is('{') || misses_brace(name.text)) {
     lost_ = lost_ && !token_.is('{');
     document.components.push_back(token_.is('{') ? component(name) : component_without_brace(name));
@@ -134,7 +135,7 @@ void Parser::statement(Document& document) {
     return definition(document, std::move(parameter), true);
   }
   if (name.text == "include") {
-    document.includes.push_back(path_statement("the file to include, in quotes"));
+    inclusion(document);
   } else if (name.text == "plugin") {
     document.plugins.push_back(path_statement("the plugin's file, in quotes"));
   } else {
@@ -150,16 +151,30 @@ void Parser::statement(Document& document) {
   }
 }
 
+// Reports when it may not.
+bool Parser::may_be_defined(const Token& name) {
+  for (const char* reserved : {"true", "false", "none", "pi"})
+    if (name.text == reserved) {
+      diagnostics_.add(Error(fmt::format("'{}' has a fixed meaning and cannot be defined", reserved), name.at));
+      return false;
+    }
+  if (is_name(name.text)) return true;
+  diagnostics_.add(
+      Error(fmt::format("'{}' cannot be defined here: a '.' stands between the name that a file was included as and "
+                        "a name of that file",
+                        name.text),
+            name.at));
+  return false;
+}
+
 void Parser::definition(Document& document, Token name, bool parameter) {
   take();  // '='
   lost_ = false;
   Definition made{{name.text, name.at, name.begin}, parameter, {}};
-  for (const char* reserved : {"true", "false", "none", "pi"})
-    if (name.text == reserved) {
-      diagnostics_.add(Error(fmt::format("'{}' has a fixed meaning and cannot be defined", reserved), name.at));
-      expression();
-      return;
-    }
+  if (!may_be_defined(name)) {
+    expression();
+    return;
+  }
   try {
     made.value = expression();
   } catch (const Failed&) {

@@ -29,8 +29,16 @@ class Parser {
   // parser.cpp: statements and blocks
   void statement(Document&);
   void go_on_with_last(Document&);
+  bool may_be_defined(const Token& name);
   void definition(Document&, Token name, bool parameter);
   Label path_statement(const char* what);
+  // repeating/parsing.cpp: what makes a description scale
+  void function(Document&, const Token& name);
+  void parameters(Definition&);
+  void inclusion(Document&);
+  void conditions(Inclusion&);
+  Node conditional();
+  void comprehension(Node& list);
   using Seen = std::unordered_map<std::string, Location>;
   Node component(const Token& class_name);
   void members(Node& component, const Location& opened);
@@ -52,6 +60,12 @@ class Parser {
 
   // expressions.cpp
   Node expression();
+  Node words(NodeType, std::string_view word, Node (Parser::*operand)());
+  Node disjunction();
+  Node conjunction();
+  Node inversion();
+  Node comparison();
+  Node range();
   Node chain(NodeType, char first, char second, Node (Parser::*operand)());
   Node sum();
   Node product();
@@ -59,6 +73,8 @@ class Parser {
   Node power();
   Node postfix();
   Node primary();
+  Node indexed(Node);
+  Node argument();
   Node named(const Token&);
   Node list();
   void items(Node&, char close, const Location& opened);
@@ -73,6 +89,10 @@ class Parser {
   [[noreturn]] void not_closed(char bracket, const Location& opened);
   /// Whether the current token goes on with the expression before it: inside parentheses ends of lines mean nothing.
   bool continues() const { return bracketed_ || !token_.first_in_line; }
+  /// Whether the current token is a word that means something behind a value: no unit and no name.
+  bool joins() const;
+  /// Whether the current token is this word, and begins a value rather than being a name itself.
+  bool begins(std::string_view word) const;
 
   /// Counts nesting while it lives.
   class Level;

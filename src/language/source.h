@@ -22,10 +22,27 @@ struct Source {
 /// Thrown when the limit of errors is reached.
 struct TooManyErrors {};
 
+/// The way to what is evaluated now: the functions that were called and the loops that are run, innermost first.
+class Trail {
+ public:
+  explicit Trail(const Trail* outer) : outer_(outer) {}
+  virtual ~Trail() = default;
+  Trail(const Trail&) = delete;
+  Trail& operator=(const Trail&) = delete;
+  /// "in 'tree', called at line 12:5", "with i = 3"; "" where nothing can be said.
+  virtual std::string words(const Location& seen_from) const = 0;
+  const Trail* outer() const { return outer_; }
+
+ private:
+  const Trail* outer_;
+};
+
 /// Collects what is wrong in one run.
 class Diagnostics {
  public:
   static constexpr size_t limit = 50;
+  /// What errors from now on are told with; null: nothing.
+  const Trail* trail = nullptr;
   /// Throws TooManyErrors when this was the last one worth showing.
   void add(const Error&);
   /// All those of a list at once.
@@ -35,7 +52,10 @@ class Diagnostics {
   void raise();
 
  private:
+  std::string words_of_trail(const Location& seen_from) const;
+
   std::vector<Error> errors_;
+  std::vector<std::string> bare_;  // their messages without the trail: a mistake in a loop is told once
 };
 
 /// The error with a place: its own when it has one.

@@ -25,8 +25,17 @@ enum class NodeType : std::uint8_t {
   sum,
   product,
   power,
-  json_text,  ///< a string of JSON: a text or an expression, as its member has it
-  bad         ///< could not be read; reported already
+  range,          ///< whole numbers from the first child to the second, which is not one of them
+  comparison,     ///< of two children
+  conjunction,    ///< all of its children
+  disjunction,    ///< any of its children
+  inversion,      ///< not
+  conditional,    ///< condition, value if it holds, value if not
+  index,          ///< a list and a place in it, from 0
+  argument,       ///< of a call, by the name in `text`
+  comprehension,  ///< an entry, then what each clause is of; `labels` are the clauses: the name after `for`, or "" of an `if`
+  json_text,      ///< a string of JSON: a text or an expression, as its member has it
+  bad             ///< could not be read; reported already
 };
 
 /// A name and its place: of a member, of a unit, of an operator.
@@ -51,15 +60,31 @@ struct Node {
   size_t begin = 0, end = 0, inside = 0;
 };
 
+/// A parameter of a function.
+struct Parameter {
+  Label name;
+  std::unique_ptr<Node> standard;  ///< its default; null: it must be given
+};
+
 struct Definition {
   Label name;
-  bool parameter = false;
-  Node value;
+  bool parameter = false;  ///< a param, which may be replaced
+  Node value;              ///< a function's body
+  bool function = false;
+  std::vector<Parameter> parameters = {};  ///< of a function
+};
+
+/// include "file" with { param: value } as name
+struct Inclusion {
+  Label path;
+  std::vector<Definition> replaced;  ///< params of the file and what they are to be
+  Label name;                        ///< that stands before the names of the file; "": none does
 };
 
 /// One parsed file.
 struct Document {
-  std::vector<Label> includes, plugins;  ///< texts are the paths as written
+  std::vector<Inclusion> includes;
+  std::vector<Label> plugins;  ///< paths as written
   std::vector<Definition> definitions;
   std::vector<Node> components;  ///< those that stand for themselves, such as the Job
   bool whole = true;             ///< false when reading had to be given up before the end

@@ -40,7 +40,8 @@ void note_turn(Node& rotate, const std::vector<Value>& arguments) {
   rotate.numbers = std::make_unique<Numbers>(Numbers{{degrees, axis[0], axis[1], axis[2]}, 1, Dimension::none});
 }
 
-void warn_of_long_turns(const Node& keyframes) {
+bool warn_of_long_turns(const Node& keyframes) {
+  bool warned = false;
   for (size_t i = 3; i < keyframes.children.size(); i += 2) {
     const Node *before = only_turn(keyframes.children[i - 2]), *after = only_turn(keyframes.children[i]);
     if (!before || !after) continue;
@@ -55,7 +56,9 @@ void warn_of_long_turns(const Node& keyframes) {
                     "at most 180 degrees apart",
                     turn, shorter),
         after->at);
+    warned = true;
   }
+  return warned;
 }
 
 }  // namespace etendue::language

@@ -12,6 +12,6 @@ void note_turn(Node& rotate, const std::vector<Value>& arguments);
 
 /// Warns where two keys of a call to `keyframes` are written as turns about one axis that are more than 180 degrees apart: what
 /// is interpolated are the rotations, which do not say how often they went round, and goes the shorter way.
-void warn_of_long_turns(const Node& keyframes);
+bool warn_of_long_turns(const Node& keyframes);
 
 }  // namespace etendue::language

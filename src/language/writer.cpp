@@ -40,7 +40,8 @@ std::string snake_case(const std::string& class_name) {
 }
 
 bool usable_name(const std::string& name) {
-  for (const char* reserved : {"true", "false", "none", "pi", "param", "include", "plugin"})
+  for (const char* reserved :
+       {"true", "false", "none", "pi", "param", "include", "plugin", "if", "then", "else", "for", "not", "and", "or"})
     if (name == reserved) return false;
   return is_name(name);
 }

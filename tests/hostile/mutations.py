@@ -3,7 +3,7 @@ import struct
 import zlib
 
 HUGE = [0, 1, 0x7F, 0x80, 0xFF, 0x7FFF, 0x8000, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x10000000, 0x06000000, 1 << 40, (1 << 63) - 1]
-WORDS = [b"-1", b"0", b"1e308", b"-1e308", b"nan", b"inf", b"4294967295", b"99999999999999999999", b"1e-320", b"2147483648", b"{", b"}", b"[", b"((", b"\"", b"\0", b"\xff", b"="]
+WORDS = [b"-1", b"0", b"1e308", b"-1e308", b"nan", b"inf", b"4294967295", b"99999999999999999999", b"1e-320", b"2147483648", b"{", b"}", b"[", b"((", b"0..9", b"a for a in 0..999999", b"f(x) = f(x)\n", b"\"", b"\0", b"\xff", b"="]
 
 
 def flip_bits(data, random, other):

@@ -312,6 +312,9 @@ def descriptions():
     yield Seed("etd json", "scene.json", JSON, [["check", "scene.json"]], {}, True)
     included = {"scene.etd": scene("Sphere { radius: r }", 'include "input.etd"\n')}
     yield Seed("etd included", "input.etd", b"r = 1 + 2 * sqrt(0.5)\ns = [1, 2, [3, -4]]\n", [CHECK], included, True)
+    included = {"scene.etd": scene("Sphere { radius: a.r }, b.s[1]", 'include "input.etd" with { n: 4 } as a\ninclude "input.etd" as b\n')}
+    functions = b"param n = 3\nr = f(n)\ns = [Sphere { radius: i + 1 } for i in 0..n if i < 9]\nf(x, y = 2) = if x > 0 then y * f(x - 1) else y\n"
+    yield Seed("etd included twice", "input.etd", functions, [CHECK], included, True)
     yield Seed("etd rendered", "scene.etd", scene("Sphere { shader: Plastic {} }, Box { transform: rotate(30, \"y\") }"), [CHECK], {}, True)
 
 

@@ -26,6 +26,8 @@ Job {
   time_limit: limit
   outputs: []
 }
+grow(n, of = [1, 2]) = if n > 0 and not (n == 7) then join(of, grow(n - 1)) else [k[0] for k in [of, of] if k[1] != 5]
+many = [[i, j * frame] for i in 0..3 for j in grow(2)]
 unused = [translate(0, 1 m, [1, 2, 3] cm), rotate(30 deg, "x") * scale(2), 0.5 * rgb(0.1, 0.2, 0.3), blackbody(2856 K), name]
 )";
 
@@ -158,6 +160,11 @@ TEST(LanguageMutation, MutantsLoadOrAreRejectedWithAPlace) {
                                              "\xFF",
                                              "[[1,2],[3,4]]",
                                              "pi",
+                                             "for i in 0..3",
+                                             "f(x) = f(x)\n",
+                                             "if ",
+                                             "..",
+                                             "not ",
                                              "spectrum(\"/\")"};
   std::mt19937 random(20021101);
   testing::internal::CaptureStderr();  // warnings of unused names

@@ -21,6 +21,9 @@ struct LoadOptions {
   std::vector<std::pair<std::string, std::string>> defines;  ///< `-D name=value`: replace `param`s
   bool allow_files = true;  ///< false: include, plugin and spectrum("file") are errors, for texts from strangers
   ImportOptions import = {};
+  double frame = 0;       ///< what `frame` means in the description: which picture of a film it is read for
+  double time = 0;        ///< what `time` means [s]
+  bool animated = false;  ///< it is read once for each frame: there is a warning when it asks for neither
 };
 
 /// Any one component, such as "Sphere { radius: 2 m }", which definitions may precede; for tests and tools.

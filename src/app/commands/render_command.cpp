@@ -1,4 +1,4 @@
-// etendue render FILE: from a description to pictures.
+// etendue render FILE: from a description to its pictures.
 
 #include <fmt/format.h>
 
@@ -16,6 +16,7 @@
 #include "files/input_files.h"
 #include "files/whole_file.h"
 #include "render/checkpoint.h"
+#include "render_series.h"
 
 namespace etendue {
 
@@ -108,19 +109,20 @@ void report_result(const Progress& progress, Ended ended, const std::vector<std:
 }
 
 /// All that will be written, before hours are spent on it.
-void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, const RenderOptions& options) {
+void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, const RenderOptions& options, Series& series) {
   note_inputs_of(job);
   OutputFiles files;
-  add_outputs(outputs, stem_of(options.file), files);
+  add_outputs(outputs, options.stem(), files);
   const std::string checkpoint_option = !options.continue_file.empty() ? "--continue"
                                         : options.checkpoint.empty()   ? "--resume"
                                                                        : "--checkpoint";
   if (const std::string& checkpoint = options.checkpoint_file(); !checkpoint.empty())
     files.add(checkpoint, {intern(checkpoint_option), 0, 0}, options.resumed_file());
   files.raise();
+  series.claim(outputs, options);
 }
 
-int render(const RenderOptions& options) {
+int render(const RenderOptions& options, Series& series) {
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
 
@@ -128,7 +130,10 @@ int render(const RenderOptions& options) {
   RenderSettings settings = options.settings();
   std::vector<Ref<Output>> outputs;
   if (!settings.steps || !options.outputs.empty()) outputs = chosen_outputs(job->outputs, options.outputs);
-  require_outputs(*job, outputs, options);
+  number_outputs(outputs, options);
+  require_outputs(*job, outputs, options, series);
+  // Behind that: pictures that are looked at count as files that are read.
+  if (options.skip_existing && are_whole(outputs, *job, options)) return exit_status::done;
   const ProgressDisplay::Kind kind = ProgressDisplay::kind_for(options.progress, options.quiet);
   ProgressDisplay display(kind, options.open_ended());
   settings.on_progress = [&](const Progress& progress) { display.show(progress); };
@@ -150,7 +155,8 @@ int render(const RenderOptions& options) {
     ended = render.run();
     display.clear();
     picture = render.picture();
-    if (ended != Ended::aborted) written = write_each(outputs, *job, picture, stem_of(options.file), errors);
+    const bool unfinished = options.in_series && ended == Ended::interrupted;
+    if (ended != Ended::aborted && !unfinished) written = write_each(outputs, *job, picture, options.stem(), errors);
   }
 
   if (const std::string failure = render.checkpoint_failure(); !failure.empty()) errors.emplace_back(failure);
@@ -167,7 +173,7 @@ int render(const RenderOptions& options) {
 }  // namespace
 
 void add_render_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("render", "Render a file to the pictures it names");
+  CLI::App* command = program.add_subcommand("render", "Render files to the pictures they name");
   auto options = std::make_shared<RenderOptions>();
   options->add_to(*command);
   command->footer(
@@ -181,10 +187,17 @@ void add_render_command(CLI::App& program, Run& run) {
       "  etendue render box.etd --pixel 17,40                     the brightest paths of a pixel\n"
       "  etendue render box.etd --fireflies 10                    and where the brightest samples are\n"
       "  etendue render box.etd --continue box.checkpoint         begin, or go on after whatever stopped it\n"
+      "  etendue render a.etd b.etd                               one after the other, each to its own pictures\n"
+      "  etendue render film.etd --frames 0:120 -o film.####.png  120 pictures of 5 seconds\n"
+      "  etendue render film.etd --frames 0:120 --skip-existing   those that are not there yet\n"
       "  etendue render box.etd --passes 0:8 --checkpoint a.part  a part, for 'etendue image merge'\n"
       "\nThe first Ctrl-C ends the render after the current pass and writes what there is, a second one aborts it.\n"
       "The picture depends on the file and the seed alone, never on the number of threads.");
-  command->callback([options, &run] { run = [options] { return render(*options); }; });
+  command->callback([options, &run] {
+    run = [options] {
+      return render_series(*options, [](const RenderOptions& one, Series& series) { return render(one, series); });
+    };
+  });
 }
 
 }  // namespace etendue

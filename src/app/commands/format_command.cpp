@@ -1,0 +1,78 @@
+// etendue format FILE: a description in one layout.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/report.h"
+#include "files/input_files.h"
+#include "files/output_files.h"
+#include "files/whole_file.h"
+#include "language/format/formatter.h"
+#include "language/json.h"
+
+namespace etendue {
+
+namespace {
+
+struct FormatOptions {
+  std::vector<std::string> files;
+  std::string output;
+  bool check = false;
+};
+
+/// Whether the file has its layout already, or was given it; false: with --check, it has another.
+bool format(const std::string& file, const FormatOptions& options) {
+  const Location at{intern(file), 0, 0};
+  if (language::is_json(file)) throw Error("JSON has no layout here: 'format' is for .etd files", at);
+  const language::Source source{at.file, {}, language::read_text_file(file, at)};
+  const std::string text = language::formatted(source);
+  if (options.check) {
+    if (text != source.text) fmt::print("{}\n", file);
+    return text == source.text;
+  }
+  if (options.output == "-") {
+    fmt::print("{}", text);
+    return true;
+  }
+  const std::string& target = options.output.empty() ? file : options.output;
+  if (options.output.empty() && text == source.text) return true;
+  OutputFiles files;
+  files.add(target, options.output.empty() ? at : Location{intern("--output"), 0, 0}, file);
+  files.raise();
+  write_whole_file(target, text);
+  return true;
+}
+
+int format_all(const FormatOptions& options) {
+  if (options.files.size() > 1 && !options.output.empty())
+    throw Error("several files cannot go to one: format them in place, or one by one", {intern("--output"), 0, 0});
+  int status = exit_status::done;
+  for (const std::string& file : options.files)
+    status =
+        std::max(status, reporting_errors([&] { return format(file, options) ? exit_status::done : exit_status::failed; }));
+  return status;
+}
+
+}  // namespace
+
+void add_format_command(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand("format", "Give a render description one layout: indentation, blanks, comments");
+  auto options = std::make_shared<FormatOptions>();
+  command->add_option("FILE", options->files, "The render descriptions (.etd), which are replaced")->required()->type_name("");
+  CLI::Option* output = command->add_option("-o,--output", options->output, "Write to this file instead; - for standard output")
+                            ->type_name("FILE");
+  command
+      ->add_flag("--check", options->check, "Change nothing; print the files whose layout would change, and exit with 1 if any")
+      ->excludes(output);
+  command->footer(
+      "\nExamples\n"
+      "  etendue format box.etd                             in place, in one go or not at all\n"
+      "  etendue format box.etd -o -                        on the terminal\n"
+      "  etendue format --check scenes/*.etd                which of them have another layout\n"
+      "\nLines end where they did, comments stay, and the meaning is compared before anything is written.");
+  command->callback([options, &run] { run = [options] { return format_all(*options); }; });
+}
+
+}  // namespace etendue
