@@ -21,6 +21,7 @@ void add_render_command(CLI::App& program, Run& run);
 void add_check_command(CLI::App& program, Run& run);
 void add_save_command(CLI::App& program, Run& run);
 void add_convert_command(CLI::App& program, Run& run);
+void add_export_command(CLI::App& program, Run& run);
 void add_classes_command(CLI::App& program, Run& run);
 void add_schema_command(CLI::App& program, Run& run);
 void add_manual_command(CLI::App& program, Run& run);

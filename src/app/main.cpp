@@ -57,6 +57,7 @@ int run_program(int argument_count, char** arguments) {
   add_check_command(program, run);
   add_save_command(program, run);
   add_convert_command(program, run);
+  add_export_command(program, run);
   add_classes_command(program, run);
   add_schema_command(program, run);
   add_manual_command(program, run);

@@ -7,6 +7,7 @@ import dataclasses
 import pathlib
 import struct
 import subprocess
+import zlib
 
 import seed_images
 
@@ -68,7 +69,8 @@ def ply(kind):
     text = f"ply\nformat {kind} 1.0\ncomment made for a test\nelement vertex {len(CORNERS)}\n"
     text += "".join(f"property float {n}\n" for n in ("x", "y", "z", "nx", "ny", "nz", "u", "v"))
     text += "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-    text += f"element face {len(FACES)}\nproperty list uchar int vertex_indices\nend_header\n"
+    text += f"element face {len(FACES)}\nproperty list uchar int vertex_indices\n"
+    text += "property float weight_0\nproperty float weight_1\nend_header\n"
     body = b""
     for x, y, z in CORNERS:
         numbers = (x, y, z, 0, 0, 1, (x + 1) / 2, (y + 1) / 2)
@@ -78,9 +80,9 @@ def ply(kind):
             body += struct.pack(order + "8f3B", *numbers, 200, 100, 50)
     for face in FACES:
         if kind == "ascii":
-            body += (" ".join(map(str, (len(face), *face))) + "\n").encode()
+            body += (" ".join(map(str, (len(face), *face))) + " 0.5 0.25\n").encode()
         else:
-            body += struct.pack(f"{order}B{len(face)}i", len(face), *face)
+            body += struct.pack(f"{order}B{len(face)}i2f", len(face), *face, 0.5, 0.25)
     return text.encode() + body
 
 
@@ -101,6 +103,12 @@ def meshes():
 
 
 # ---- measured data --------------------------------------------------------------------------------------------------------
+
+
+def volume(channels):
+    """A cloud of 3 x 2 x 2 cells in Mitsuba's format."""
+    return b"VOL\3" + struct.pack(f"<5i6f{12 * channels}f", 1, 3, 2, 2, channels, -1, -1, -1, 1, 1, 1,
+                                  *((i % 5) / 4 for i in range(12 * channels)))
 
 
 def merl(half=3, difference=2, azimuth=4):
@@ -159,6 +167,10 @@ def tables():
     yield Seed("ies", "input.ies", IES, [RENDER], lamp, True)
     grid = {"scene.etd": scene('SignedDistanceGrid { file: "input.npy" }')}
     yield Seed("npy grid", "input.npy", numpy_array((4, 5, 6)), [RENDER], grid)
+    cloud = {"scene.etd": scene('Sphere { shader: PassThrough {}, interior: GridVolume { file: "input.vol", file_box: true, '
+                                'extinction: 1 } }')}
+    for channels in (1, 3):
+        yield Seed(f"vol {channels}", "input.vol", volume(channels), [RENDER], cloud)
     for kind in ("f4", "f8"):
         yield Seed("npy " + kind, "input.npy", numpy_array((3, 4, 3), kind), [["image", "info", "input.npy"]])
     yield Seed("merl", "input.binary", merl(), [RENDER], shading('MerlShader { file: "input.binary" }'))
@@ -176,6 +188,96 @@ JSON = rb"""{ "$schema": "etendue.schema.json", "$params": { "grey": 0.5 }, "$na
   { "class": "TriangleMesh", "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]] },
   { "class": "Sphere", "centre": [0, 3, 3], "emission": { "class": "DiffuseEmission", "radiance": [1, 1, 1e0] } } ] } }
 """
+
+
+PBRT = b"""LookAt 0 0 -5 0 0 0 0 1 0
+Camera "perspective" "float fov" [ 40 ] "float shutteropen" 0
+Sampler "halton" "integer pixelsamples" 1
+Integrator "volpath" "integer maxdepth" 3
+Film "rgb" "integer xresolution" 4 "integer yresolution" [ 4 ] "string filename" "out.exr"
+TransformTimes 0 1
+WorldBegin # a comment
+LightSource "infinite" "blackbody L" 5000 "float scale" .5
+Texture "checks" "spectrum" "checkerboard" "float uscale" 4 "rgb tex1" [ .1 .2 .3 ] "spectrum tex2" [ 400 .1 700 .9 ]
+MakeNamedMaterial "matt" "string type" "diffuse" "texture reflectance" "checks"
+MakeNamedMaterial "both" "string type" "mix" "string materials" [ "matt" "matt" ] "float amount" .25
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 1 2 3 ] "float scale" 0.1
+AttributeBegin
+  ActiveTransform EndTime Translate 1 0 0 ActiveTransform All
+  Rotate 30 0 1 0 Scale 1 2 -1 ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 1 1 1 1 ]
+  AreaLightSource "diffuse" "spectrum L" "stdillum-A" "bool twosided" true
+  Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] "integer indices" [ 0 1 2 1 3 2 ] "normal N" [ 0 0 1 0 0 1 0 0 1 0 0 1 ]
+AttributeEnd
+Attribute "shape" "float radius" 2
+ObjectBegin "thing" NamedMaterial "both" MediumInterface "fog" "" Shape "sphere" Shape "disk" "float phimax" 90 ObjectEnd
+CoordinateSystem "here" CoordSysTransform "camera" ObjectInstance "thing" ReverseOrientation
+Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" .1
+Shape "curve" "point3 P" [ 0 0 0 1 0 0 1 1 0 0 1 1 ] "float width0" .1 "float width1" .2
+Shape "loopsubdiv" "integer levels" 1 "point3 P" [ 0 0 0 1 0 0 0 1 0 0 0 1 ] "integer indices" [ 0 2 1 0 1 3 1 2 3 0 3 2 ]
+"""
+PBRT_V3 = b"""Film "image" "integer xresolution" 2 "integer yresolution" 2 Camera "orthographic" WorldBegin
+LightSource "spot" "rgb I" [ 1 1 1 ] "point from" [ 0 1 0 ] "rgb scale" [ 2 2 2 ] LightSource "distant" "color L" [ 1 0 1 ]
+Material "uber" "rgb Kd" [ .1 .2 .3 ] "float opacity" .5 Shape "cylinder" Material "glass" "float index" 1.3 Shape "cone"
+Material "substrate" "float uroughness" .2 Shape "heightfield" "integer nu" 2 "integer nv" 2 "float Pz" [ 0 1 2 3 ]
+Material "translucent" Shape "hyperboloid" "point p1" [ 1 0 0 ] "point p2" [ .5 1 1 ] Material "disney" Shape "paraboloid" WorldEnd
+"""
+
+
+MITSUBA = b"""<?xml version="1.0" encoding="utf-8"?>
+<scene version="3.0.0">
+  <default name="spp" value="4"/> <default name="kind" value="path"/>
+  <integrator type="$kind"><integer name="max_depth" value="5"/></integrator>
+  <sensor type="thinlens"><float name="fov" value="40"/><string name="fov_axis" value="smaller"/>
+    <float name="aperture_radius" value="0.1"/><float name="focus_distance" value="3"/>
+    <transform name="to_world"><lookat origin="0, 1, 5" target="0 0 0" up="0 1 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="6"/><rfilter type="mitchell"/></film>
+    <sampler type="multijitter"><integer name="sample_count" value="$spp"/></sampler></sensor>
+  <bsdf type="twosided" id="paint"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance">
+    <rgb name="color0" value="0.1 0.2 0.3"/><spectrum name="color1" value="400:0.1, 500:0.8, 700:0.4"/>
+    <transform name="to_uv"><scale x="3" y="4"/><rotate z="1" angle="30"/></transform></texture></bsdf></bsdf>
+  <alias id="paint" as="colour"/>
+  <medium type="homogeneous" id="fog"><rgb name="sigma_t" value="#102030"/><phase type="hg"><float name="g" value="0.3"/></phase></medium>
+  <shape type="shapegroup" id="group"><shape type="sphere"><point name="center" x="1"/><ref id="colour"/></shape>
+    <shape type="cube"><bsdf type="roughplastic"><string name="distribution" value="ggx"/></bsdf></shape></shape>
+  <shape type="instance"><ref id="group"/><transform name="to_world"><matrix value="1 0 0 0 0 2 0 1 0 0 1 0 0 0 0 1"/></transform></shape>
+  <shape type="rectangle"><bsdf type="mask"><float name="opacity" value="0.5"/><bsdf type="roughconductor">
+    <string name="material" value="Au"/></bsdf></bsdf></shape>
+  <shape type="cylinder"><bsdf type="dielectric"><string name="int_ior" value="bk7"/></bsdf><ref name="interior" id="fog"/></shape>
+  <emitter type="spot"><rgb name="intensity" value="5"/></emitter> <emitter type="constant"/>
+</scene>
+"""
+MITSUBA_OLD = b"""<scene version="0.5.0"><integrator type="volpath"><integer name="maxDepth" value="65"/></integrator>
+  <sensor type="perspective"><float name="fov" value="70"/><transform name="toWorld"><matrix value="-1 0 0 6 0 1 0 1 0 0 -1 2 0 0 0 1"/>
+    </transform><film type="ldrfilm"><integer name="width" value="8"/><integer name="height" value="8"/><float name="gamma" value="2.2"/>
+    <boolean name="banner" value="false"/></film></sensor>
+  <bsdf type="mixturebsdf" id="mix"><string name="weights" value="0.3, 0.5"/><bsdf type="phong"><float name="exponent" value="10"/></bsdf>
+    <bsdf type="coating"><rgb name="sigmaA" value="0.1"/><bsdf type="conductor"><rgb name="eta" value="1 2 3"/><rgb name="k" value="3"/>
+    </bsdf></bsdf></bsdf>
+  <shape type="disk"><ref id="mix"/><emitter type="area"><srgb name="radiance" value="#ffcc00"/></emitter></shape></scene>
+"""
+
+
+def serialized_mesh():
+    """Two meshes of one triangle each, as Mitsuba 0.5 writes them."""
+    body = struct.pack("<I", 0x1001) + b"name\0" + struct.pack("<QQ", 3, 1)
+    body += struct.pack("<18f", 0, 0, 0, 1, 0, 0, 0, 1, 0, *[0, 0, 1] * 3) + struct.pack("<3I", 0, 1, 2)
+    part = struct.pack("<HH", 0x041C, 4) + zlib.compress(body)
+    return part * 2 + struct.pack("<QQI", 0, len(part), 2)
+
+
+def scenes_of_others():
+    yield Seed("mitsuba", "input.xml", MITSUBA, [["check", "input.xml"]], {}, True)
+    yield Seed("mitsuba 0.5", "input.xml", MITSUBA_OLD, [["check", "input.xml"]], {}, True)
+    fragment = b'<scene version="3.0.0"><bsdf type="diffuse" id="white"/><shape type="sphere"><ref id="white"/></shape></scene>'
+    whole = {"scene.xml": b'<scene version="3.0.0"><include filename="input.xml"/><sensor type="perspective"/></scene>'}
+    yield Seed("mitsuba included", "input.xml", fragment, [["check", "scene.xml"]], whole, True)
+    mesh = {"scene.xml": b'<scene version="3.0.0"><shape type="serialized"><string name="filename" value="input.serialized"/>'
+                         b'<integer name="shape_index" value="1"/></shape><sensor type="perspective"/></scene>'}
+    yield Seed("serialized mesh", "input.serialized", serialized_mesh(), [["check", "scene.xml"]], mesh, False)
+    yield Seed("pbrt v4", "input.pbrt", PBRT, [["check", "input.pbrt"]], {}, True)
+    yield Seed("pbrt v3", "input.pbrt", PBRT_V3, [["check", "input.pbrt"]], {}, True)
+    whole = {"scene.pbrt": b'Camera "perspective" Film "rgb" WorldBegin Include "input.pbrt" Shape "sphere"'}
+    yield Seed("pbrt included", "input.pbrt", PBRT.split(b"comment")[1], [["check", "scene.pbrt"]], whole, True)
 
 
 def descriptions():
@@ -203,7 +305,7 @@ def checkpoints(program, folder):
 
 
 def seeds(program, plugin, folder):
-    found = list(images()) + list(meshes()) + list(tables()) + list(descriptions()) + checkpoints(program, folder)
+    found = list(images()) + list(meshes()) + list(tables()) + list(descriptions()) + list(scenes_of_others()) + checkpoints(program, folder)
     if plugin:
         data = pathlib.Path(plugin).read_bytes()
         found.append(Seed("plugin", "libinput.so", data, [["classes", "--plugin", "./libinput.so"]]))

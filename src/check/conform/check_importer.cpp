@@ -86,7 +86,9 @@ class ImporterTrial {
       trial.expect(ref_cast<Job>(r.component) || ref_cast<Scene>(r.component), "what is imported is a Job or a Scene");
       r.notes = importing.notes();
     } catch (const Errors& e) {
-      r.error = e.what();
+      for (const Error& each : e.errors)
+        r.error += std::string(r.error.empty() ? "" : "\n") + each.what() +
+                   (each.location.known() ? " at " + std::string(each.location.file) : "");
     } catch (const Error& e) {
       r.error = e.what() + (e.location.known() ? " at " + std::string(e.location.file) : "");
     } catch (...) {

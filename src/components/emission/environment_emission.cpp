@@ -1,5 +1,6 @@
 // EnvironmentEmission: light from all around, from an image or of a map.
 
+#include "equal_area.h"
 #include "etendue/core/warp.h"
 #include "etendue/describe/color.h"
 #include "etendue/emission_shader.h"
@@ -54,7 +55,12 @@ class EnvironmentEmission final : public EmissionShader {
             "illuminant", "",
             "whether RGB is light of the colour space's white, so that equal parts look white; off: it is a spectrum of that "
             "value, so that equal parts are the same at every wavelength",
-            when("file"));
+            when("file"))
+        .member<&EnvironmentEmission::layout>(
+            "layout", "",
+            "how directions lie in the image; lat_long: as `file` says; equal_area: in a square whose pixels all have the same "
+            "solid angle, with +y in the middle, -y in the corners, +x at the right and -z below",
+            choices("lat_long", "equal_area"), when("file"));
   }
 
   void prepare() override {
@@ -71,6 +77,7 @@ class EnvironmentEmission final : public EmissionShader {
     }
     try {
       image_ = read_linear_image(file.resolved(), transfer);
+      if (layout == Layout::equal_area) image_ = unfold_equal_area(image_);
     } catch (const Error& e) {
       fail("file", e.what());
     }
@@ -147,6 +154,8 @@ class EnvironmentEmission final : public EmissionShader {
   std::string color_space = "srgb", transfer = automatic_transfer;
   enum class Rows : std::uint8_t { centres, poles };
   Rows rows = Rows::centres;
+  enum class Layout : std::uint8_t { lat_long, equal_area };
+  Layout layout = Layout::lat_long;
   bool illuminant = true;
 
  private:

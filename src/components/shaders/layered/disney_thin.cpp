@@ -149,6 +149,7 @@ class DisneyThin final : public Shader {
          "has "
          "it. Where its parts together would send away more light than arrives they are scaled down.",
          "Burley 2015, Extending the Disney BRDF to a BSDF with integrated subsurface scattering")
+        .group("Base")
         .member<&DisneyThin::base_color>("base_color", "1", "the colour", Meaning::reflectance)
         .member<&DisneyThin::roughness>("roughness", "1", "the root of alpha", Meaning::number, soft(0, 1))
         .member<&DisneyThin::anisotropic>("anisotropic", "1", "how much rougher along u than across", Meaning::number,
@@ -163,6 +164,7 @@ class DisneyThin final : public Shader {
                                         soft(0, 1))
         .member<&DisneyThin::flatness>("flatness", "1", "how much of the diffuse part looks like subsurface scattering",
                                        Meaning::number, soft(0, 1))
+        .group("Sheen")
         .member<&DisneyThin::sheen>("sheen", "1", "as of cloth, at grazing angles", Meaning::number, soft(0, 1))
         .member<&DisneyThin::sheen_tint>("sheen_tint", "1", "how much it has the base's colour", Meaning::number, soft(0, 1),
                                          when("sheen"));

@@ -101,6 +101,7 @@ class Dielectric final : public Shader {
               "Born & Wolf 1999, Principles of Optics, section 1.5; Walter et al. 2007, Microfacet models for refraction "
               "through rough surfaces; Kulla & Conty 2017, Revisiting physically based shading at Imageworks; nested bodies "
               "after Schmidt & Budge 2002")
+        .group("Boundary")
         .member<&Dielectric::ior>(
             "ior", "1", "index of refraction inside the object: a number, glass(\"N-BK7\"), or a spectrum", Meaning::index)
         .member<&Dielectric::exterior>(
@@ -114,6 +115,7 @@ class Dielectric final : public Shader {
             "transmission_tint", "1",
             "what refracted light is multiplied by at each passage; coloured glass is rather a medium inside",
             Meaning::reflectance)
+        .group("Roughness")
         .member<&Dielectric::roughness>("roughness", "1",
                                         "the alpha of the distribution of facets, along the surface's u direction unless "
                                         "rotated (not its square root); below 0.001 smooth",

@@ -1,0 +1,57 @@
+// etendue export FILE -o OUT: a render description into a file of another program.
+
+#include <fmt/format.h>
+
+#include "app/scene_options.h"
+#include "etendue/exporter.h"
+#include "files/output_files.h"
+#include "files/whole_file.h"
+#include "render/checkpoint.h"
+
+namespace etendue {
+
+namespace {
+
+struct ExportOptions : SceneOptions {
+  std::string output;
+};
+
+int write(const ExportOptions& options) {
+  const Location at{intern("--output"), 0, 0};
+  const Ref<Exporter> exporter = exporter_of(options.output);
+  if (!exporter) {
+    std::string known;
+    for (const std::string& ending : exported_extensions()) known += (known.empty() ? "." : ", .") + ending;
+    throw Error(fmt::format("no program is known whose files are named like '{}'; known are {}", options.output, known), at);
+  }
+  const Ref<Job> job = options.load();
+  note_inputs_of(*job);
+  OutputFiles files;
+  files.add(options.output, at);
+  files.raise();
+  Exporting exporting(options.output);
+  const std::string text = exporter->write(*job, exporting);
+  const std::vector<Error> notes = exporting.notes();
+  if (options.import.strict && !notes.empty()) throw Errors(notes);
+  for (const Error& note : notes) warn(note.what(), note.location);
+  write_whole_file(options.output, text);
+  return exit_status::done;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& program, Run& run) {
+  CLI::App* command = program.add_subcommand("export", "Write a render description as a file of another program");
+  auto options = std::make_shared<ExportOptions>();
+  options->add_to(*command);
+  command->add_option("-o,--output", options->output, "The file to write; its ending says for which program")
+      ->required()
+      ->type_name("FILE");
+  command->footer(
+      "\nExamples\n"
+      "  etendue export scenes/cornell_box.etd -o box.pbrt      meshes and images are written beside it\n"
+      "  etendue export box.etd --strict -o box.pbrt            fails where it cannot be the same");
+  command->callback([options, &run] { run = [options] { return write(*options); }; });
+}
+
+}  // namespace etendue

@@ -1,0 +1,69 @@
+// What all exporters share: files beside the one that is written, names, and notes.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "etendue/exporter.h"
+#include "files/regular_file.h"
+#include "files/whole_file.h"
+
+namespace etendue {
+
+namespace fs = std::filesystem;
+
+Exporting::Exporting(std::string path) : path_(std::move(path)) {
+  folder_ = fs::path(path_).parent_path().string();
+  stem_ = fs::path(path_).stem().string();
+}
+
+void Exporting::inexact(const std::string& what, const Component* of) {
+  const auto [place, added] = note_of_.emplace(what, notes_.size());
+  if (added) notes_.push_back({what, of ? of->location_of() : Location{}, 0});
+  ++notes_[place->second].count;
+}
+
+std::vector<Error> Exporting::notes() const {
+  std::vector<Error> all;
+  for (const Note& note : notes_)
+    all.emplace_back(note.count > 1 ? fmt::format("{} ({} times)", note.what, note.count) : note.what, note.first);
+  return all;
+}
+
+std::string Exporting::write_beside(const std::string& what, const std::string& ending, const std::string& bytes) {
+  const std::string name = fmt::format("{}-{}{}.{}", stem_, what, ++numbers_[what], ending);
+  write_whole_file((fs::path(folder_) / name).string(), bytes);
+  return name;
+}
+
+std::string Exporting::copy_beside(const std::string& path) {
+  std::error_code error;
+  const fs::path here = fs::weakly_canonical(fs::absolute(folder_.empty() ? fs::path(".") : fs::path(folder_)), error);
+  const fs::path from = fs::weakly_canonical(fs::absolute(path), error);
+  const fs::path relative = from.lexically_relative(here);
+  if (!relative.empty() && *relative.begin() != "..") return relative.generic_string();
+  std::string& name = copied_[from.string()];
+  if (name.empty()) {
+    // Two files of one name in two folders stay two.
+    const std::string last = from.filename().string();
+    const int number = numbers_["copy of " + last]++;
+    name = number == 0 ? fmt::format("{}-{}", stem_, last) : fmt::format("{}-{}-{}", stem_, number, last);
+    write_whole_file((here / name).string(), read_regular_file(from.string()));
+  }
+  return name;
+}
+
+std::string Exporting::name_for(const Component& part) {
+  std::string& name = names_[&part];
+  if (!name.empty()) return name;
+  name = part.origin && !part.origin->name.empty() ? part.origin->name : part.class_info().name;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_') c = '_';
+  if (const int number = taken_[name]++; number > 0) name += fmt::format("_{}", number + 1);
+  while (std::ranges::count_if(names_, [&](const auto& other) { return other.second == name; }) > 1) name += "_";
+  return name;
+}
+
+}  // namespace etendue

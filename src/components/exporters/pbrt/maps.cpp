@@ -1,0 +1,96 @@
+// Maps as textures.
+
+#include "writer.h"
+
+namespace etendue::pbrt_export {
+
+std::string Writer::value_or_texture(const char* name, const Ref<Component>& map, bool numbers, ColorUse use) {
+  if (const Color c = constant(*map)) {
+    if (!numbers) return spectrum(name, c, use);
+    return fmt::format(" \"float {}\" {}", name, c->at(550, ColorUse::coefficient));
+  }
+  return fmt::format(" \"texture {}\" \"{}\"", name, texture(*map, numbers));
+}
+
+std::string Writer::color_map(const char* name, const Component& of, const char* member, ColorUse use) {
+  const Ref<Component> map = part(of, member);
+  return map ? value_or_texture(name, map, false, use) : std::string();
+}
+
+std::string Writer::number_map(const char* name, const Component& of, const char* member) {
+  const Ref<Component> map = part(of, member);
+  return map ? value_or_texture(name, map, true, ColorUse::coefficient) : std::string();
+}
+
+std::string Writer::image(const Component& map, const std::string& more, bool numbers) {
+  const std::string wrap = word(map, "wrap"), transfer = word(map, "transfer"), file = exporting.copy_beside(word(map, "file"));
+  std::string text = fmt::format(" \"imagemap\" \"string filename\" \"{}\"", file);
+  if (wrap == "mirror")
+    exporting.inexact("an image that is mirrored beyond its edges is repeated", &map);
+  else
+    text += fmt::format(" \"string wrap\" \"{}\"", wrap);
+  if (word(map, "interpolation") == "nearest") text += " \"string filter\" \"point\"";
+  if (transfer == "linear") text += " \"string encoding\" \"linear\"";
+  if (transfer == "gamma2.2") text += " \"string encoding\" \"gamma 2.2\"";
+  if (!word(map, "channel").empty()) exporting.inexact("the choice of an image's channels is left out", &map);
+  if (word(map, "color_space") != "srgb") exporting.inexact("the colour space of an image is what its file says", &map);
+  const std::vector<double> repeat = etendue::pbrt_export::numbers(map, "repeat");
+  if (more.empty() && repeat.size() == 2 && (repeat[0] != 1 || repeat[1] != 1))
+    text += fmt::format(" \"float uscale\" {} \"float vscale\" {}", repeat[0], repeat[1]);
+  static_cast<void>(numbers);
+  return text + more;
+}
+
+std::string Writer::texture(const Component& map, bool numbers) {
+  const std::string key = numbers ? "float" : "spectrum";
+  // The same map may be asked for as numbers and as colours: two textures.
+  std::string& known = textures_[&map];
+  const std::string name = exporting.name_for(map) + (numbers ? "_number" : "");
+  if (known.find("|" + name + "|") != known.npos) return name;
+  known += "|" + name + "|";
+  const std::string type = map.class_info().name;
+  const auto inner = [&](const char* to, const char* member) {
+    return numbers ? number_map(to, map, member) : color_map(to, map, member);
+  };
+  std::string text;
+  if (type == "ImageMap") {
+    text = image(map, "", numbers);
+  } else if (type == "UvTransformMap" && number(map, "angle") == 0 && part(map, "map") &&
+             (part(map, "map")->class_info().name == "ImageMap" || part(map, "map")->class_info().name == "CheckerMap")) {
+    const Ref<Component> changed = part(map, "map");
+    const bool is_image = changed->class_info().name == "ImageMap";
+    const std::vector<double> repeat = etendue::pbrt_export::numbers(*changed, "repeat"),
+                              scale = etendue::pbrt_export::numbers(map, "scale"),
+                              shift = etendue::pbrt_export::numbers(map, "shift");
+    const std::string where =
+        fmt::format(" \"float uscale\" {} \"float vscale\" {} \"float udelta\" {} \"float vdelta\" {}", repeat[0] * scale[0],
+                    repeat[1] * scale[1], repeat[0] * shift[0], repeat[1] * shift[1]);
+    if (is_image) {
+      text = image(*changed, where, numbers);
+    } else {
+      const auto of = [&](const char* to, const char* member) {
+        return numbers ? number_map(to, *changed, member) : color_map(to, *changed, member);
+      };
+      text = " \"checkerboard\"" + of("tex1", "first") + of("tex2", "second") + where;
+    }
+  } else if (type == "CheckerMap" && word(map, "space") == "uv") {
+    const std::vector<double> repeat = etendue::pbrt_export::numbers(map, "repeat");
+    text = " \"checkerboard\"" + inner("tex1", "first") + inner("tex2", "second") +
+           fmt::format(" \"float uscale\" {} \"float vscale\" {}", repeat[0], repeat[1]);
+  } else if (type == "MixMap") {
+    text = " \"mix\"" + inner("tex1", "first") + inner("tex2", "second") + number_map("amount", map, "amount");
+  } else if (type == "MultiplyMap" && !part(map, "third") && part(map, "second") && constant(*part(map, "second")) &&
+             !constant(*part(map, "second"))->varies()) {
+    text = " \"scale\"" + inner("tex", "first") + number_map("scale", map, "second");
+  } else if (const Color c = constant(map)) {
+    text = " \"constant\"" + (numbers ? fmt::format(" \"float value\" {}", c->at(550, ColorUse::coefficient))
+                                      : spectrum("value", c, ColorUse::reflectance));
+  } else {
+    exporting.inexact(fmt::format("pbrt has no texture like {}: it is 0.5 everywhere", type), &map);
+    text = numbers ? " \"constant\" \"float value\" 0.5" : " \"constant\" \"rgb value\" [ 0.5 0.5 0.5 ]";
+  }
+  out_ += fmt::format("Texture \"{}\" \"{}\"{}\n", name, key, text);
+  return name;
+}
+
+}  // namespace etendue::pbrt_export

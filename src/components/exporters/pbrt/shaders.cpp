@@ -1,0 +1,219 @@
+// Shaders as materials, and media.
+
+#include "writer.h"
+
+namespace etendue::pbrt_export {
+
+Surface Writer::surface_of(const Component* shader) {
+  Surface surface;
+  // Holes belong to the shape in pbrt.
+  if (shader && shader->class_info().name == "MaskShader") {
+    surface.alpha = number_map("alpha", *shader, "opacity");
+    const Ref<Component> inner = part(*shader, "shader");
+    surface.material = inner ? material_of(*inner) : "";
+  } else if (shader) {
+    surface.material = material_of(*shader);
+  } else {
+    static const char* black = "black_surface";
+    if (materials_.emplace(nullptr, black).second)
+      out_ += fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n", black);
+    surface.material = black;
+  }
+  return surface;
+}
+
+std::string Writer::material_of(const Component& shader) {
+  if (const auto found = materials_.find(&shader); found != materials_.end()) return found->second;
+  // Bumps and normals are parameters of the material under them.
+  const Component* base = &shader;
+  std::string relief;
+  Ref<Component> held;
+  for (std::string name = base->class_info().name; name == "BumpShader" || name == "NormalMapShader";
+       name = base->class_info().name) {
+    if (name == "BumpShader") {
+      relief += number_map("displacement", *base, "height");
+      if (number(*base, "scale") != 1) exporting.inexact("the factor of a bump map's heights is left out", base);
+    } else {
+      relief += fmt::format(" \"string normalmap\" \"{}\"", exporting.copy_beside(word(*base, "file")));
+    }
+    held = part(*base, "shader");
+    if (!held) break;
+    base = held.get();
+  }
+  std::string type;
+  const std::string parameters = parameters_of(*base, type);
+  const std::string name = exporting.name_for(shader);
+  out_ += fmt::format("MakeNamedMaterial \"{}\" \"string type\" \"{}\"{}{}\n", name, type, parameters, relief);
+  materials_[&shader] = name;
+  return name;
+}
+
+std::string Writer::roughness_of(const Component& shader, const std::string& prefix) {
+  std::string text;
+  if (part(shader, "roughness_v"))
+    text = number_map((prefix + "uroughness").c_str(), shader, "roughness") +
+           number_map((prefix + "vroughness").c_str(), shader, "roughness_v");
+  else
+    text = number_map((prefix + "roughness").c_str(), shader, "roughness");
+  if (const Ref<Component> rotation = part(shader, "rotation"))
+    if (const Color c = constant(*rotation); !c || c->at(550, ColorUse::coefficient) != 0)
+      exporting.inexact("the rotation of an anisotropic surface is left out", &shader);
+  if (shader.class_info().find("distribution") && word(shader, "distribution") == "beckmann")
+    exporting.inexact("pbrt has GGX's facets alone: they stand for Beckmann's", &shader);
+  if (truth(shader, "multiple_scattering")) {
+    const Ref<Component> alpha = part(shader, "roughness");
+    const Color c = alpha ? constant(*alpha) : nullptr;
+    if (!c || c->at(550, ColorUse::coefficient) > 0.001f)
+      exporting.inexact("pbrt loses the light that meets more than one facet: rough surfaces are a little darker there",
+                        &shader);
+  }
+  return text;
+}
+
+std::string Writer::index_of(const Component& shader, const std::string& name) {
+  const Color c = color(shader, "ior");
+  if (!c) return fmt::format(" \"float {}\" {}", name, number(shader, "ior"));
+  if (!c->varies()) return fmt::format(" \"float {}\" {}", name, c->at(550, ColorUse::coefficient));
+  return spectrum(name.c_str(), c, ColorUse::coefficient);
+}
+
+std::string Writer::metal_of(const Component& shader, const std::string& prefix) {
+  const Color ior = color(shader, "ior");
+  for (const char* metal : {"Cu", "Au", "Ag", "Al"})
+    if (ior && ior->expression() == fmt::format("metal(\"{}\")", metal))
+      return fmt::format(" \"spectrum {0}eta\" \"metal-{1}-eta\" \"spectrum {0}k\" \"metal-{1}-k\"", prefix, metal);
+  const Color k = ior ? ior->imaginary() : nullptr;
+  std::string text = ior ? spectrum((prefix + "eta").c_str(), ior, ColorUse::coefficient) : "";
+  text +=
+      k ? spectrum((prefix + "k").c_str(), k, ColorUse::coefficient) : fmt::format(" \"spectrum {}k\" [ 360 0 830 0 ]", prefix);
+  if (const Ref<Component> tint = part(shader, "color"))
+    if (const Color c = constant(*tint); !c || c->varies() || c->at(550, ColorUse::reflectance) != 1)
+      exporting.inexact("the colour that a metal's reflectance is multiplied by is left out", &shader);
+  return text;
+}
+
+std::string Writer::layered(const Component& shader, std::string& type) {
+  const Ref<Component> top = part(shader, "top"), bottom = part(shader, "bottom"), medium = part(shader, "medium");
+  const std::string below = bottom ? bottom->class_info().name : "";
+  if (!top || top->class_info().name != "Dielectric" || (below != "Lambertian" && below != "Conductor")) {
+    exporting.inexact("pbrt has layers of a dielectric over a matt surface or a metal alone: the lower one is left", &shader);
+    return bottom ? parameters_of(*bottom, type) : "";
+  }
+  const bool diffuse = below == "Lambertian";
+  type = diffuse ? "coateddiffuse" : "coatedconductor";
+  const std::string prefix = diffuse ? "" : "interface.";
+  std::string text = roughness_of(*top, prefix) + index_of(*top, prefix + "eta");
+  text += diffuse ? color_map("reflectance", *bottom, "color")
+                  : roughness_of(*bottom, "conductor.") + metal_of(*bottom, "conductor.");
+  text += " \"bool remaproughness\" false";
+  // pbrt's layer absorbs as if its extinction were 1; a thickness of nothing makes that clear.
+  const Ref<Component> thickness = part(shader, "thickness");
+  const Color t = thickness ? constant(*thickness) : nullptr;
+  if (!medium) return text + " \"float thickness\" 0";
+  const Color a = medium->class_info().name == "HomogeneousVolume" ? color(*medium, "absorption") : nullptr,
+              s = a ? color(*medium, "scattering") : nullptr;
+  if (!a || !s || !t || a->varies() || s->varies()) {
+    exporting.inexact("the medium between two layers is left out", &shader);
+    return text + " \"float thickness\" 0";
+  }
+  const float absorbs = a->at(550, ColorUse::coefficient), scatters = s->at(550, ColorUse::coefficient);
+  return text + fmt::format(" \"float thickness\" {}{}", t->at(550, ColorUse::coefficient) * (absorbs + scatters),
+                            scatters > 0 ? fmt::format(" \"spectrum albedo\" [ 360 {0} 830 {0} ] \"float g\" {1}",
+                                                       scatters / (absorbs + scatters), number(*medium, "anisotropy"))
+                                         : "");
+}
+
+std::string Writer::parameters_of(const Component& shader, std::string& type) {
+  const std::string name = shader.class_info().name;
+  const auto nearly = [&](const char* what) { exporting.inexact(fmt::format("{} stands for a {}", what, name), &shader); };
+  if (name == "Lambertian" || name == "OrenNayar") {
+    type = "diffuse";
+    if (name == "OrenNayar") nearly("a Lambertian surface");
+    return color_map("reflectance", shader, "color");
+  }
+  if (name == "Conductor") {
+    type = "conductor";
+    return metal_of(shader, "") + roughness_of(shader, "") + " \"bool remaproughness\" false";
+  }
+  if (name == "PerfectSpecular") {
+    type = "conductor";
+    exporting.inexact("a mirror reflects more at grazing angles in pbrt", &shader);
+    return color_map("reflectance", shader, "color");
+  }
+  if (name == "Dielectric") {
+    type = "dielectric";
+    if (part(shader, "reflection_tint") || part(shader, "transmission_tint"))
+      for (const char* tint : {"reflection_tint", "transmission_tint"})
+        if (const Ref<Component> map = part(shader, tint))
+          if (const Color c = constant(*map); !c || c->varies() || c->at(550, ColorUse::reflectance) != 1)
+            exporting.inexact(fmt::format("the '{}' of a dielectric is left out", tint), &shader);
+    return index_of(shader, "eta") + roughness_of(shader, "") + " \"bool remaproughness\" false";
+  }
+  if (name == "ThinDielectric") {
+    type = "thindielectric";
+    return index_of(shader, "eta");
+  }
+  if (name == "DiffuseTransmitter") {
+    type = "diffusetransmission";
+    return color_map("reflectance", shader, "reflectance") + color_map("transmittance", shader, "transmittance");
+  }
+  if (name == "LayeredShader") return layered(shader, type);
+  if (name == "Plastic" || name == "LossyPlastic") {
+    type = "coateddiffuse";
+    nearly("a layer of random walks");
+    return color_map("reflectance", shader, "color") + number_map("roughness", shader, "roughness") + index_of(shader, "eta") +
+           " \"bool remaproughness\" false \"float thickness\" 0";
+  }
+  if (name == "PassThrough") {
+    type = "interface";
+    return {};
+  }
+  if (name == "MixShader") {
+    type = "mix";
+    const Ref<Component> first = part(shader, "first"), second = part(shader, "second");
+    const std::string a = surface_of(first.get()).material, b = surface_of(second.get()).material;
+    return fmt::format(" \"string materials\" [ \"{}\" \"{}\" ]{}", a, b, number_map("amount", shader, "amount"));
+  }
+  if (name == "HairShader") {
+    type = "hair";
+    const std::string pigment = word(shader, "pigment");
+    const std::string what = pigment == "color"        ? color_map("reflectance", shader, "color")
+                             : pigment == "absorption" ? color_map("sigma_a", shader, "absorption", ColorUse::coefficient)
+                                                       : number_map("eumelanin", shader, "eumelanin") +
+                                                             number_map("pheomelanin", shader, "pheomelanin");
+    return what + number_map("beta_m", shader, "longitudinal_roughness") + number_map("beta_n", shader, "azimuthal_roughness") +
+           fmt::format(" \"float alpha\" {} \"float eta\" {}", number(shader, "tilt"), number(shader, "ior"));
+  }
+  if (name == "RglShader") {
+    type = "measured";
+    return fmt::format(" \"string filename\" \"{}\"", exporting.copy_beside(word(shader, "file")));
+  }
+  type = "diffuse";
+  for (const char* member : {"color", "base_color"})
+    if (shader.class_info().find(member)) {
+      nearly("a matt surface of its colour");
+      return color_map("reflectance", shader, member);
+    }
+  nearly("a matt grey surface");
+  return {};
+}
+
+std::string Writer::medium_of(const Component& medium) {
+  if (const auto found = media_.find(&medium); found != media_.end()) return found->second;
+  std::string& name = media_[&medium];
+  if (medium.class_info().name != "HomogeneousVolume") {
+    exporting.inexact(fmt::format("a {} is left out", medium.class_info().name), &medium);
+    return name;
+  }
+  name = exporting.name_for(medium);
+  Color a = color(medium, "absorption"), s = color(medium, "scattering");
+  const Color extinction = medium.class_info().find("extinction") ? color(medium, "extinction") : nullptr;
+  if (extinction && extinction->expression() != "0")
+    exporting.inexact("a medium's extinction and albedo are written as its absorption and scattering", &medium);
+  out_ += fmt::format("MakeNamedMedium \"{}\" \"string type\" \"homogeneous\"{}{} \"float g\" {}\n", name,
+                      spectrum("sigma_a", a, ColorUse::coefficient), spectrum("sigma_s", s, ColorUse::coefficient),
+                      number(medium, "anisotropy"));
+  return name;
+}
+
+}  // namespace etendue::pbrt_export

@@ -1,0 +1,101 @@
+#pragma once
+// A job on its way into a file of pbrt-v4.
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "components/exporters/triangles/exported_mesh.h"
+#include "etendue/describe/color.h"
+#include "etendue/exporter.h"
+#include "etendue/render/job.h"
+
+namespace etendue::pbrt_export {
+
+/// What stands around a shader in pbrt, or at the shape that has it.
+struct Surface {
+  std::string material;  ///< a name; the null material's is "interface"
+  std::string alpha;     ///< a parameter of the shape
+};
+
+class Writer {
+ public:
+  Writer(const Job& j, Exporting& e) : job(j), exporting(e) {}
+  std::string write();
+
+ private:
+  // values.cpp: parameters, each with a blank before it.
+  std::string spectrum(const char* name, const Color&, ColorUse) const;
+  /// Of light, with the scale that undoes what v4 does to a spectrum.
+  std::string light(const char* name, const Color&) const;
+  /// The light of an emission's radiance; none and a note: it is no constant.
+  std::string light_of(const Component& emission, const char* name, const SceneObject& object);
+  /// What an amount of light that is asked for multiplies the radiance by; what cannot be known is noted, and 1.
+  double amount_of(const Component& emission, const SpectralFunction& radiance, const SceneObject& object);
+
+  // maps.cpp: a parameter, whose texture is written first.
+  std::string color_map(const char* name, const Component& part, const char* member, ColorUse = ColorUse::reflectance);
+  std::string number_map(const char* name, const Component& part, const char* member);
+  std::string texture(const Component& map, bool numbers);
+  std::string value_or_texture(const char* name, const Ref<Component>& map, bool numbers, ColorUse);
+  std::string image(const Component& map, const std::string& more, bool numbers);
+
+  // shaders.cpp
+  Surface surface_of(const Component* shader);
+  std::string material_of(const Component& shader);
+  std::string parameters_of(const Component& shader, std::string& type);
+  std::string roughness_of(const Component& shader, const std::string& prefix);
+  std::string index_of(const Component& shader, const std::string& name);
+  std::string metal_of(const Component& shader, const std::string& prefix);
+  std::string layered(const Component& shader, std::string& type);
+  std::string medium_of(const Component& medium);
+
+  // objects.cpp
+  void objects(const Scene&, bool instanced);
+  void object(const SceneObject&, bool instanced);
+  /// The shape's directive; none and a note: pbrt has no such shape.
+  std::string shape(const SceneObject&, const std::string& more, bool& placed);
+  std::string mesh(const ExportedMesh&, const std::string& more);
+  std::string emission_of(const SceneObject&, bool& reversed);
+  void instance(const Component&);
+
+  // lights.cpp
+  bool light_source(const SceneObject&);
+  std::string point_light(const SceneObject&, const Component& emission);
+  std::string environment(const SceneObject&, const Component& emission);
+
+  // view.cpp
+  void view();
+  void camera();
+  void film();
+  void integrator();
+
+  std::string transform_of(const AnimatedTransform&, const char* directive);
+
+  const Job& job;
+  Exporting& exporting;
+  std::string out_;
+  std::map<const Component*, std::string> materials_, textures_, media_, instanced_;
+};
+
+/// "[ 1 2 3 ]"
+std::string list(const auto& numbers) {
+  std::string text = "[";
+  for (const auto n : numbers) text += fmt::format(" {}", n);
+  return text + " ]";
+}
+std::string matrix(const Transform&);
+
+// Members of a part by name; angles in degrees.
+double number(const Component&, std::string_view member);
+bool truth(const Component&, std::string_view member);
+std::string word(const Component&, std::string_view member);
+Ref<Component> part(const Component&, std::string_view member);
+std::vector<double> numbers(const Component&, std::string_view member);
+Color color(const Component&, std::string_view member);
+/// The value of a map that is the same everywhere; null: it is not.
+Color constant(const Component& map);
+
+}  // namespace etendue::pbrt_export

@@ -1,0 +1,117 @@
+#include "exported_mesh.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "components/objects/meshes/mesh_data.h"
+
+namespace etendue {
+namespace {
+
+std::vector<double> list(const Component& part, const char* member) {
+  const Value value = get(part, member);
+  const Numbers* numbers = value.as<Numbers>();
+  return numbers ? numbers->values : std::vector<double>();
+}
+
+ExportedMesh from_file(const std::string& path, std::uint32_t number, bool smooth) {
+  MeshData data = read_mesh(path, number);
+  if (smooth && data.normals.empty() && !data.faceted) smooth_normals(data);
+  ExportedMesh mesh;
+  for (const Point3& p : data.positions)
+    mesh.positions.insert(mesh.positions.end(),
+                          {double(p.x) + data.centre.x, double(p.y) + data.centre.y, double(p.z) + data.centre.z});
+  for (const Normal3& n : data.normals) mesh.normals.insert(mesh.normals.end(), {n.x, n.y, n.z});
+  for (const Point2& t : data.uvs) mesh.uvs.insert(mesh.uvs.end(), {t.x, t.y});
+  for (const auto& t : data.triangles) mesh.indices.insert(mesh.indices.end(), {t[0], t[1], t[2]});
+  return mesh;
+}
+
+ExportedMesh from_members(const SceneObject& object) {
+  const Value file = get(object, "file");
+  const FilePath* path = file.as<FilePath>();
+  ExportedMesh mesh;
+  if (path && !path->empty()) {
+    const Value number = get(object, "number"), smooth = get(object, "smooth");
+    mesh = from_file(path->resolved(), std::uint32_t(number.as<Number>()->value), *smooth.as<bool>());
+  } else {
+    mesh.positions = list(object, "positions");
+    for (const double i : list(object, "triangles")) mesh.indices.push_back(std::uint32_t(i));
+    for (const double n : list(object, "normals")) mesh.normals.push_back(float(n));
+    for (const double t : list(object, "uvs")) mesh.uvs.push_back(float(t));
+  }
+  const Value flat = get(object, "flat");
+  if (const bool* is = flat.as<bool>(); is && *is) mesh.normals.clear();
+  return mesh;
+}
+
+/// Each triangle with corners of its own, as the surface says what is there.
+ExportedMesh from_surface(const SceneObject& object, const TriangleView& view) {
+  ExportedMesh mesh;
+  bool smooth = false;
+  for (size_t t = 0; t < view.triangles.size(); ++t)
+    for (size_t corner = 0; corner < 3; ++corner) {
+      Hit hit;
+      hit.object = &object;
+      hit.primitive = std::uint32_t(t);
+      hit.u = corner == 1 ? 1.0f : 0.0f;
+      hit.v = corner == 2 ? 1.0f : 0.0f;
+      const Point3 at = view.positions[view.triangles[t][corner]];
+      SurfacePoint p;
+      object.surface_point(Ray(at, Vector3{0, 0, 1}), hit, p);
+      mesh.indices.push_back(std::uint32_t(mesh.positions.size() / 3));
+      mesh.positions.insert(mesh.positions.end(), {at.x, at.y, at.z});
+      mesh.normals.insert(mesh.normals.end(), {p.shading_normal.x, p.shading_normal.y, p.shading_normal.z});
+      mesh.uvs.insert(mesh.uvs.end(), {p.uv.x, p.uv.y});
+      smooth = smooth || dot(p.shading_normal, p.normal) < 0.99999f;
+    }
+  if (!smooth) mesh.normals.clear();
+  return mesh;
+}
+
+void append(std::string& to, const auto& value) {
+  static_assert(std::endian::native == std::endian::little);
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  to.append(bytes, sizeof value);
+}
+
+}  // namespace
+
+std::optional<ExportedMesh> mesh_of(const SceneObject& object, bool& placed) {
+  placed = false;
+  if (object.class_info().name == "TriangleMesh") return from_members(object);
+  if (object.transform.animated()) return std::nullopt;
+  // A copy, as objects may change what they hold when they are prepared.
+  const Ref<SceneObject> twin = ref_cast<SceneObject>(copy(object));
+  prepare_tree(*twin);
+  const std::optional<TriangleView> view = twin->triangles();
+  if (!view) return std::nullopt;
+  placed = true;
+  return from_surface(*twin, *view);
+}
+
+std::string ply_of(const ExportedMesh& mesh) {
+  const size_t vertices = mesh.positions.size() / 3, triangles = mesh.indices.size() / 3;
+  std::string text = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n",
+      vertices);
+  if (!mesh.normals.empty()) text += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (!mesh.uvs.empty()) text += "property float u\nproperty float v\n";
+  text += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", triangles);
+  for (size_t i = 0; i < vertices; ++i) {
+    for (size_t c = 0; c < 3; ++c) append(text, float(mesh.positions[3 * i + c]));
+    for (size_t c = 0; c < 3 && !mesh.normals.empty(); ++c) append(text, mesh.normals[3 * i + c]);
+    for (size_t c = 0; c < 2 && !mesh.uvs.empty(); ++c) append(text, mesh.uvs[2 * i + c]);
+  }
+  for (size_t t = 0; t < triangles; ++t) {
+    text += char(3);
+    for (size_t c = 0; c < 3; ++c) append(text, std::int32_t(mesh.indices[3 * t + c]));
+  }
+  return text;
+}
+
+}  // namespace etendue

@@ -1,0 +1,147 @@
+#pragma once
+// The directives of pbrt files, each a function that reads what follows its name.
+
+#include <fmt/format.h>
+
+#include "files/regular_file.h"
+#include "reader.h"
+
+namespace etendue::pbrt {
+
+/// A file that is being read.
+struct Source {
+  std::string path, folder;
+  std::shared_ptr<FileContents> contents;
+  std::unique_ptr<Lexer> lexer;
+  bool import = false;  ///< v4's Import: what it sets is forgotten at its end
+  size_t nested = 0;    ///< how many states were kept when it began
+};
+
+/// Goes through a file and those it includes.
+class Directives {
+ public:
+  explicit Directives(Reader& reader) : r(reader) { r.state.space = &rgb_space("srgb"); }
+
+  void read(std::string_view text);
+
+ private:
+  // directives.cpp
+  using Handler = void (Directives::*)();
+  struct Directive {
+    const char* name;
+    Handler handler;
+  };
+  static const std::vector<Directive>& table();
+  static Handler handler_of(std::string_view name) {
+    for (const Directive& d : table())
+      if (name == d.name) return d.handler;
+    return nullptr;
+  }
+
+  Lexer& lexer();
+
+  void step();
+
+  std::string unknown() const;
+
+  /// Goes on at the next directive, if the text can still be taken apart.
+  void recover(bool lexing);
+
+  void end_source();
+
+  // What follows a directive.
+  template <size_t count>
+  std::array<double, count> numbers() {
+    const bool list = lexer().peek().is(Token::Kind::open);
+    if (list) lexer().next();
+    std::array<double, count> all{};
+    for (double& n : all) {
+      const Token t = lexer().next();
+      if (!t.is(Token::Kind::word) || !parse_number(t.text, n))
+        throw Error(fmt::format("{} needs {} numbers", token_.text, count), t.end() ? at_ : lexer().place(t));
+    }
+    if (list && !lexer().next().is(Token::Kind::close))
+      throw Error(fmt::format("{} needs {} numbers", token_.text, count), at_);
+    return all;
+  }
+  std::string text();
+  Parameters parameters(const std::string& type, int target = -1);
+  void need_world();
+  void need_options();
+
+  // directives_transforms.cpp
+  void apply(const Transform& t);
+  void put(const std::array<Transform, 2>& to);
+  Transform matrix();
+  Transform checked(const Transform& t);
+  void identity();
+  void translate();
+  void scale();
+  void rotate();
+  void look_at();
+  void transform();
+  void concat_transform();
+  void coordinate_system();
+  void coordinate_system_transform();
+  void transform_times();
+  void active_transform();
+
+  // directives_states.cpp
+  struct Kept {
+    State state;
+    const char* what;
+    Location at;
+  };
+  void keep(const char* what);
+  void give_back(const char* what, bool transform_only);
+  void attribute_begin();
+  void attribute_end();
+  void transform_begin();
+  void transform_end();
+  void object_begin();
+  void object_end();
+  void object_instance();
+  void reverse_orientation();
+  void attribute();
+
+  // directives_settings.cpp
+  void set(Setting& setting);
+  void camera();
+  void film();
+  void filter();
+  void sampler();
+  void integrator();
+  void without_effect();
+  void left_out();
+  void option();
+  void color_space();
+  void world_begin();
+  void world_end();
+
+  // directives_world.cpp
+  void material();
+  void make_named_material();
+  void named_material();
+  void texture();
+  void shape();
+  void light_source();
+  void area_light_source();
+  void make_named_medium();
+  void medium_interface();
+
+  void include_file(bool import);
+  void include();
+  void import();
+
+  Reader& r;
+  std::vector<Source> sources_;
+  std::vector<Kept> kept_;
+  std::map<std::string, std::array<Transform, 2>, std::less<>> named_systems_;
+  std::vector<Error> errors_;
+  Token token_;
+  Location at_;
+  size_t included_ = 0;
+  bool world_ = false, told_rest_ = false;
+};
+
+}  // namespace etendue::pbrt

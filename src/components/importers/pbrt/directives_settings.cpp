@@ -1,0 +1,87 @@
+// What stands before WorldBegin.
+
+#include "directives.h"
+
+namespace etendue::pbrt {
+
+void Directives::set(Setting& setting) {
+  need_options();
+  if (setting.given) r.importing.inexact(fmt::format("{} is given again: the last one counts", token_.text), at_);
+  setting.type = text();
+  setting.parameters = parameters(setting.type);
+  setting.given = true;
+}
+
+void Directives::camera() {
+  set(r.camera);
+  std::array<Transform, 2> inverse;
+  for (size_t i = 0; i < 2; ++i) inverse[i] = r.state.ctm[i].inverse();
+  named_systems_["camera"] = inverse;
+  std::swap(r.state.ctm, inverse);
+  r.camera_to_world = r.to_world(Transform());
+  std::swap(r.state.ctm, inverse);
+  if (!r.state.outside.empty())
+    r.importing.inexact(fmt::format("the medium '{}' around the camera is left out", r.state.outside), at_);
+}
+
+void Directives::film() { set(r.film); }
+
+void Directives::filter() { set(r.filter); }
+
+void Directives::sampler() { set(r.sampler); }
+
+void Directives::integrator() { set(r.integrator); }
+
+void Directives::without_effect() {
+  // What finds intersections and how: the same picture.
+  const std::string type = text();
+  parameters(type).forget();
+}
+
+void Directives::left_out() {
+  const std::string type = text();
+  parameters(type).forget();
+  r.importing.inexact(fmt::format("{} \"{}\" is of an older pbrt, and left out", token_.text, type), at_);
+}
+
+void Directives::option() {
+  need_options();
+  const Parameters p = Parameters::read(lexer(), "Option", at_);
+  for (const Parameter& o : p.own)
+    if (o.name != "seed" && o.name != "rendercoordsys" && o.name != "msereferenceimage" && o.name != "msereferenceout")
+      r.importing.inexact(fmt::format("the option '{}' is left out", o.name), o.at);
+}
+
+void Directives::color_space() {
+  const std::string name = text();
+  const std::pair<const char*, const char*> spaces[] = {
+      {"srgb", "srgb"}, {"rec2020", "rec2020"}, {"aces2065-1", "aces2065-1"}, {"dci-p3", "display_p3"}};
+  for (const auto& [pbrt, ours] : spaces)
+    if (name == pbrt) {
+      r.state.space = &rgb_space(ours);
+      return;
+    }
+  throw Error(
+      fmt::format("there is no colour space '{}'{}", name, suggestion(name, {"srgb", "rec2020", "aces2065-1", "dci-p3"})), at_);
+}
+
+void Directives::world_begin() {
+  need_options();
+  world_ = true;
+  r.state.ctm = {};
+  r.state.active = 3;
+  named_systems_["world"] = r.state.ctm;
+  r.exposure = imaging_ratio(r);
+}
+
+void Directives::world_end() {
+  need_world();
+  // Nothing else counts: v3 takes what follows for another scene.
+  while (!lexer().peek().end()) {
+    const Token t = lexer().next();
+    if (!told_rest_) r.importing.inexact("what stands after WorldEnd is left out", lexer().place(t));
+    told_rest_ = true;
+  }
+}
+
+}  // namespace etendue::pbrt

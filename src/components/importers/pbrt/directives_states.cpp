@@ -1,0 +1,104 @@
+// What is kept and given back: attributes, objects, and other files.
+
+#include <algorithm>
+#include <filesystem>
+
+#include "directives.h"
+
+namespace etendue::pbrt {
+
+namespace {
+constexpr size_t most_nested = 100'000, most_included = 10'000, most_deep = 64;
+}  // namespace
+
+void Directives::keep(const char* what) {
+  if (kept_.size() >= most_nested) throw Error(fmt::format("states nest more than {} deep", most_nested), at_);
+  kept_.push_back({r.state, what, at_});
+}
+
+void Directives::give_back(const char* what, bool transform_only) {
+  if (kept_.empty() || (sources_.size() > 1 && sources_.back().import && kept_.size() <= sources_.back().nested + 1))
+    throw Error(fmt::format("{}End without {}Begin", what, what), at_);
+  if (std::string_view(kept_.back().what) != what)
+    throw Error(fmt::format("{}End ends the {}Begin of line {}", what, kept_.back().what, kept_.back().at.line), at_);
+  if (transform_only) {
+    r.state.ctm = kept_.back().state.ctm;
+    r.state.active = kept_.back().state.active;
+  } else {
+    r.state = std::move(kept_.back().state);
+  }
+  kept_.pop_back();
+}
+
+void Directives::attribute_begin() { keep("Attribute"); }
+
+void Directives::attribute_end() { give_back("Attribute", false); }
+
+void Directives::transform_begin() { keep("Transform"); }
+
+void Directives::transform_end() { give_back("Transform", true); }
+
+void Directives::object_begin() {
+  need_world();
+  r.begin_object(text(), at_);
+  keep("Object");
+}
+
+void Directives::object_end() {
+  give_back("Object", false);
+  r.end_object(at_);
+}
+
+void Directives::object_instance() {
+  need_world();
+  r.instance(text(), at_);
+}
+
+void Directives::reverse_orientation() { r.state.reversed = !r.state.reversed; }
+
+void Directives::attribute() {
+  const std::string target = text();
+  const auto found = std::ranges::find(attribute_targets, target);
+  if (found == attribute_targets.end())
+    throw Error(fmt::format("Attribute is of shape, light, material, medium or texture, not '{}'", target), at_);
+  Parameters p = parameters(target);
+  auto& list = r.state.defaults[size_t(found - attribute_targets.begin())];
+  // The newest first: it is what is found.
+  if (list) p.own.insert(p.own.end(), list->begin(), list->end());
+  list = std::make_shared<const std::vector<Parameter>>(std::move(p.own));
+}
+
+void Directives::include_file(bool import) {
+  const Token named = lexer().peek();
+  const std::string name = text();
+  const Location at = lexer().place(named);
+  if (sources_.size() >= most_deep) throw Error(fmt::format("files include each other more than {} deep", most_deep), at);
+  if (++included_ > most_included) throw Error(fmt::format("more than {} files are included", most_included), at);
+  Source source;
+  source.path = r.importing.file(name, at, sources_.back().folder);
+  if (source.path.ends_with(".gz"))
+    throw Error("compressed files are not read: unpack it with gunzip and take .gz from its name", at);
+  std::error_code error;
+  for (const Source& outer : sources_)
+    if (std::filesystem::equivalent(outer.path, source.path, error)) throw Error(fmt::format("'{}' includes itself", name), at);
+  source.folder = std::filesystem::path(source.path).parent_path().string();
+  try {
+    source.contents = std::make_shared<FileContents>(source.path);
+  } catch (const Error& e) {
+    throw Error(fmt::format("cannot read '{}': {}", name, e.what()), at);
+  }
+  source.lexer = std::make_unique<Lexer>(source.contents->text(), intern(source.path));
+  source.import = import;
+  source.nested = kept_.size();
+  if (import) keep("Import");
+  sources_.push_back(std::move(source));
+}
+
+void Directives::include() { include_file(false); }
+
+void Directives::import() {
+  need_world();
+  include_file(true);
+}
+
+}  // namespace etendue::pbrt

@@ -1,0 +1,73 @@
+// Materials, textures, shapes, lights and media.
+
+#include "directives.h"
+
+namespace etendue::pbrt {
+
+void Directives::material() {
+  Material m;
+  m.type = text();
+  m.parameters = parameters(m.type, 2);
+  r.state.material = r.materials.size();
+  r.state.named_material.clear();
+  r.materials.push_back(std::move(m));
+}
+
+void Directives::make_named_material() {
+  Material m;
+  m.name = text();
+  m.parameters = parameters(m.name, 2);
+  m.type = m.parameters.text("type");
+  if (m.type.empty()) throw Error(fmt::format("the material '{}' needs its \"string type\"", m.name), at_);
+  r.named_materials[m.name] = r.materials.size();
+  r.materials.push_back(std::move(m));
+}
+
+void Directives::named_material() {
+  r.state.named_material = text();
+  // v3 may give a name to another material later; v4 may give it for the first time.
+  if (const auto found = r.named_materials.find(r.state.named_material); found != r.named_materials.end()) {
+    r.state.material = found->second;
+    if (r.version == 3) r.state.named_material.clear();
+  }
+}
+
+void Directives::texture() {
+  const std::string name = text(), kind = text(), type = text();
+  make_texture(r, name, kind, type, parameters(type, 4));
+}
+
+void Directives::shape() {
+  need_world();
+  const std::string type = text();
+  r.shape(type, parameters(type, 0));
+}
+
+void Directives::light_source() {
+  need_world();
+  const std::string type = text();
+  Parameters p = parameters(type, 1);
+  if (r.in_object()) throw Error("an object that is instanced cannot hold lights", at_);
+  make_light(r, type, std::move(p));
+}
+
+void Directives::area_light_source() {
+  auto light = std::make_shared<AreaLight>();
+  light->type = text();
+  light->parameters = parameters(light->type, 1);
+  if (light->type != "diffuse" && light->type != "area")
+    throw Error(fmt::format("there is no area light '{}', but 'diffuse'", light->type), at_);
+  r.state.light = std::move(light);
+}
+
+void Directives::make_named_medium() {
+  const std::string name = text();
+  make_medium(r, name, parameters(name, 3));
+}
+
+void Directives::medium_interface() {
+  r.state.inside = r.state.outside = text();
+  if (lexer().peek().is(Token::Kind::string)) r.state.outside = text();
+}
+
+}  // namespace etendue::pbrt

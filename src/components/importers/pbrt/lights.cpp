@@ -1,0 +1,190 @@
+// Lights, and surfaces that emit.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reader.h"
+
+namespace etendue::pbrt {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// The light of a parameter times "scale" (which v3 has as a spectrum), times what the sensor makes of it.
+Color light_of(Reader& reader, const Parameters& p, const char* name, double more = 1) {
+  const Parameter* given = p.find(name);
+  const Color color = given ? spectrum_of(reader, p, *given, Use::light) : rgb_color(p.space ? p.space->name : "srgb", 1, 1, 1);
+  double scale = more * reader.exposure;
+  if (const Parameter* s = p.find("scale")) {
+    if (s->is("float")) {
+      scale *= p.number("scale", 1);
+    } else if (s->numbers.size() == 3) {
+      // v3's scale is a colour.
+      const auto& n = s->numbers;
+      if (n[0] == n[1] && n[1] == n[2]) {
+        scale *= n[0];
+      } else if (given && given->numbers.size() == 3) {
+        Parameter product = *given;
+        for (size_t i = 0; i < 3; ++i) product.numbers[i] *= n[i];
+        return scaled_spectrum(scale, spectrum_of(reader, p, product, Use::light));
+      } else {
+        reader.importing.inexact("a scale that is a colour is its mean here", s->at);
+        scale *= (n[0] + n[1] + n[2]) / 3;
+      }
+    } else {
+      scale *= double(to_xyz(*spectrum_of(reader, p, *s, Use::coefficient), ColorUse::coefficient).y);
+    }
+  }
+  if (scale < 0) throw Error("a light's scale must not be negative", p.place("scale"));
+  return scale == 1 ? color : scaled_spectrum(scale, color);
+}
+
+/// Of v4's "power" in lumens, which takes the place of what the scale gives; `per_unit` is that of an intensity of 1.
+double power_factor(const Parameters& p, double per_unit) {
+  const double power = p.number("power", -1);
+  return power > 0 ? power / per_unit : 1;
+}
+
+Numbers list(const DoublePoint3& p) { return {{p.x, p.y, p.z}, 1, Dimension::none}; }
+Numbers way(const DoublePoint3& from, const DoublePoint3& to, const Parameters& p) {
+  if (from == to) throw Error(fmt::format("'from' and 'to' of {} are the same point", p.of), p.place("to"));
+  return {{to.x - from.x, to.y - from.y, to.z - from.z}, 1, Dimension::none};
+}
+
+Ref<Component> placed(Reader& reader, const char* class_name, const Parameters& p, const Transform& inner = {}) {
+  const Ref<Component> object = reader.make(class_name, p.at);
+  const AnimatedTransform transform = reader.to_world(inner);
+  if (!transform.valid()) throw Error(fmt::format("{} cannot be placed: its transform cannot be inverted", p.of), p.at);
+  set_member(*object, "transform", transform, p.at);
+  return object;
+}
+
+void add_light(Reader& reader, const Ref<Component>& object, const Ref<Component>& emission, Location at) {
+  set_emission(*object, emission, at);
+  reader.add(object);
+}
+
+void point(Reader& reader, const Parameters& p) {
+  const Ref<Component> emission = reader.make("DiffuseEmission", p.at);
+  set_member(*emission, "radiance", light_of(reader, p, "I", power_factor(p, 4 * pi)), p.at);
+  const Ref<Component> object = placed(reader, "Point", p);
+  set_member(*object, "position", list(p.point("from", {0, 0, 0})), p.at);
+  add_light(reader, object, emission, p.at);
+}
+
+void spot(Reader& reader, const Parameters& p) {
+  const double outer = p.number("coneangle", 30), inner = outer - p.number("conedeltaangle", 5);
+  if (!(outer > 0 && outer <= 180)) throw Error("'coneangle' must be more than 0 and at most 180", p.place("coneangle"));
+  if (!(inner >= 0 && inner <= outer)) throw Error("'conedeltaangle' must be from 0 to 'coneangle'", p.place("conedeltaangle"));
+  const double begin = std::cos(inner * pi / 180), end = std::cos(outer * pi / 180);
+  const Ref<Component> emission = reader.make("SpotEmission", p.at);
+  set_member(*emission, "radiance", light_of(reader, p, "I", power_factor(p, 2 * pi * ((1 - begin) + (begin - end) / 2))),
+             p.at);
+  const DoublePoint3 from = p.point("from", {0, 0, 0});
+  set_member(*emission, "axis", way(from, p.point("to", {0, 0, 1}), p), p.at);
+  set_member(*emission, "inner_angle", inner, p.at);
+  set_member(*emission, "outer_angle", outer, p.at);
+  if (reader.version == 3) reader.importing.inexact("a spot's edge falls off as t^2 (3 - 2 t), not as v3's t^4", p.at);
+  const Ref<Component> object = placed(reader, "Point", p);
+  set_member(*object, "position", list(from), p.at);
+  add_light(reader, object, emission, p.at);
+}
+
+void distant(Reader& reader, const Parameters& p) {
+  const Ref<Component> emission = reader.make("DiffuseEmission", p.at);
+  // An irradiance of 1 on a plane across the light; v4's "illuminance" says that it is so much.
+  const double lux = p.number("illuminance", -1);
+  set_member(*emission, "radiance", light_of(reader, p, "L", lux > 0 ? lux : 1), p.at);
+  const Ref<Component> object = placed(reader, "Distant", p);
+  set_member(*object, "direction", way(p.point("from", {0, 0, 0}), p.point("to", {0, 0, 1}), p), p.at);
+  add_light(reader, object, emission, p.at);
+}
+
+/// pbrt's light looks along +z with the image's right towards +x and its top towards -y: half a turn from ours.
+void projection(Reader& reader, const Parameters& p) {
+  const auto file = image_file(reader, p, p.has("mapname") ? "mapname" : "filename");
+  if (!file) return;
+  const Ref<Component> emission = reader.make("ProjectorEmission", p.at);
+  set_member(*emission, "file", *file, p.at);
+  set_member(*emission, "fov", p.number("fov", reader.version == 3 ? 45 : 90), p.at);
+  set_member(*emission, "fov_axis", "smaller", p.at);
+  set_member(*emission, "scale", p.number("scale", 1) * reader.exposure, p.at);
+  if (const double power = p.number("power", -1); power > 0)
+    set_member(*emission, "luminous_flux", power * luminous_unit * reader.exposure, p.at);
+  if (p.has("I")) reader.importing.inexact("the intensity of a projection light is that of its image", p.place("I"));
+  reader.importing.inexact(
+      "a projected image is even on a screen; pbrt's is even over directions, darker towards the edges of a screen", p.at);
+  add_light(reader, placed(reader, "Point", p, Transform::rotate(pi, {0, 0, 1})), emission, p.at);
+}
+
+void goniometric(Reader& reader, const Parameters& p) {
+  p.ignore({"mapname", "filename"});
+  reader.importing.inexact("a goniometric light shines alike in all directions here: its image is not read", p.at);
+  const Ref<Component> emission = reader.make("DiffuseEmission", p.at);
+  set_member(*emission, "radiance", light_of(reader, p, "I", power_factor(p, 4 * pi)), p.at);
+  add_light(reader, placed(reader, "Point", p), emission, p.at);
+}
+
+}  // namespace
+
+void set_emission(Component& object, const Ref<Component>& emission, Location at) {
+  set_member(object, "emission", emission, at);
+}
+
+Ref<Component> area_emission(Reader& reader, AreaLight& light, bool turned, size_t pieces) {
+  Ref<Component>& made = light.made[turned ? 1 : 0];
+  const Parameters& p = light.parameters;
+  const double power = p.number("power", -1);
+  if (made && power <= 0) return made;
+  const Location at = p.at;
+  const bool two_sided = p.boolean("twosided", false);
+  const Ref<Component> emission = reader.make("DiffuseEmission", at);
+  set_member(*emission, "sides", two_sided ? "both" : turned ? "back" : "front", at);
+  if (p.has("filename")) {
+    if (const auto file = image_file(reader, p, "filename")) {
+      const Ref<Component> image = reader.make("ImageMap", at), product = reader.make("MultiplyMap", at);
+      set_member(*image, "file", *file, at);
+      set_member(*image, "wrap", "clamp", at);
+      set_member(*product, "first", image, at);
+      set_member(*product, "second", p.number("scale", 1) * reader.exposure, at);
+      set_member(*emission, "radiance", product, at);
+    }
+  } else {
+    set_member(*emission, "radiance", light_of(reader, p, "L"), at);
+  }
+  if (power > 0) {
+    // pbrt has a light of this power for each triangle.
+    set_member(*emission, "luminous_flux", power * luminous_unit * reader.exposure * double(pieces), at);
+    if (pieces > 1)
+      reader.importing.inexact("each triangle of a light has the power given in pbrt; here they have it together, by area", at);
+  }
+  p.ignore({"nsamples", "samples"});
+  if (!made) p.tell_unused(reader.importing);
+  made = emission;
+  return made;
+}
+
+void make_light(Reader& reader, const std::string& type, Parameters&& p) {
+  p.ignore({"nsamples", "samples"});
+  if (type == "point")
+    point(reader, p);
+  else if (type == "spot")
+    spot(reader, p);
+  else if (type == "distant")
+    distant(reader, p);
+  else if (type == "infinite" || type == "exinfinite")
+    make_environment(reader, p);
+  else if (type == "projection")
+    projection(reader, p);
+  else if (type == "goniometric")
+    goniometric(reader, p);
+  else
+    throw Error(fmt::format("there is no light '{}'{}", type,
+                            suggestion(type, {"point", "spot", "distant", "infinite", "projection", "goniometric"})),
+                p.at);
+  p.tell_unused(reader.importing);
+}
+
+}  // namespace etendue::pbrt

@@ -1,0 +1,126 @@
+// What all materials have in common, and mixtures of them.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reader.h"
+
+namespace etendue::pbrt {
+
+namespace {
+
+constexpr const char* v4_materials[] = {"diffuse",        "coateddiffuse",       "coatedconductor", "conductor", "dielectric",
+                                        "thindielectric", "diffusetransmission", "measured",        "mix",       "interface",
+                                        "hair",           "subsurface"};
+constexpr const char* v3_materials[] = {"matte",  "plastic",     "uber",   "glass",   "metal",       "substrate",
+                                        "mirror", "translucent", "disney", "fourier", "kdsubsurface"};
+
+/// pbrt's formula of v4: alpha is the root of the roughness; of v3, a polynomial of its logarithm.
+Value alpha_of(Reader& reader, Location at, Value roughness, bool remap, bool v3) {
+  if (!remap) return roughness;
+  if (const Number* n = roughness.as<Number>())
+    return Value(Number{v3 ? v3_alpha(n->value) : std::sqrt(std::max(n->value, 0.0))}, at);
+  const char* text = v3 ? "1.62142 + log(max(r, 0.001)) * (0.819955 + log(max(r, 0.001)) * (0.1734 + log(max(r, 0.001)) * "
+                          "(0.0171201 + log(max(r, 0.001)) * 0.000640711)))"
+                        : "sqrt(max(r, 0))";
+  return Value(formula(reader, at, text, {{"r", roughness}}), at);
+}
+
+Ref<Component> mix(Reader& reader, const Material& m) {
+  const Parameters& p = m.parameters;
+  std::vector<std::string> names = p.texts("materials");
+  if (names.empty()) names = {p.text("namedmaterial1"), p.text("namedmaterial2")};
+  if (names.size() != 2 || names[0].empty() || names[1].empty())
+    throw Error("a mixture needs the names of two materials", p.place("materials"));
+  const Ref<Component> shader = reader.make("MixShader", p.at, m.name);
+  const bool v3 = p.has("namedmaterial1");
+  // v3's amount is the share of the first, v4's of the second.
+  set_map(*shader, v3 ? "second" : "first", Value(shader_named(reader, names[0], p.at)), p.at);
+  set_map(*shader, v3 ? "first" : "second", Value(shader_named(reader, names[1], p.at)), p.at);
+  if (v3) {
+    const Value amount = color_map(reader, p, {"amount"}, 0.5, Use::reflectance);
+    if (const Color* c = amount.as<Color>())
+      set_member(*shader, "amount", double(to_xyz(**c, ColorUse::reflectance, illuminant_spectrum("D65").get()).y), p.at);
+    else
+      set_map(*shader, "amount", amount, p.at);
+  } else {
+    set_map(*shader, "amount", number_map(reader, p, {"amount"}, 0.5), p.at);
+  }
+  return shader;
+}
+
+/// Bumps and normals around a shader.
+Ref<Component> with_relief(Reader& reader, const Parameters& p, Ref<Component> shader) {
+  if (const Parameter* bump = p.first_of({"displacement", "bumpmap"})) {
+    const Ref<Component> outer = reader.make("BumpShader", p.at);
+    set_member(*outer, "shader", shader, p.at);
+    set_map(*outer, "height", number_map(reader, p, {bump->name}, 0), p.at);
+    shader = outer;
+  }
+  if (p.has("normalmap"))
+    if (const auto file = image_file(reader, p, "normalmap")) {
+      const Ref<Component> outer = reader.make("NormalMapShader", p.at);
+      set_member(*outer, "shader", shader, p.at);
+      set_member(*outer, "file", *file, p.at);
+      shader = outer;
+    }
+  return shader;
+}
+
+}  // namespace
+
+double v3_alpha(double roughness) {
+  const double x = std::log(std::max(roughness, 1e-3));
+  return 1.62142 + x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)));
+}
+
+void set_roughness(Reader& reader, Component& shader, const Parameters& p, double otherwise, bool v3,
+                   const std::string& prefix) {
+  const std::string r = prefix + "roughness", u = prefix + "uroughness", v = prefix + "vroughness";
+  const bool remap = p.boolean("remaproughness", true);
+  const auto alpha = [&](std::initializer_list<std::string_view> names) {
+    Value roughness = number_map(reader, p, names, otherwise);
+    // v3's glass is smooth where nothing says otherwise, and so is v4's at 0.
+    const Number* n = roughness.as<Number>();
+    if (n && n->value == 0) return roughness;
+    return alpha_of(reader, p.at, std::move(roughness), remap, v3);
+  };
+  set_map(shader, "roughness", alpha({u, r}), p.at);
+  const Parameter* across = p.find(v);
+  if (p.has(u) || across) set_map(shader, "roughness_v", alpha({v, r}), p.at);
+  set_member(shader, "multiple_scattering", false, p.at);
+}
+
+std::vector<std::string> material_names() {
+  std::vector<std::string> all(std::begin(v4_materials), std::end(v4_materials));
+  all.insert(all.end(), std::begin(v3_materials), std::end(v3_materials));
+  return all;
+}
+
+Ref<Component> shader_of(Reader& reader, size_t index, Location used_at) {
+  Material& m = reader.materials[index];
+  if (m.shader) return m.shader;
+  if (m.making) throw Error(fmt::format("the material '{}' is a mixture of itself", m.name), used_at);
+  m.making = true;
+  Ref<Component> shader = m.type == "mix" ? mix(reader, m) : make_v4_shader(reader, m);
+  if (!shader) shader = make_v3_shader(reader, m);
+  if (!shader)
+    throw Error(fmt::format("there is no material '{}'{}", m.type, suggestion(m.type, material_names())), m.parameters.at);
+  shader = with_relief(reader, m.parameters, shader);
+  if (shader->origin) shader->origin->name = m.name;
+  m.parameters.tell_unused(reader.importing);
+  m.shader = shader;
+  return shader;
+}
+
+Ref<Component> shader_named(Reader& reader, const std::string& name, Location used_at) {
+  const auto found = reader.named_materials.find(name);
+  if (found != reader.named_materials.end()) return shader_of(reader, found->second, used_at);
+  std::vector<std::string> known;
+  for (const auto& [n, index] : reader.named_materials) known.push_back(n);
+  throw Error(fmt::format("there is no material named '{}'{}", name, suggestion(name, known)), used_at);
+}
+
+}  // namespace etendue::pbrt

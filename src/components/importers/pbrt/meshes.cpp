@@ -1,0 +1,284 @@
+// Meshes: written out, from files, of patches, subdivided.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "components/objects/meshes/mesh_data.h"
+#include "reader.h"
+
+namespace etendue::pbrt {
+
+namespace {
+
+using Vertex = std::array<double, 3>;
+Vertex difference(const std::vector<double>& p, size_t a, size_t b) {
+  return {p[3 * a] - p[3 * b], p[3 * a + 1] - p[3 * b + 1], p[3 * a + 2] - p[3 * b + 2]};
+}
+Vertex across(const Vertex& a, const Vertex& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Vertices of a list, checked: whole numbers of vertices that there are.
+void check_indices(const Parameters& p, const std::vector<double>& indices, size_t vertices) {
+  for (const double i : indices)
+    if (!(i >= 0 && i < double(vertices) && i == std::floor(i)))
+      throw Error(fmt::format("{} names the vertex {}, but there are {}, counted from 0", p.of, i, vertices),
+                  p.place("indices"));
+}
+
+/// pbrt's front is where the vertices' normals point; here it is where a triangle's corners run counter-clockwise.
+void face_normals(const std::vector<double>& positions, const std::vector<double>& normals, std::vector<double>& indices) {
+  for (size_t t = 0; t + 2 < indices.size(); t += 3) {
+    const size_t a = size_t(indices[t]), b = size_t(indices[t + 1]), c = size_t(indices[t + 2]);
+    const Vertex face = across(difference(positions, b, a), difference(positions, c, a));
+    double along = 0;
+    for (const size_t v : {a, b, c})
+      for (size_t i = 0; i < 3; ++i) along += face[i] * normals[3 * v + i];
+    if (along < 0) std::swap(indices[t + 1], indices[t + 2]);
+  }
+}
+
+struct Mesh {
+  std::vector<double> positions, normals, uvs, indices;
+};
+
+/// Turned over when the state says so.
+Shape object_of(Reader& reader, Mesh&& mesh, Location at) {
+  if (!mesh.normals.empty()) face_normals(mesh.positions, mesh.normals, mesh.indices);
+  if (reader.state.reversed) {
+    for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
+    for (double& n : mesh.normals) n = -n;
+  }
+  const Ref<Component> object = reader.make("TriangleMesh", at);
+  const size_t triangles = mesh.indices.size() / 3;
+  const auto give = [&](const char* member, std::vector<double>&& list, int width) {
+    if (!list.empty()) set_member(*object, member, Numbers{std::move(list), width, Dimension::none}, at);
+    list = {};
+  };
+  give("positions", std::move(mesh.positions), 3);
+  give("triangles", std::move(mesh.indices), 1);
+  give("normals", std::move(mesh.normals), 3);
+  give("uvs", std::move(mesh.uvs), 2);
+  return {object, {}, false, triangles};
+}
+
+Shape triangle_mesh(Reader& reader, Parameters& p) {
+  Mesh mesh;
+  mesh.positions = p.take_numbers("P", 3);
+  mesh.indices = p.take_numbers("indices");
+  const size_t vertices = mesh.positions.size() / 3;
+  if (vertices == 0) throw Error(fmt::format("{} needs vertices, 'P'", p.of), p.place("P"));
+  if (mesh.indices.empty() && vertices == 3) mesh.indices = {0, 1, 2};
+  if (mesh.indices.empty() || mesh.indices.size() % 3 != 0)
+    throw Error(fmt::format("{} has {} indices, but each triangle takes 3", p.of, mesh.indices.size()), p.place("indices"));
+  check_indices(p, mesh.indices, vertices);
+  const auto by_vertex = [&](std::vector<double> list, size_t width, const char* name) {
+    if (list.empty() || list.size() == vertices * width) return list;
+    throw Error(fmt::format("{} has {} '{}' for {} vertices", p.of, list.size() / width, name, vertices), p.place(name));
+  };
+  mesh.normals = by_vertex(p.take_numbers("N", 3), 3, "N");
+  for (const char* name : {"uv", "st", "UV"})
+    if (mesh.uvs.empty()) mesh.uvs = by_vertex(p.take_numbers(name, 2), 2, name);
+  return object_of(reader, std::move(mesh), p.at);
+}
+
+/// A file's triangles written out: where the way they face matters, which the file's own normals say.
+Shape read_out(Reader& reader, const std::string& path, Location at) {
+  const MeshData data = read_mesh(path);
+  Mesh mesh;
+  for (const Point3& q : data.positions)
+    mesh.positions.insert(mesh.positions.end(),
+                          {double(q.x) + data.centre.x, double(q.y) + data.centre.y, double(q.z) + data.centre.z});
+  for (const auto& t : data.triangles) mesh.indices.insert(mesh.indices.end(), {double(t[0]), double(t[1]), double(t[2])});
+  for (const Normal3& n : data.normals) mesh.normals.insert(mesh.normals.end(), {double(n.x), double(n.y), double(n.z)});
+  for (const Point2& t : data.uvs) mesh.uvs.insert(mesh.uvs.end(), {double(t.x), double(t.y)});
+  return object_of(reader, std::move(mesh), at);
+}
+
+Shape ply_mesh(Reader& reader, const Parameters& p) {
+  const std::string named = p.text("filename");
+  if (named.empty()) throw Error(fmt::format("{} needs 'filename'", p.of), p.at);
+  const std::string path = reader.importing.file(named, p.place("filename"), p.folder);
+  if (path.ends_with(".gz"))
+    throw Error("compressed PLY files are not read: unpack it with gunzip and take .gz from its name", p.place("filename"));
+  if (p.has("displacement")) {
+    const Ref<Component> inner = reader.make("TriangleMesh", p.at);
+    set_member(*inner, "file", FilePath{path, {}}, p.place("filename"));
+    const Ref<Component> moved = reader.make("DisplacedMesh", p.at);
+    set_member(*moved, "surface", inner, p.at);
+    set_map(*moved, "displacement", number_map(reader, p, {"displacement"}, 0), p.at);
+    set_member(*moved, "edge_length", p.number("edgelength", 1), p.at);
+    return {moved, {}, reader.state.reversed};
+  }
+  if (reader.state.light || reader.state.reversed) {
+    try {
+      return read_out(reader, path, p.at);
+    } catch (const Error& e) {
+      throw Error(e.what(), p.place("filename"));
+    }
+  }
+  const Ref<Component> object = reader.make("TriangleMesh", p.at);
+  set_member(*object, "file", FilePath{path, {}}, p.place("filename"));
+  return {object, {}};
+}
+
+Shape bilinear_mesh(Reader& reader, Parameters& p) {
+  std::vector<double> points = p.take_numbers("P", 3), indices = p.take_numbers("indices");
+  const size_t vertices = points.size() / 3;
+  if (vertices == 0) throw Error(fmt::format("{} needs vertices, 'P'", p.of), p.place("P"));
+  if (indices.empty() && vertices == 4) indices = {0, 1, 2, 3};
+  if (indices.empty() || indices.size() % 4 != 0)
+    throw Error(fmt::format("{} has {} indices, but each patch takes 4", p.of, indices.size()), p.place("indices"));
+  check_indices(p, indices, vertices);
+  if (p.has("N")) reader.importing.inexact("normals of vertices of bilinear patches are left out", p.place("N"));
+  if (p.has("uv")) reader.importing.inexact("each bilinear patch has its own surface coordinates from 0 to 1", p.place("uv"));
+  const size_t patches = indices.size() / 4;
+  const size_t a = size_t(indices[0]), b = size_t(indices[1]), c = size_t(indices[2]), d = size_t(indices[3]);
+  const Vertex u = difference(points, b, a), v = difference(points, c, a), top = difference(points, d, c);
+  double off = 0, size = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    off += std::abs(top[i] - u[i]);
+    size += std::abs(u[i]) + std::abs(v[i]);
+  }
+  const bool rectangle = patches == 1 && off <= 1e-6 * size;
+  const Ref<Component> object = reader.make(rectangle ? "Rectangle" : "BezierPatches", p.at);
+  if (rectangle) {
+    set_member(*object, "corner", Numbers{{points[3 * a], points[3 * a + 1], points[3 * a + 2]}, 1, Dimension::none}, p.at);
+    set_member(*object, "edge_u", Numbers{{u[0], u[1], u[2]}, 1, Dimension::none}, p.at);
+    set_member(*object, "edge_v", Numbers{{v[0], v[1], v[2]}, 1, Dimension::none}, p.at);
+  } else {
+    set_member(*object, "degree_u", 1, p.at);
+    set_member(*object, "degree_v", 1, p.at);
+    set_member(*object, "points", Numbers{std::move(points), 3, Dimension::none}, p.at);
+    set_member(*object, "patches", Numbers{std::move(indices), 1, Dimension::none}, p.at);
+  }
+  return {object, {}, reader.state.reversed, patches};
+}
+
+Shape loop_subdivision(Reader& reader, Parameters& p) {
+  std::vector<double> points = p.take_numbers("P", 3), indices = p.take_numbers("indices");
+  if (points.empty()) throw Error(fmt::format("{} needs vertices, 'P'", p.of), p.place("P"));
+  if (indices.empty() || indices.size() % 3 != 0)
+    throw Error(fmt::format("{} has {} indices, but each triangle takes 3", p.of, indices.size()), p.place("indices"));
+  check_indices(p, indices, points.size() / 3);
+  const int levels = p.integer(p.has("nlevels") ? "nlevels" : "levels", 3);
+  const Ref<Component> object = reader.make("SubdivisionSurface", p.at);
+  set_member(*object, "positions", Numbers{std::move(points), 3, Dimension::none}, p.at);
+  set_member(*object, "indices", Numbers{std::move(indices), 1, Dimension::none}, p.at);
+  set_member(*object, "scheme", "loop", p.at);
+  set_member(*object, "levels", std::clamp(levels, 0, 10), p.at);
+  if (const std::string scheme = p.text("scheme", "loop"); scheme != "loop")
+    reader.importing.inexact(fmt::format("the scheme '{}' is taken for loop", scheme), p.place("scheme"));
+  return {object, {}, reader.state.reversed};
+}
+
+/// Heights over the unit square, of two triangles for each cell.
+Shape height_field(Reader& reader, Parameters& p) {
+  const int nu = p.integer("nu", -1), nv = p.integer("nv", -1);
+  const std::vector<double> heights = p.take_numbers("Pz");
+  if (nu < 2 || nv < 2 || double(nu) * nv != double(heights.size()))
+    throw Error(fmt::format("a height field of {} times {} cannot have {} heights", nu, nv, heights.size()), p.at);
+  Mesh mesh;
+  for (int y = 0; y < nv; ++y)
+    for (int x = 0; x < nu; ++x) {
+      const double u = double(x) / (nu - 1), v = double(y) / (nv - 1);
+      mesh.positions.insert(mesh.positions.end(), {u, v, heights[size_t(y) * size_t(nu) + size_t(x)]});
+      mesh.uvs.insert(mesh.uvs.end(), {u, v});
+    }
+  for (int y = 0; y + 1 < nv; ++y)
+    for (int x = 0; x + 1 < nu; ++x) {
+      const double a = double(y) * nu + x, b = a + 1, c = a + nu, d = c + 1;
+      mesh.indices.insert(mesh.indices.end(), {a, b, d, a, d, c});
+    }
+  return object_of(reader, std::move(mesh), p.at);
+}
+
+/// A curve in the plane turned around the z axis, with what its tangents say of the surface's normals.
+struct Profile {
+  double radius, z, normal_radius, normal_z;  ///< the normal points outwards
+};
+
+Profile sphere_at(double radius, double low, double high, double v) {
+  const double theta = (1 - v) * std::acos(low / radius) + v * std::acos(high / radius);
+  return {radius * std::sin(theta), radius * std::cos(theta), std::sin(theta), std::cos(theta)};
+}
+
+}  // namespace
+
+Shape make_revolved(Reader& reader, const std::string& type, const Parameters& p) {
+  const double turn = std::clamp(p.number("phimax", 360), 1e-3, 360.0) * 3.14159265358979323846 / 180;
+  constexpr size_t steps_u = 128, steps_v = 64;
+  double radius = p.number("radius", 1), low = 0, high = 1;
+  if (!(radius > 0)) throw Error("'radius' must be more than 0", p.place("radius"));
+  std::array<double, 3> p1{}, p2{};
+  if (type == "sphere") {
+    low = std::clamp(p.number("zmin", -radius), -radius, radius);
+    high = std::clamp(p.number("zmax", radius), -radius, radius);
+    if (low > high) std::swap(low, high);
+  } else if (type == "paraboloid") {
+    low = p.number("zmin", 0), high = p.number("zmax", 1);
+    if (!(low >= 0 && high > low)) throw Error("a paraboloid needs 0 <= zmin < zmax", p.place("zmin"));
+  } else {
+    const DoublePoint3 a = p.point("p1", {0, 0, 0}), b = p.point("p2", {1, 1, 1});
+    p1 = {a.x, a.y, a.z}, p2 = {b.x, b.y, b.z};
+  }
+  reader.importing.inexact(fmt::format("a {} that is not whole is made of small triangles", type), p.at);
+  Mesh mesh;
+  for (size_t j = 0; j <= steps_v; ++j)
+    for (size_t i = 0; i <= steps_u; ++i) {
+      const double u = double(i) / steps_u, v = double(j) / steps_v, phi = u * turn, c = std::cos(phi), s = std::sin(phi);
+      double x = 0, y = 0, z = 0, nx = 0, ny = 0, nz = 0;
+      if (type == "hyperboloid") {
+        const double qx = (1 - v) * p1[0] + v * p2[0], qy = (1 - v) * p1[1] + v * p2[1];
+        x = qx * c - qy * s, y = qx * s + qy * c, z = (1 - v) * p1[2] + v * p2[2];
+        // dp/du x dp/dv, with dp/du = (-y, x, 0).
+        const double dx = p2[0] - p1[0], dy = p2[1] - p1[1], tx = dx * c - dy * s, ty = dx * s + dy * c, tz = p2[2] - p1[2];
+        nx = x * tz, ny = y * tz, nz = -y * ty - x * tx;
+      } else {
+        Profile at{};
+        if (type == "sphere") {
+          at = sphere_at(radius, low, high, v);
+        } else {
+          const double height = low + v * (high - low), r = radius * std::sqrt(height / high);
+          at = {r, height, 2 * r * high / (radius * radius), -1};
+        }
+        x = at.radius * c, y = at.radius * s, z = at.z;
+        nx = at.normal_radius * c, ny = at.normal_radius * s, nz = at.normal_z;
+      }
+      const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+      mesh.positions.insert(mesh.positions.end(), {x, y, z});
+      for (const double n : {nx, ny, nz}) mesh.normals.push_back(length > 0 ? n / length : 0);
+      mesh.uvs.insert(mesh.uvs.end(), {u, v});
+    }
+  for (size_t j = 0; j < steps_v; ++j)
+    for (size_t i = 0; i < steps_u; ++i) {
+      const double a = double(j * (steps_u + 1) + i), b = a + 1, c = a + double(steps_u) + 1, d = c + 1;
+      mesh.indices.insert(mesh.indices.end(), {a, b, d, a, d, c});
+    }
+  Shape shape = object_of(reader, std::move(mesh), p.at);
+  shape.turned = false;
+  shape.pieces = 1;
+  return shape;
+}
+
+Shape make_mesh(Reader& reader, const std::string& type, Parameters& p) {
+  if (type == "trianglemesh") return triangle_mesh(reader, p);
+  if (type == "plymesh") return ply_mesh(reader, p);
+  if (type == "bilinearmesh") return bilinear_mesh(reader, p);
+  if (type == "loopsubdiv") return loop_subdivision(reader, p);
+  if (type == "heightfield") return height_field(reader, p);
+  if (type == "nurbs") {
+    reader.importing.inexact("a NURBS surface is not read: it is left out", p.at);
+    p.forget();
+    return {};
+  }
+  throw Error(fmt::format("there is no shape '{}'{}", type,
+                          suggestion(type, {"sphere", "cylinder", "disk", "cone", "paraboloid", "hyperboloid", "curve",
+                                            "trianglemesh", "plymesh", "bilinearmesh", "loopsubdiv", "heightfield", "nurbs"})),
+              p.at);
+}
+
+}  // namespace etendue::pbrt

@@ -1,0 +1,210 @@
+#include "parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace etendue::pbrt {
+
+namespace {
+
+enum class Holds : unsigned char { numbers, strings, truths, either };
+struct Type {
+  std::string_view name;
+  Holds holds;
+};
+// Of pbrt v3 and v4, with older spellings.
+constexpr Type types[] = {{"float", Holds::numbers},   {"integer", Holds::numbers},  {"bool", Holds::truths},
+                          {"string", Holds::strings},  {"texture", Holds::strings},  {"point", Holds::numbers},
+                          {"point2", Holds::numbers},  {"point3", Holds::numbers},   {"vector", Holds::numbers},
+                          {"vector2", Holds::numbers}, {"vector3", Holds::numbers},  {"normal", Holds::numbers},
+                          {"normal3", Holds::numbers}, {"rgb", Holds::numbers},      {"color", Holds::numbers},
+                          {"xyz", Holds::numbers},     {"blackbody", Holds::either}, {"spectrum", Holds::either}};
+
+const Type& type_of(const Parameter& p) {
+  std::vector<std::string> known;
+  for (const Type& t : types) {
+    if (t.name == p.type) return t;
+    known.emplace_back(t.name);
+  }
+  throw Error(fmt::format("there is no parameter type '{}'{}", p.type, suggestion(p.type, known)), p.at);
+}
+
+/// "float radius" into its two words.
+void name_parameter(Parameter& p, std::string_view declaration) {
+  const std::string_view space = " \t";
+  const size_t begin = declaration.find_first_not_of(space);
+  const size_t type_end = begin == declaration.npos ? begin : declaration.find_first_of(space, begin);
+  const size_t name = type_end == declaration.npos ? type_end : declaration.find_first_not_of(space, type_end);
+  if (name == declaration.npos)
+    throw Error(fmt::format("'{}' is not a type and a name, such as \"float radius\"", declaration), p.at);
+  p.type = declaration.substr(begin, type_end - begin);
+  p.name = declaration.substr(name, declaration.find_last_not_of(space) + 1 - name);
+}
+
+void read_value(Lexer& lexer, Parameter& p, Holds holds) {
+  const Token token = lexer.next();
+  const auto wrong = [&](const char* wanted) {
+    throw Error(token.end() ? fmt::format("the file ends where \"{} {}\" needs {}", p.type, p.name, wanted)
+                            : fmt::format("\"{} {}\" needs {}, not '{}'", p.type, p.name, wanted, token.text.substr(0, 60)),
+                lexer.place(token));
+  };
+  if (token.is(Token::Kind::string) && holds != Holds::numbers) {
+    const std::string text = Lexer::unescaped(token.text);
+    if (holds == Holds::truths && text != "true" && text != "false") wrong("true or false");
+    p.strings.push_back(text);
+  } else if (token.is(Token::Kind::word) && holds == Holds::truths && (token.text == "true" || token.text == "false")) {
+    p.strings.emplace_back(token.text);
+  } else {
+    double number = 0;
+    const bool may = holds == Holds::numbers || holds == Holds::either;
+    if (!may || !token.is(Token::Kind::word) || !parse_number(token.text, number))
+      wrong(holds == Holds::truths ? "true or false" : holds == Holds::strings ? "a text in quotes" : "a finite number");
+    p.numbers.push_back(number);
+  }
+}
+
+}  // namespace
+
+Parameters Parameters::read(Lexer& lexer, std::string of, Location at) {
+  Parameters all;
+  all.of = std::move(of);
+  all.at = at;
+  while (lexer.peek().is(Token::Kind::string)) {
+    const Token declaration = lexer.next();
+    Parameter p;
+    p.at = lexer.place(declaration);
+    name_parameter(p, declaration.text);
+    const Holds holds = type_of(p).holds;
+    if (lexer.peek().is(Token::Kind::open)) {
+      const Token open = lexer.next();
+      for (;;) {
+        if (holds == Holds::numbers || holds == Holds::either) lexer.numbers(p.numbers);
+        if (lexer.peek().is(Token::Kind::close)) break;
+        if (lexer.peek().end()) throw Error("this list has no closing ']'", lexer.place(open));
+        read_value(lexer, p, holds);
+      }
+      lexer.next();
+    } else {
+      read_value(lexer, p, holds);
+    }
+    for (const Parameter& other : all.own)
+      if (other.name == p.name) throw Error(fmt::format("the parameter '{}' is given twice", p.name), p.at);
+    all.own.push_back(std::move(p));
+  }
+  return all;
+}
+
+const Parameter* Parameters::find(std::string_view name) const {
+  if (!std::ranges::count(asked_, name)) asked_.emplace_back(name);
+  for (const Parameter& p : own)
+    if (p.name == name) {
+      p.used = true;
+      return &p;
+    }
+  if (defaults)
+    for (const Parameter& p : *defaults)
+      if (p.name == name) return &p;
+  return nullptr;
+}
+
+const Parameter* Parameters::first_of(std::initializer_list<std::string_view> names) const {
+  const Parameter* found = nullptr;
+  for (const std::string_view name : names)
+    if (!found) found = find(name);
+  return found;
+}
+
+const Parameter* Parameters::single(std::string_view name, bool text) const {
+  const Parameter* p = find(name);
+  if (!p) return nullptr;
+  const size_t count = p->numbers.size() + p->strings.size();
+  if (p->is("texture") && !text)
+    throw Error(fmt::format("'{}' of {} must be a number here, not a texture", p->name, of), p->at);
+  if ((text ? p->strings.size() : p->numbers.size()) != 1 || count != 1)
+    throw Error(fmt::format("'{}' of {} must be one {}{}", p->name, of, text ? "text" : "number",
+                            count != 1 ? fmt::format(", not {}", count) : ""),
+                p->at);
+  return p;
+}
+
+std::optional<double> Parameters::number(std::string_view name) const {
+  const Parameter* p = single(name, false);
+  return p ? std::optional(p->numbers[0]) : std::nullopt;
+}
+
+double Parameters::number(std::string_view name, double otherwise) const { return number(name).value_or(otherwise); }
+
+int Parameters::integer(std::string_view name, int otherwise) const {
+  const Parameter* p = single(name, false);
+  if (!p) return otherwise;
+  const double value = p->numbers[0];
+  if (value != std::floor(value) || std::abs(value) > 2147483647)
+    throw Error(fmt::format("'{}' of {} must be a whole number, not {}", p->name, of, value), p->at);
+  return int(value);
+}
+
+bool Parameters::boolean(std::string_view name, bool otherwise) const {
+  const Parameter* p = single(name, true);
+  if (!p) return otherwise;
+  if (!p->is("bool")) throw Error(fmt::format("'{}' of {} must be a bool, not a {}", p->name, of, p->type), p->at);
+  return p->strings[0] == "true";
+}
+
+std::string Parameters::text(std::string_view name, const std::string& otherwise) const {
+  const Parameter* p = single(name, true);
+  return p ? p->strings[0] : otherwise;
+}
+
+DoublePoint3 Parameters::point(std::string_view name, const DoublePoint3& otherwise) const {
+  const std::vector<double>& n = numbers(name, 3);
+  if (n.size() > 3) throw Error(fmt::format("'{}' of {} must be one point, not {}", name, of, n.size() / 3), place(name));
+  return n.empty() ? otherwise : DoublePoint3{n[0], n[1], n[2]};
+}
+
+const std::vector<double>& Parameters::numbers(std::string_view name, size_t width) const {
+  static const std::vector<double> none;
+  const Parameter* p = find(name);
+  if (!p) return none;
+  if (!p->strings.empty()) throw Error(fmt::format("'{}' of {} must be numbers, not a {}", p->name, of, p->type), p->at);
+  if (p->numbers.size() % width != 0)
+    throw Error(fmt::format("'{}' of {} has {} numbers, which are no multiple of {}", p->name, of, p->numbers.size(), width),
+                p->at);
+  return p->numbers;
+}
+
+std::vector<double> Parameters::take_numbers(std::string_view name, size_t width) {
+  numbers(name, width);
+  for (Parameter& p : own)
+    if (p.name == name) return std::move(p.numbers);
+  return numbers(name, width);
+}
+
+std::vector<std::string> Parameters::texts(std::string_view name) const {
+  const Parameter* p = find(name);
+  if (!p) return {};
+  if (!p->numbers.empty()) throw Error(fmt::format("'{}' of {} must be texts, not numbers", p->name, of), p->at);
+  return p->strings;
+}
+
+Location Parameters::place(std::string_view name) const {
+  const Parameter* p = find(name);
+  return p && p->at.known() ? p->at : at;
+}
+
+void Parameters::tell_unused(Importing& importing) const {
+  for (const Parameter& p : own)
+    if (!p.used)
+      importing.inexact(fmt::format("the parameter '{}' of {} is not used{}", p.name, of, suggestion(p.name, asked_)), p.at);
+}
+
+void Parameters::ignore(std::initializer_list<std::string_view> names) const {
+  for (const std::string_view name : names) find(name);
+}
+
+void Parameters::forget() const {
+  for (const Parameter& p : own) p.used = true;
+}
+
+}  // namespace etendue::pbrt

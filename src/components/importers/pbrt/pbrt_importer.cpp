@@ -1,0 +1,60 @@
+// PbrtImporter: scenes of pbrt, versions 3 and 4.
+//
+// Conventions are those of Pharr, Jakob & Humphreys 2016 and 2023, Physically Based Rendering, third and fourth edition, and of
+// their pages "pbrt-v3 Input File Format" and "pbrt-v4 Input File Format".
+
+#include <fmt/format.h>
+
+#include "files/regular_file.h"
+#include "reader.h"
+
+namespace etendue {
+
+namespace {
+
+/// 3 or 4, by what a file uses. The film says it in nearly every file; where it does not, words that only one of them has.
+int version_of(std::string_view text) {
+  text = text.substr(0, size_t(4) << 20);
+  const auto film = text.find("Film");
+  if (film != text.npos) {
+    const std::string_view after = text.substr(film + 4, 40);
+    if (after.find("\"image\"") != after.npos) return 3;
+    for (const char* type : {"\"rgb\"", "\"gbuffer\"", "\"spectral\""})
+      if (after.find(type) != after.npos) return 4;
+  }
+  for (const char* word : {"\"point3 ", "\"point2 ", "\"vector3 ", "\"coateddiffuse\"", "\"dielectric\"", "\"conductor\"",
+                           "\"rgb reflectance\"", "ColorSpace"})
+    if (text.find(word) != text.npos) return 4;
+  for (const char* word : {"\"matte\"", "\"plastic\"", "\"uber\"", "\"glass\"", "\"mirror\"", "\"substrate\"", "\"metal\"",
+                           "\"point P\"", "\"point from\"", "\"color ", "\"string mapname\"", "WorldEnd", "TransformBegin"})
+    if (text.find(word) != text.npos) return 3;
+  return 4;
+}
+
+class PbrtImporter final : public Importer {
+ public:
+  static void describe(Description<PbrtImporter>& d) {
+    d.summary("Reads scenes of pbrt, versions 3 and 4, whose files end in .pbrt.");
+  }
+
+  std::vector<std::string> extensions() const override { return {"pbrt"}; }
+
+  Ref<Component> import(Importing& importing) const override {
+    std::unique_ptr<FileContents> contents;
+    try {
+      contents = std::make_unique<FileContents>(importing.path());
+    } catch (const Error& e) {
+      throw Error(fmt::format("cannot read '{}': {}", importing.path(), e.what()), importing.at());
+    }
+    pbrt::Reader reader(importing, version_of(contents->text()));
+    read_directives(reader, contents->text());
+    contents.reset();
+    return reader.finish();
+  }
+};
+
+const Register<PbrtImporter> registered;
+
+}  // namespace
+
+}  // namespace etendue

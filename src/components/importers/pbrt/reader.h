@@ -1,0 +1,187 @@
+#pragma once
+// One pbrt file on its way into components: the graphics state, and what was named.
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "etendue/emission_shader.h"
+#include "etendue/importer.h"
+#include "etendue/object_map.h"
+#include "etendue/render/job.h"
+#include "etendue/scene.h"
+#include "etendue/scene_object.h"
+#include "etendue/shader.h"
+#include "etendue/volume_shader.h"
+#include "parameters.h"
+
+namespace etendue::pbrt {
+
+/// What AreaLightSource says of the shapes that follow.
+struct AreaLight {
+  Parameters parameters;
+  std::string type;
+  /// Made when a shape first needs it: for shapes whose front is pbrt's, for those that are turned over, with `power`.
+  std::array<Ref<Component>, 2> made;
+};
+
+/// What AttributeBegin keeps and AttributeEnd gives back.
+struct State {
+  std::array<Transform, 2> ctm;  ///< to the world, at the two times of TransformTimes
+  unsigned active = 3;           ///< which of the two a transform changes
+  bool reversed = false;
+  size_t material = 0;               ///< of Reader::materials
+  std::string named_material;        ///< looked up at the end, when not empty
+  std::shared_ptr<AreaLight> light;  ///< null: shapes do not emit
+  std::string inside, outside;       ///< names of media; empty: none
+  const RgbSpace* space = nullptr;
+  /// Of v4's Attribute directive, in the order of `attribute_targets`.
+  std::array<std::shared_ptr<const std::vector<Parameter>>, 5> defaults;
+};
+inline constexpr std::array<std::string_view, 5> attribute_targets = {"shape", "light", "material", "medium", "texture"};
+
+/// A material as it was written; its shader is made when something first needs it, as in v4 it may name textures and
+/// materials that come later.
+struct Material {
+  std::string type, name;
+  Parameters parameters;
+  Ref<Component> shader;
+  bool making = false;
+};
+
+/// An object that waits for its shader until everything was read.
+struct Waiting {
+  Ref<Component> object;
+  size_t material;
+  std::string named_material;
+  Value alpha;  ///< opacity: a map or a number; none: opaque
+  bool no_uvs;  ///< it is a mesh without surface coordinates, of which pbrt has others than are here
+  Location at;
+};
+
+enum class Use : unsigned char { reflectance, light, coefficient };
+
+/// What is before WorldBegin: each directive as it was written last.
+struct Setting {
+  std::string type;
+  Parameters parameters;
+  bool given = false;
+};
+
+class Reader {
+ public:
+  /// `version` is 3 or 4.
+  Reader(Importing& i, int v) : importing(i), version(v) {}
+
+  Importing& importing;
+  const int version;
+  State state;
+  Setting camera, film, filter, sampler, integrator;
+  AnimatedTransform camera_to_world;
+  std::array<double, 2> times{0, 1};  ///< of TransformTimes [s]
+  double exposure = 1;                ///< what the sensor multiplies radiances by, put into all lights
+  std::vector<Material> materials{1};
+  std::map<std::string, size_t, std::less<>> named_materials;
+  std::map<std::string, Ref<Component>, std::less<>> float_textures, spectrum_textures, media;
+
+  AnimatedTransform to_world() const { return to_world(Transform()); }
+  /// Of what stands at `inner` in the present coordinates.
+  AnimatedTransform to_world(const Transform& inner) const;
+  Ref<Component> make(const char* class_name, Location at, const std::string& name = {}) const {
+    return importing.make(class_name, at, name);
+  }
+
+  // world.cpp
+  void shape(const std::string& type, Parameters&&);
+  void begin_object(const std::string& name, Location at);
+  void end_object(Location at);
+  void instance(const std::string& name, Location at);
+  bool in_object() const { return into_ != &objects_; }
+  void add(const Ref<Component>& object);
+  /// All that was read, with its shaders.
+  Ref<Job> finish();
+
+ private:
+  Ref<Component> shader_for(const Waiting&);
+  void finish_materials();
+  Ref<Scene> scene_of(const std::vector<Ref<SceneObject>>&, Location at, const std::string& name);
+
+  std::vector<Ref<SceneObject>> objects_;
+  std::vector<Ref<SceneObject>>* into_ = &objects_;
+  std::vector<Ref<SceneObject>> object_parts_;
+  std::string object_name_;
+  Location object_at_;
+  std::map<std::string, Ref<Scene>, std::less<>> instanced_;
+  std::vector<Waiting> waiting_;
+  std::map<std::pair<Component*, std::string>, Ref<Component>> masked_;
+};
+
+/// Reads all directives of a file and of those it includes. Throws Errors with all that is wrong.
+void read_directives(Reader&, std::string_view text);
+
+// spectra.cpp
+/// The spectrum of a parameter. Of light it is what pbrt multiplies by "scale": v4 makes all but "rgb" give a luminance of 1.
+Color spectrum_of(Reader&, const Parameters&, const Parameter&, Use);
+/// A complex index of refraction of the parameters `eta` and `k` (or of v4's "reflectance"); none: copper.
+Color metal_of(Reader&, const Parameters&, const std::string& prefix = {});
+/// A real index of refraction by the first of the names that is given.
+Value index_of(Reader&, const Parameters&, std::initializer_list<std::string_view> names, double otherwise);
+/// The named spectra of pbrt that are no metals: glasses and illuminants. Null: there is none of this name.
+Color named_spectrum(const std::string& name);
+
+// textures.cpp
+void make_texture(Reader&, const std::string& name, const std::string& kind, const std::string& type, Parameters&&);
+/// A number or a map of numbers.
+Value number_map(Reader&, const Parameters&, std::initializer_list<std::string_view> names, double otherwise);
+/// A spectrum, or a map of spectra.
+Value color_map(Reader&, const Parameters&, std::initializer_list<std::string_view> names, double otherwise, Use);
+/// A formula over maps.
+Ref<Component> formula(Reader&, Location at, const std::string& text, const std::vector<std::pair<std::string, Value>>& maps);
+void set_map(Component&, std::string_view member, Value, Location at);
+/// The image file of a parameter, as a member expects it; none and a note: it is missing.
+std::optional<FilePath> image_file(Reader&, const Parameters&, std::string_view name);
+
+// materials.cpp, materials_v4.cpp, materials_v3.cpp
+Ref<Component> shader_of(Reader&, size_t material, Location used_at);
+Ref<Component> shader_named(Reader&, const std::string& name, Location used_at);
+/// Null: it is none of v4's, or none of v3's materials.
+Ref<Component> make_v4_shader(Reader&, const Material&);
+Ref<Component> make_v3_shader(Reader&, const Material&);
+/// Sets the roughness of a microfacet shader by GGX's alpha from pbrt's parameters.
+void set_roughness(Reader&, Component& shader, const Parameters&, double otherwise, bool v3, const std::string& prefix = {});
+double v3_alpha(double roughness);
+std::vector<std::string> material_names();
+
+// shapes.cpp, meshes.cpp, revolved.cpp
+struct Shape {
+  Ref<Component> object;
+  Transform inner;      ///< from the object's coordinates to the shape's
+  bool turned = false;  ///< its front is the back of pbrt's
+  size_t pieces = 1;    ///< how many lights pbrt makes of it
+};
+/// No object: it could not be made, which was noted.
+Shape make_shape(Reader&, const std::string& type, Parameters&);
+Shape make_mesh(Reader&, const std::string& type, Parameters&);
+Shape make_revolved(Reader&, const std::string& type, const Parameters&);
+
+// lights.cpp, environment.cpp
+void make_light(Reader&, const std::string& type, Parameters&&);
+void make_environment(Reader&, const Parameters&);
+Ref<Component> area_emission(Reader&, AreaLight&, bool turned, size_t pieces);
+/// What pbrt calls a power or an illuminance of 1, where a luminance of 1 is a pixel of 1 [lm, lx].
+inline constexpr double luminous_unit = 683.002 * 106.856917;
+void set_emission(Component& object, const Ref<Component>& emission, Location at);
+
+// media.cpp
+void make_medium(Reader&, const std::string& name, Parameters&&);
+
+// job.cpp, view.cpp
+void set_renderer(Reader&, Component& job);
+void set_camera(Reader&, Component& job);
+void set_film(Reader&, Component& job);
+/// What the sensor multiplies light by.
+double imaging_ratio(Reader&);
+
+}  // namespace etendue::pbrt

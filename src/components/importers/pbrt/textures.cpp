@@ -1,0 +1,282 @@
+// Textures, and parameters that may name one.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reader.h"
+
+namespace etendue::pbrt {
+
+namespace {
+
+/// 2D textures look at (s, t), which "mapping" makes of (u, v) or of a place: the map is put behind such a projection.
+Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
+  const std::string mapping = p.text("mapping", "uv");
+  const auto within = [&](const char* class_name) {
+    Ref<Component> outer = reader.make(class_name, p.at);
+    set_member(*outer, "map", map, p.at);
+    return outer;
+  };
+  const auto in_world = [&](Ref<Component> outer, const Transform& inner) {
+    set_member(*outer, "world", true, p.at);
+    const AnimatedTransform to_world = reader.to_world(inner);
+    if (to_world.valid()) set_member(*outer, "transform", to_world, p.at);
+    return outer;
+  };
+  const double du = p.number("udelta", 0), dv = p.number("vdelta", 0);
+  if (mapping == "uv") {
+    const double su = p.number("uscale", 1), sv = p.number("vscale", 1);
+    if (su == 1 && sv == 1 && du == 0 && dv == 0) return map;
+    if (su == 0 || sv == 0) throw Error(fmt::format("'{}' must not be 0", su == 0 ? "uscale" : "vscale"), p.at);
+    const Ref<Component> outer = within("UvTransformMap");
+    set_member(*outer, "scale", Numbers{{su, sv}, 1, Dimension::none}, p.at);
+    set_member(*outer, "shift", Numbers{{du, dv}, 1, Dimension::none}, p.at);
+    return outer;
+  }
+  if (mapping == "planar") {
+    // s = udelta + v1 . p, t = vdelta + v2 . p: PlanarMap's x and y, with any third axis.
+    const DoublePoint3 v1 = p.point("v1", {1, 0, 0}), v2 = p.point("v2", {0, 1, 0});
+    const DoubleVector3 a{v1.x, v1.y, v1.z}, b{v2.x, v2.y, v2.z}, c = cross(a, b);
+    const Transform projection(Transform::DoubleMatrix{a.x, a.y, a.z, du, b.x, b.y, b.z, dv, c.x, c.y, c.z, 0});
+    if (!projection.valid()) throw Error("v1 and v2 must be two directions", p.place("v1"));
+    return in_world(within("PlanarMap"), projection.inverse());
+  }
+  if (mapping == "spherical" || mapping == "cylindrical") {
+    // pbrt's s and t are (1 - v, u) of a SphericalMap, and (u + 1/2, v) of a CylindricalMap.
+    const bool sphere = mapping == "spherical";
+    const Ref<Component> turned = within("UvTransformMap");
+    if (sphere) set_member(*turned, "angle", 90, p.at);
+    set_member(*turned, "shift", Numbers{{sphere ? 1 : 0.5, 0}, 1, Dimension::none}, p.at);
+    map = turned;
+    return in_world(within(sphere ? "SphericalMap" : "CylindricalMap"), Transform());
+  }
+  throw Error(
+      fmt::format("there is no mapping '{}'{}", mapping, suggestion(mapping, {"uv", "planar", "spherical", "cylindrical"})),
+      p.place("mapping"));
+}
+
+Ref<Component> image(Reader& reader, const Parameters& p) {
+  const Location at = p.at;
+  const auto file = image_file(reader, p, "filename");
+  if (!file) {
+    const Ref<Component> grey = reader.make("ConstantMap", at);
+    set_member(*grey, "value", 0.5, at);
+    return grey;
+  }
+  const Ref<Component> map = reader.make("ImageMap", at);
+  set_member(*map, "file", *file, p.place("filename"));
+  const std::string filter = p.text("filter", reader.version == 4 ? "bilinear" : "trilinear");
+  if (filter == "point") set_member(*map, "interpolation", "nearest", at);
+  p.ignore({"maxanisotropy", "trilinear", "noiseaware"});  // how it is averaged over a pixel
+  const std::string wrap = p.text("wrap", "repeat");
+  if (wrap == "black" || wrap == "clamp" || wrap == "repeat")
+    set_member(*map, "wrap", wrap, at);
+  else
+    reader.importing.inexact(fmt::format("wrap '{}' is not known: the image repeats", wrap), p.place("wrap"));
+  const std::string encoding = p.text("encoding", "");
+  if (encoding == "linear" || !p.boolean("gamma", true))
+    set_member(*map, "transfer", "linear", at);
+  else if (encoding == "gamma 2.2")
+    set_member(*map, "transfer", "gamma2.2", at);
+  else if (!encoding.empty() && encoding != "sRGB")
+    reader.importing.inexact(fmt::format("the encoding '{}' is taken for sRGB", encoding), p.place("encoding"));
+  Ref<Component> result = map;
+  if (const double scale = p.number("scale", 1); scale != 1)
+    result = formula(reader, at, fmt::format("{} * image", scale), {{"image", Value(result)}});
+  if (p.boolean("invert", false)) result = formula(reader, at, "max(0, 1 - image)", {{"image", Value(result)}});
+  return mapped(reader, p, result);
+}
+
+Ref<Component> checkerboard(Reader& reader, const Parameters& p, const auto& value) {
+  const Location at = p.at;
+  const Value first = value({"tex1"}, 1.0), second = value({"tex2"}, 0.0);
+  p.ignore({"aamode"});  // how it is averaged over a pixel
+  if (p.integer("dimension", 2) == 2) {
+    const Ref<Component> map = reader.make("CheckerMap", at);
+    set_map(*map, "first", first, at);
+    set_map(*map, "second", second, at);
+    set_member(*map, "repeat", Numbers{{1, 1, 1}, 1, Dimension::none}, at);
+    return mapped(reader, p, map);
+  }
+  // Cubes of the texture's own coordinates, written out in those of the world.
+  const Transform from_world = reader.state.ctm[0].inverse();
+  const auto& m = from_world.exact();
+  const auto row = [&](size_t r) {
+    return fmt::format("floor({} * x + {} * y + {} * z + {})", m[4 * r], m[4 * r + 1], m[4 * r + 2], m[4 * r + 3]);
+  };
+  const Ref<Component> which = formula(reader, at, fmt::format("mod({} + {} + {}, 2)", row(0), row(1), row(2)), {});
+  set_member(*which, "space", "world", at);
+  const Ref<Component> map = reader.make("MixMap", at);
+  set_map(*map, "first", first, at);
+  set_map(*map, "second", second, at);
+  set_member(*map, "amount", which, at);
+  return map;
+}
+
+/// v00 at (0, 0), v01 at (0, 1), v10 at (1, 0), v11 at (1, 1).
+Ref<Component> bilerp(Reader& reader, const Parameters& p, const auto& value) {
+  const auto ramp = [&](const char* along, Value a, Value b) {
+    const Ref<Component> map = reader.make("RampMap", p.at);
+    set_member(*map, "along", along, p.at);
+    const auto part = [&](Value v) {
+      if (v.template as<Ref<Component>>()) return v;
+      const Ref<Component> constant = reader.make("ConstantMap", p.at);
+      set_map(*constant, "value", v, p.at);
+      return Value(constant, p.at);
+    };
+    set_member(*map, "colors", Value::List{part(a), part(b)}, p.at);
+    return Value(map, p.at);
+  };
+  const Value left = ramp("v", value({"v00"}, 0.0), value({"v01"}, 1.0));
+  const Value right = ramp("v", value({"v10"}, 0.0), value({"v11"}, 1.0));
+  return mapped(reader, p, *ramp("u", left, right).template as<Ref<Component>>());
+}
+
+Ref<Component> noise(Reader& reader, const Parameters& p, const std::string& type, bool spectrum) {
+  const bool marble = type == "marble";
+  reader.importing.inexact(fmt::format("the texture '{}' has the same character as pbrt's, not the same pattern", type), p.at);
+  const Ref<Component> map = reader.make(marble ? "MarbleMap" : type == "wrinkled" ? "TurbulenceMap" : "FbmMap", p.at);
+  set_member(*map, "space", "world", p.at);
+  if (const double scale = p.number("scale", 1); marble && scale > 0) set_member(*map, "size", 1 / scale, p.at);
+  if (marble) {
+    p.ignore({"variation"});
+  } else if (spectrum) {
+    set_map(*map, "first", Value(Number{0}), p.at);
+  }
+  if (type != "windy") {
+    const int octaves = p.integer("octaves", 8);
+    if (!marble) set_member(*map, "octaves", std::clamp(octaves, 1, 24), p.at);
+    const double gain = p.number("roughness", 0.5);
+    if (!marble) set_member(*map, "gain", std::clamp(gain, 0.0, 1.0), p.at);
+  }
+  if (reader.state.ctm[0].identity()) return map;
+  const Ref<Component> outer = reader.make("TransformedMap", p.at);
+  set_member(*outer, "map", map, p.at);
+  set_member(*outer, "transform", AnimatedTransform(reader.state.ctm[0].inverse()), p.at);
+  set_member(*outer, "world", true, p.at);
+  return outer;
+}
+
+Ref<Component> make_map(Reader& reader, const std::string& type, bool spectrum, const Parameters& p) {
+  const Location at = p.at;
+  const auto value = [&](std::initializer_list<std::string_view> names, double otherwise) {
+    return spectrum ? color_map(reader, p, names, otherwise, Use::reflectance) : number_map(reader, p, names, otherwise);
+  };
+  const auto combine = [&](const char* class_name, Value first, Value second) {
+    const Ref<Component> map = reader.make(class_name, at);
+    set_map(*map, "first", std::move(first), at);
+    set_map(*map, "second", std::move(second), at);
+    return map;
+  };
+  if (type == "constant") {
+    const Ref<Component> map = reader.make("ConstantMap", at);
+    set_map(*map, "value", value({"value"}, 1), at);
+    return map;
+  }
+  if (type == "imagemap") return image(reader, p);
+  if (type == "checkerboard") return checkerboard(reader, p, value);
+  if (type == "bilerp") return bilerp(reader, p, value);
+  // v4 multiplies "tex" by the number or texture "scale", v3 "tex1" by "tex2".
+  if (type == "scale")
+    return combine("MultiplyMap", value({"tex", "tex1"}, 1),
+                   p.has("tex2") ? value({"tex2"}, 1) : number_map(reader, p, {"scale"}, 1));
+  if (type == "mix" || type == "directionmix") {
+    const Ref<Component> map = combine("MixMap", value({"tex1"}, 0), value({"tex2"}, 1));
+    if (type == "mix")
+      set_map(*map, "amount", number_map(reader, p, {"amount"}, 0.5), at);
+    else
+      reader.importing.inexact("a mixture by the normal's direction is half of each here", at);
+    p.ignore({"dir"});
+    return map;
+  }
+  if (type == "fbm" || type == "wrinkled" || type == "windy" || type == "marble") return noise(reader, p, type, spectrum);
+  if (type == "dots") {
+    reader.importing.inexact("the texture 'dots' is not known here: there are none, and what is outside of them everywhere",
+                             at);
+    const Value outside = value({"outside"}, 0);
+    p.ignore({"inside"});
+    if (const auto* part = outside.as<Ref<Component>>()) return *part;
+    const Ref<Component> map = reader.make("ConstantMap", at);
+    set_map(*map, "value", outside, at);
+    return map;
+  }
+  if (type == "ptex") {
+    reader.importing.inexact("a Ptex texture cannot be read: it is 0.5 everywhere", at);
+    p.forget();
+    return reader.make("ConstantMap", at);
+  }
+  throw Error(fmt::format("there is no texture '{}'{}", type,
+                          suggestion(type, {"constant", "imagemap", "checkerboard", "bilerp", "scale", "mix", "directionmix",
+                                            "fbm", "wrinkled", "windy", "marble", "dots", "ptex"})),
+              at);
+}
+
+Value texture(Reader& reader, const Parameter& p, bool spectrum) {
+  if (p.strings.size() != 1) throw Error(fmt::format("'{}' must name one texture", p.name), p.at);
+  const auto& textures = spectrum ? reader.spectrum_textures : reader.float_textures;
+  const auto& others = spectrum ? reader.float_textures : reader.spectrum_textures;
+  if (const auto found = textures.find(p.strings[0]); found != textures.end()) return Value(found->second, p.at);
+  std::vector<std::string> known;
+  for (const auto& [name, map] : textures) known.push_back(name);
+  throw Error(fmt::format("there is no {} texture '{}'{}", spectrum ? "spectrum" : "float", p.strings[0],
+                          others.contains(p.strings[0]) ? fmt::format(", but a {} texture", spectrum ? "float" : "spectrum")
+                                                        : suggestion(p.strings[0], known)),
+              p.at);
+}
+
+}  // namespace
+
+std::optional<FilePath> image_file(Reader& reader, const Parameters& p, std::string_view name) {
+  const std::string named = p.text(name);
+  if (named.empty()) throw Error(fmt::format("{} needs '{}'", p.of, name), p.place(name));
+  const auto found = reader.importing.optional_file(named, p.place(name), p.folder);
+  if (!found) return std::nullopt;
+  return FilePath{*found, {}};
+}
+
+void set_map(Component& part, std::string_view member, Value value, Location at) {
+  value.location = at;
+  set(part, member, value);
+}
+
+Ref<Component> formula(Reader& reader, Location at, const std::string& text,
+                       const std::vector<std::pair<std::string, Value>>& maps) {
+  const Ref<Component> map = reader.make("FormulaMap", at);
+  set_member(*map, "formula", text, at);
+  Value::List names, parts;
+  for (const auto& [name, value] : maps) {
+    names.emplace_back(name);
+    parts.push_back(value);
+  }
+  if (!maps.empty()) {
+    set_member(*map, "names", names, at);
+    set_member(*map, "maps", parts, at);
+  }
+  return map;
+}
+
+Value number_map(Reader& reader, const Parameters& p, std::initializer_list<std::string_view> names, double otherwise) {
+  const Parameter* found = p.first_of(names);
+  if (!found) return Value(Number{otherwise}, p.at);
+  if (found->is("texture")) return texture(reader, *found, false);
+  return Value(Number{p.number(found->name, otherwise)}, found->at);
+}
+
+Value color_map(Reader& reader, const Parameters& p, std::initializer_list<std::string_view> names, double otherwise, Use use) {
+  const Parameter* found = p.first_of(names);
+  if (!found) return Value(Number{otherwise}, p.at);
+  if (found->is("texture")) return texture(reader, *found, true);
+  return Value(spectrum_of(reader, p, *found, use), found->at);
+}
+
+void make_texture(Reader& reader, const std::string& name, const std::string& kind, const std::string& type, Parameters&& p) {
+  const bool spectrum = kind == "spectrum" || kind == "color";
+  if (!spectrum && kind != "float") throw Error(fmt::format("a texture is of float or spectrum, not of '{}'", kind), p.at);
+  Ref<Component> map = make_map(reader, type, spectrum, p);
+  if (map->origin && map->origin->name.empty()) map->origin->name = name;
+  p.tell_unused(reader.importing);
+  (spectrum ? reader.spectrum_textures : reader.float_textures)[name] = std::move(map);
+}
+
+}  // namespace etendue::pbrt

@@ -1,0 +1,148 @@
+// What stands in the world: objects, their materials and emission, instances.
+
+#include <fmt/format.h>
+
+#include "reader.h"
+
+namespace etendue::pbrt {
+
+AnimatedTransform Reader::to_world(const Transform& inner) const {
+  const Transform first = state.ctm[0] * inner;
+  if (state.ctm[0] == state.ctm[1] || !(times[0] < times[1])) return first;
+  return AnimatedTransform({{float(times[0]), first}, {float(times[1]), state.ctm[1] * inner}});
+}
+
+void Reader::add(const Ref<Component>& object) { into_->push_back(ref_cast<SceneObject>(object)); }
+
+void Reader::shape(const std::string& type, Parameters&& p) {
+  const Location at = p.at;
+  const Value alpha = p.has("alpha") ? number_map(*this, p, {"alpha"}, 1) : Value();
+  const Shape made = make_shape(*this, type, p);
+  if (p.has("shadowalpha"))
+    importing.inexact("'shadowalpha' is left out: shadows are those of 'alpha'", p.place("shadowalpha"));
+  if (p.has("S")) importing.inexact("tangents of vertices are left out", p.place("S"));
+  if (p.has("faceIndices")) importing.inexact("numbers of faces are left out", p.place("faceIndices"));
+  p.tell_unused(importing);
+  if (!made.object) return;
+  Component& object = *made.object;
+  const AnimatedTransform transform = to_world(made.inner);
+  if (!transform.valid()) throw Error(fmt::format("{} cannot be placed: its transform cannot be inverted", p.of), at);
+  set_member(object, "transform", transform, at);
+  if (state.light && in_object())
+    importing.inexact("objects that are instanced do not emit in pbrt, nor here", at);
+  else if (state.light)
+    set_emission(object, area_emission(*this, *state.light, made.turned, made.pieces), at);
+  const auto medium = [&](const std::string& name) -> Ref<Component> {
+    const auto found = media.find(name);
+    if (found != media.end()) return found->second;
+    std::vector<std::string> known;
+    for (const auto& [n, m] : media) known.push_back(n);
+    throw Error(fmt::format("there is no medium named '{}'{}", name, suggestion(name, known)), at);
+  };
+  if (!state.inside.empty())
+    if (const Ref<Component> inside = medium(state.inside)) set_member(object, "interior", inside, at);
+  if (!state.outside.empty() && state.outside != state.inside)
+    importing.inexact(fmt::format("the medium '{}' outside of an object is that of what it stands in", state.outside), at);
+  bool no_uvs = type == "trianglemesh";
+  for (const Parameter& parameter : p.own)
+    if (parameter.name == "uv" || parameter.name == "st" || parameter.name == "UV") no_uvs = false;
+  waiting_.push_back({made.object, state.material, state.named_material, alpha, no_uvs, at});
+  add(made.object);
+}
+
+void Reader::begin_object(const std::string& name, Location at) {
+  if (in_object()) throw Error("an object cannot be defined within another", at);
+  into_ = &object_parts_;
+  object_name_ = name;
+  object_at_ = at;
+}
+
+Ref<Scene> Reader::scene_of(const std::vector<Ref<SceneObject>>& objects, Location at, const std::string& name) {
+  const Ref<Component> scene = make("EmbreeScene", at, name);
+  Ref<Scene> result = ref_cast<Scene>(scene);
+  result->objects = objects;
+  return result;
+}
+
+void Reader::end_object(Location at) {
+  if (!in_object()) throw Error("ObjectEnd without ObjectBegin", at);
+  instanced_[object_name_] = scene_of(object_parts_, object_at_, object_name_);
+  object_parts_.clear();
+  into_ = &objects_;
+}
+
+void Reader::instance(const std::string& name, Location at) {
+  if (in_object()) throw Error("an object cannot be instanced within the definition of another", at);
+  const auto found = instanced_.find(name);
+  if (found == instanced_.end()) {
+    std::vector<std::string> known;
+    for (const auto& [n, scene] : instanced_) known.push_back(n);
+    throw Error(fmt::format("there is no object named '{}'{}", name, suggestion(name, known)), at);
+  }
+  if (found->second->objects.empty()) return;
+  const Ref<Component> object = make("Instance", at);
+  set_member(*object, "scene", Ref<Component>(found->second), at);
+  const AnimatedTransform transform = to_world(Transform());
+  if (!transform.valid()) throw Error("the instance cannot be placed: its transform cannot be inverted", at);
+  set_member(*object, "transform", transform, at);
+  add(object);
+}
+
+Ref<Component> Reader::shader_for(const Waiting& w) {
+  Ref<Component> shader =
+      w.named_material.empty() ? shader_of(*this, w.material, w.at) : shader_named(*this, w.named_material, w.at);
+  if (w.alpha.none()) return shader;
+  // A mask for each material and opacity, however many shapes have them.
+  const auto* map = w.alpha.as<Ref<Component>>();
+  const std::string key = map ? fmt::format("{}", static_cast<const void*>(map->get())) : write_value(w.alpha);
+  Ref<Component>& mask = masked_[{shader.get(), key}];
+  if (!mask) {
+    mask = make("MaskShader", w.at);
+    set_member(*mask, "shader", shader, w.at);
+    set_map(*mask, "opacity", w.alpha, w.at);
+  }
+  return mask;
+}
+
+void Reader::finish_materials() {
+  std::vector<Error> errors;
+  for (const Waiting& w : waiting_) try {
+      const Ref<Component> shader = shader_for(w);
+      set_member(*w.object, "shader", shader, w.at);
+      if (!w.no_uvs) continue;
+      const auto named = named_materials.find(w.named_material);
+      const Parameters& p = materials[named == named_materials.end() ? w.material : named->second].parameters;
+      for (const Parameter& parameter : p.own)
+        if (parameter.is("texture")) {
+          importing.inexact("a textured mesh without surface coordinates has those of each triangle, which are not pbrt's",
+                            w.at);
+          break;
+        }
+    } catch (const Error& e) {
+      bool told = false;
+      for (const Error& other : errors) told = told || (other.location == e.location && std::string(other.what()) == e.what());
+      if (!told) errors.push_back(e);
+      if (errors.size() == 20) break;
+    }
+  if (!errors.empty()) throw Errors(std::move(errors));
+  // What nothing has may still be wrong, which is worth a note and no more.
+  for (size_t i = 0; i < materials.size(); ++i) try {
+      shader_of(*this, i, materials[i].parameters.at);
+    } catch (const Error& e) {
+      importing.inexact(e.what(), e.location);
+    }
+}
+
+Ref<Job> Reader::finish() {
+  if (in_object()) throw Error("this ObjectBegin has no ObjectEnd", object_at_);
+  finish_materials();
+  const Location at = importing.at();
+  const Ref<Component> job = make("Job", at);
+  set_camera(*this, *job);
+  set_film(*this, *job);
+  set_renderer(*this, *job);
+  set_member(*job, "scene", Ref<Component>(scene_of(objects_, at, "")), at);
+  return ref_cast<Job>(job);
+}
+
+}  // namespace etendue::pbrt

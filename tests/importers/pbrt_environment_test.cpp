@@ -1,0 +1,63 @@
+// Where the directions of environment maps lie.
+
+#include "pbrt_support.h"
+#include "support/image_file.h"
+
+namespace etendue::pbrt_test {
+namespace {
+
+constexpr int size = 64;
+
+/// Red grows to the right, green downwards, from 0 to 1.
+std::vector<float> ramps(int width, int height) {
+  std::vector<float> rgb;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (const float c : {(float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height), 0.25f}) rgb.push_back(c);
+  return rgb;
+}
+
+/// Red and green in a direction.
+std::array<double, 2> towards(const TemporaryFolder& folder, bool v4, const std::array<double, 3>& d) {
+  const std::string up = std::abs(d[1]) > 0.9 ? "1 0 0" : "0 1 0";
+  char look[200];
+  std::snprintf(look, sizeof look, "LookAt 0 0 0 %g %g %g %s\n", d[0], d[1], d[2], up.c_str());
+  const std::string film = v4 ? "rgb" : "image";
+  const Imported i = import_text(folder, std::string(look) + "Camera \"perspective\" \"float fov\" 0.1\nFilm \"" + film +
+                                             "\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\nLightSource "
+                                             "\"infinite\" \"string " +
+                                             (v4 ? "filename" : "mapname") + "\" \"map.exr\"\n");
+  const Xyz c = seen(i, 8192);
+  return {3.240479 * c.x - 1.53715 * c.y - 0.498535 * c.z, -0.969256 * c.x + 1.875991 * c.y + 0.041556 * c.z};
+}
+
+TEST(PbrtEnvironment, EqualAreasOfVersion4) {
+  const TemporaryFolder folder;
+  test::write_image(folder / "map.exr", {size, size, 3, NumberType::single}, ramps(size, size));
+  // Clarberg's mapping the other way, from the square to the sphere.
+  for (const auto& [u, v] : {std::pair(0.5, 0.5), {0.3, 0.4}, {0.6, 0.35}, {0.8, 0.55}, {0.1, 0.2}, {0.85, 0.9}, {0.4, 0.9}}) {
+    const double a = 2 * u - 1, b = 2 * v - 1, distance = 1 - (std::abs(a) + std::abs(b)), r = 1 - std::abs(distance);
+    const double phi = (r == 0 ? 1 : (std::abs(b) - std::abs(a)) / r + 1) * M_PI / 4, ring = r * std::sqrt(2 - r * r);
+    const std::array<double, 3> d{std::copysign(std::cos(phi), a) * ring, std::copysign(std::sin(phi), b) * ring,
+                                  std::copysign(1 - r * r, distance)};
+    const auto [red, green] = towards(folder, true, d);
+    EXPECT_NEAR(red, u, 0.02) << u << " " << v;
+    EXPECT_NEAR(green, v, 0.02) << u << " " << v;
+  }
+}
+
+TEST(PbrtEnvironment, LongitudeAndLatitudeOfVersion3) {
+  const TemporaryFolder folder;
+  test::write_image(folder / "map.exr", {2 * size, size, 3, NumberType::single}, ramps(2 * size, size));
+  // u = phi / (2 pi) from +x towards +y, v = theta / pi from +z.
+  for (const auto& [u, v] : {std::pair(0.125, 0.5), {0.25, 0.4}, {0.5, 0.7}, {0.75, 0.25}, {0.9, 0.5}}) {
+    const double phi = 2 * M_PI * u, theta = M_PI * v;
+    const auto [red, green] =
+        towards(folder, false, {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
+    EXPECT_NEAR(red, u, 0.02) << u << " " << v;
+    EXPECT_NEAR(green, v, 0.02) << u << " " << v;
+  }
+}
+
+}  // namespace
+}  // namespace etendue::pbrt_test
