@@ -8,6 +8,7 @@ import json
 import pathlib
 import struct
 import subprocess
+import zlib
 
 import seed_images
 
@@ -297,7 +298,57 @@ Material "translucent" Shape "hyperboloid" "point p1" [ 1 0 0 ] "point p2" [ .5 
 """
 
 
+MITSUBA = b"""<?xml version="1.0" encoding="utf-8"?>
+<scene version="3.0.0">
+  <default name="spp" value="4"/> <default name="kind" value="path"/>
+  <integrator type="$kind"><integer name="max_depth" value="5"/></integrator>
+  <sensor type="thinlens"><float name="fov" value="40"/><string name="fov_axis" value="smaller"/>
+    <float name="aperture_radius" value="0.1"/><float name="focus_distance" value="3"/>
+    <transform name="to_world"><lookat origin="0, 1, 5" target="0 0 0" up="0 1 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="6"/><rfilter type="mitchell"/></film>
+    <sampler type="multijitter"><integer name="sample_count" value="$spp"/></sampler></sensor>
+  <bsdf type="twosided" id="paint"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance">
+    <rgb name="color0" value="0.1 0.2 0.3"/><spectrum name="color1" value="400:0.1, 500:0.8, 700:0.4"/>
+    <transform name="to_uv"><scale x="3" y="4"/><rotate z="1" angle="30"/></transform></texture></bsdf></bsdf>
+  <alias id="paint" as="colour"/>
+  <medium type="homogeneous" id="fog"><rgb name="sigma_t" value="#102030"/><phase type="hg"><float name="g" value="0.3"/></phase></medium>
+  <shape type="shapegroup" id="group"><shape type="sphere"><point name="center" x="1"/><ref id="colour"/></shape>
+    <shape type="cube"><bsdf type="roughplastic"><string name="distribution" value="ggx"/></bsdf></shape></shape>
+  <shape type="instance"><ref id="group"/><transform name="to_world"><matrix value="1 0 0 0 0 2 0 1 0 0 1 0 0 0 0 1"/></transform></shape>
+  <shape type="rectangle"><bsdf type="mask"><float name="opacity" value="0.5"/><bsdf type="roughconductor">
+    <string name="material" value="Au"/></bsdf></bsdf></shape>
+  <shape type="cylinder"><bsdf type="dielectric"><string name="int_ior" value="bk7"/></bsdf><ref name="interior" id="fog"/></shape>
+  <emitter type="spot"><rgb name="intensity" value="5"/></emitter> <emitter type="constant"/>
+</scene>
+"""
+MITSUBA_OLD = b"""<scene version="0.5.0"><integrator type="volpath"><integer name="maxDepth" value="65"/></integrator>
+  <sensor type="perspective"><float name="fov" value="70"/><transform name="toWorld"><matrix value="-1 0 0 6 0 1 0 1 0 0 -1 2 0 0 0 1"/>
+    </transform><film type="ldrfilm"><integer name="width" value="8"/><integer name="height" value="8"/><float name="gamma" value="2.2"/>
+    <boolean name="banner" value="false"/></film></sensor>
+  <bsdf type="mixturebsdf" id="mix"><string name="weights" value="0.3, 0.5"/><bsdf type="phong"><float name="exponent" value="10"/></bsdf>
+    <bsdf type="coating"><rgb name="sigmaA" value="0.1"/><bsdf type="conductor"><rgb name="eta" value="1 2 3"/><rgb name="k" value="3"/>
+    </bsdf></bsdf></bsdf>
+  <shape type="disk"><ref id="mix"/><emitter type="area"><srgb name="radiance" value="#ffcc00"/></emitter></shape></scene>
+"""
+
+
+def serialized_mesh():
+    """Two meshes of one triangle each, as Mitsuba 0.5 writes them."""
+    body = struct.pack("<I", 0x1001) + b"name\0" + struct.pack("<QQ", 3, 1)
+    body += struct.pack("<18f", 0, 0, 0, 1, 0, 0, 0, 1, 0, *[0, 0, 1] * 3) + struct.pack("<3I", 0, 1, 2)
+    part = struct.pack("<HH", 0x041C, 4) + zlib.compress(body)
+    return part * 2 + struct.pack("<QQI", 0, len(part), 2)
+
+
 def scenes_of_others():
+    yield Seed("mitsuba", "input.xml", MITSUBA, [["check", "input.xml"]], {}, True)
+    yield Seed("mitsuba 0.5", "input.xml", MITSUBA_OLD, [["check", "input.xml"]], {}, True)
+    fragment = b'<scene version="3.0.0"><bsdf type="diffuse" id="white"/><shape type="sphere"><ref id="white"/></shape></scene>'
+    whole = {"scene.xml": b'<scene version="3.0.0"><include filename="input.xml"/><sensor type="perspective"/></scene>'}
+    yield Seed("mitsuba included", "input.xml", fragment, [["check", "scene.xml"]], whole, True)
+    mesh = {"scene.xml": b'<scene version="3.0.0"><shape type="serialized"><string name="filename" value="input.serialized"/>'
+                         b'<integer name="shape_index" value="1"/></shape><sensor type="perspective"/></scene>'}
+    yield Seed("serialized mesh", "input.serialized", serialized_mesh(), [["check", "scene.xml"]], mesh, False)
     yield Seed("pbrt v4", "input.pbrt", PBRT, [["check", "input.pbrt"]], {}, True)
     yield Seed("pbrt v3", "input.pbrt", PBRT_V3, [["check", "input.pbrt"]], {}, True)
     whole = {"scene.pbrt": b'Camera "perspective" Film "rgb" WorldBegin Include "input.pbrt" Shape "sphere"'}

@@ -1,0 +1,86 @@
+// Colours and textures.
+
+#include "writer.h"
+
+namespace etendue::mitsuba_export {
+
+namespace {
+
+const Transform turn_over(Transform::DoubleMatrix{1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 1, 0});
+
+}  // namespace
+
+void Writer::map(Node parent, const char* name, const Component& of, const char* member, ColorUse use, Uv uv) {
+  const Ref<Component> m = part_of(of, member);
+  if (!m) return;
+  if (class_of(*m) == "ConstantMap")
+    spectrum(parent, name, color_of(*m, "value"), use);
+  else
+    texture(parent, name, *m, use, {}, uv);
+}
+
+void Writer::texture(Node parent, const char* name, const Component& m, ColorUse use, const Transform& coordinates, Uv uv) {
+  const std::string& type = class_of(m);
+  const Transform own = uv == Uv::from_top ? coordinates * turn_over : coordinates;
+  const auto node = [&](const char* plugin) {
+    Node n = parent.append_child("texture");
+    n.append_attribute("name") = name;
+    n.append_attribute("type") = plugin;
+    return n;
+  };
+  if (type == "UvTransformMap") {
+    const std::vector<double> scale = numbers_of(m, "scale"), shift = numbers_of(m, "shift");
+    const Transform step = Transform::translate({shift[0], shift[1], 0}) *
+                           Transform::rotate(number_of(m, "angle") * std::numbers::pi / 180, {0, 0, 1}) *
+                           Transform::scale({scale[0], scale[1], 1});
+    const Ref<Component> inner = part_of(m, "map");
+    if (class_of(*inner) == "ConstantMap")
+      spectrum(parent, name, color_of(*inner, "value"), use);
+    else
+      texture(parent, name, *inner, use, step * coordinates, uv);
+  } else if (type == "ReadAsMap" && use == ColorUse::radiance && word_of(m, "as") == "coefficient") {
+    texture(parent, name, *part_of(m, "map"), ColorUse::coefficient, coordinates, uv);
+  } else if (type == "ImageMap") {
+    if (use == ColorUse::radiance) exporting.inexact("a picture as light has no white D65 in Mitsuba", &m);
+    Node n = node("bitmap");
+    text(n, "filename", exporting.copy_beside(word_of(m, "file")));
+    if (word_of(m, "interpolation") == "nearest") text(n, "filter_type", "nearest");
+    const std::string wrap = word_of(m, "wrap");
+    if (wrap == "black") exporting.inexact("a picture that is black outside is repeated in Mitsuba", &m);
+    if (wrap == "mirror" || wrap == "clamp") text(n, "wrap_mode", wrap);
+    if (word_of(m, "transfer") == "linear") truth(n, "raw", true);
+    const std::vector<double> repeat = numbers_of(m, "repeat");
+    transform(n, "to_uv", turn_over * Transform::scale({repeat[0], repeat[1], 1}) * own);
+  } else if (type == "CheckerMap" && word_of(m, "space") == "uv") {
+    Node n = node("checkerboard");
+    map(n, "color0", m, "first", use, uv);
+    map(n, "color1", m, "second", use, uv);
+    const std::vector<double> repeat = numbers_of(m, "repeat");
+    transform(n, "to_uv", Transform::scale({repeat[0] / 2, repeat[1] / 2, 1}) * own);
+  } else if (type == "AttributeMap") {
+    Node n = node("mesh_attribute");
+    const std::string attribute = word_of(m, "name");
+    text(n, "name", attribute.starts_with("face_") ? attribute : "vertex_" + attribute);
+  } else {
+    exporting.inexact(fmt::format("Mitsuba has no texture like {}: 0.5 stands for it", type), &m);
+    value(parent, "spectrum", name, "0.5");
+  }
+}
+
+double Writer::scalar(const Component& of, const char* member) {
+  const Ref<Component> m = part_of(of, member);
+  if (!m) return number_of(of, member);
+  if (class_of(*m) == "ConstantMap") return double(color_of(*m, "value")->at(550, ColorUse::coefficient));
+  exporting.inexact(fmt::format("'{}' of {} is one number in Mitsuba: 0.5 stands for the map", member, class_of(of)), &of);
+  return 0.5;
+}
+
+void Writer::scalar_map(Node parent, const char* name, const Component& of, const char* member, Uv uv) {
+  const Ref<Component> m = part_of(of, member);
+  if (m && class_of(*m) != "ConstantMap")
+    texture(parent, name, *m, ColorUse::reflectance, {}, uv);
+  else
+    number(parent, name, scalar(of, member));
+}
+
+}  // namespace etendue::mitsuba_export

@@ -1,0 +1,83 @@
+// What is exported to Mitsuba's XML is the same scene: read back, it makes the same picture. That Mitsuba itself makes it is
+// tried by references/exports.py.
+
+#include "etendue/exporter.h"
+#include "etendue/language/language.h"
+#include "mitsuba_support.h"
+
+namespace etendue::mitsuba_test {
+namespace {
+
+struct Exported {
+  std::string text;
+  std::vector<Error> notes;
+  Imported back;
+};
+
+Exported export_job(const TemporaryFolder& folder, const std::string& job) {
+  Exported result;
+  const Ref<Job> described = load_job_text(job, "test.etd");
+  const std::string path = folder / "out.xml";
+  Exporting exporting(path);
+  result.text = exporter_of(path)->write(*described, exporting);
+  result.notes = exporting.notes();
+  folder.write("out.xml", result.text);
+  result.back = import_file(path);
+  return result;
+}
+
+std::string job(const std::string& objects) {
+  return "Job {\n renderer: PathTracer { samples: 4096, max_depth: 4 }\n camera: PerspectiveCamera { from: [0, 1, 6] m, to: [0, "
+         "0, 0] m, "
+         "fov: 35 deg }\n image: ImageBuffer { width: 12, height: 8, filter: BoxFilter {} }\n scene: BvhScene { objects: [\n" +
+         objects + "\n] }\n}\n";
+}
+
+TEST(MitsubaExport, MakesTheSamePictureWhenReadBack) {
+  const char* const scenes[] = {
+      // Lights by amounts, on surfaces and points; shapes under transforms; sides.
+      "Sphere { shader: Lambertian { color: rgb(0.2, 0.5, 0.8) }, transform: translate(1, 0, 0) * scale(1, 0.5, 1) },"
+      "Rectangle { transform: translate(0, 3, 0) * rotate(90 deg, \"x\"), emission: DiffuseEmission { radiance: blackbody(3000 "
+      "K), "
+      "power: 300 W } },"
+      "Point { position: [0, 0, 5], emission: DiffuseEmission { radiance: illuminant(\"D65\"), luminous_flux: 40000 lm } },"
+      "Rectangle { corner: [-4, -1, 4] m, edge_u: [8, 0, 0] m, edge_v: [0, 0, -8] m, sides: front, shader: Lambertian { color: "
+      "CheckerMap { first: 0.1, second: rgb(0.9, 0.5, 0.2), repeat: [5, 3, 1] } } }",
+      // Metals, glass, plastic, holes; a box, a cylinder, a disc, triangles.
+      "Environment { emission: DiffuseEmission { radiance: rgb(1, 0.9, 0.7) } },"
+      "Box { size: [1, 2, 1] m, centre: [1.5, 0, 0] m, shader: LossyPlastic { color: 0.5, roughness: 0.2 } },"
+      "Cylinder { caps: false, height: 2 m, radius: 0.5 m, transform: rotate(40 deg, \"x\"), shader: MaskShader { opacity: "
+      "0.4, shader: "
+      "Conductor { ior: metal(\"Au\"), roughness: 0.3, multiple_scattering: false } } },"
+      "Disc { transform: translate(-1.5, 0, 0), shader: MixShader { first: Lambertian {}, second: PerfectSpecular {}, amount: "
+      "0.25 } },"
+      "TriangleMesh { positions: [[-3, -1, -2], [3, -1, -2], [0, 3, -2]], triangles: [0, 1, 2], shader: Lambertian { color: "
+      "0.7 } }",
+  };
+  for (const char* objects : scenes) {
+    const TemporaryFolder folder;
+    const Exported exported = export_job(folder, job(objects));
+    std::string told;
+    for (const Error& note : exported.notes) told += note.what() + std::string("\n");
+    EXPECT_EQ(told, "");
+    ASSERT_TRUE(exported.back.job) << exported.back.told() << exported.text;
+    exported.back.job->outputs.clear();
+    const Xyz before = test::measure(job(objects)).mean, after = test::measure(exported.back.job).mean;
+    // Two renders of about 400 000 paths each scatter by up to half a per cent.
+    EXPECT_NEAR(after.x / before.x, 1, 0.02) << exported.text;
+    EXPECT_NEAR(after.y / before.y, 1, 0.02);
+    EXPECT_NEAR(after.z / before.z, 1, 0.025);
+  }
+}
+
+TEST(MitsubaExport, TellsWhatItCannotExpress) {
+  const TemporaryFolder folder;
+  const Exported exported =
+      export_job(folder, job("Torus { shader: PhongShader {} }, Distant { emission: DiffuseEmission {} }"));
+  std::string told;
+  for (const Error& note : exported.notes) told += note.what() + std::string("\n");
+  EXPECT_NE(told.find("Mitsuba has no shape like Torus"), std::string::npos) << told;
+}
+
+}  // namespace
+}  // namespace etendue::mitsuba_test
