@@ -28,10 +28,7 @@ class Import final : public Scene {
   void all(const Ray& ray, HitList& list) const override { over_->all(ray, list); }
 
   void prepare() override {
-    if (!over_ || read_ != file.resolved() || read_at_ != time) {
-      if (!over_ && !objects.empty()) fail("objects", "the objects of an Import are those of its file");
-      read();
-    }
+    if (!over_ || read_ != file.resolved() || read_at_ != time) read();
     Scene::prepare();
   }
 
@@ -75,7 +72,19 @@ class Import final : public Scene {
   double read_at_ = 0;
 };
 
-const Register<Import> registered;
+// The objects are those of the file: they are no member, so that what is saved is the Import itself.
+[[maybe_unused]] const bool registered = [] {
+  static RegistrationNode node{typeid(Import), parent_type<Import>(),
+                               [](ClassInfo& info) {
+                                 std::erase_if(info.members, [](const Member& m) { return m.name == "objects"; });
+                                 Description<Import> d(info);
+                                 Import::describe(d);
+                                 d.finish();
+                               },
+                               [] { return Ref<Component>(make<Import>()); }, nullptr};
+  enlist(node);
+  return true;
+}();
 
 }  // namespace
 }  // namespace etendue

@@ -73,8 +73,15 @@ class ObjImporter final : public Importer {
     const bool marked = has_byte_order_mark(contents.text());
     const std::string plain = marked ? as_utf8(contents.text()) : std::string();
     std::map<std::string, int> used;
+    bool looked = false;
     for (Lines lines(marked ? std::string_view(plain) : contents.text()); lines.next();) {
       const std::string_view word = lines.keyword();
+      if (word == "v" && !looked) {
+        looked = true;
+        int count = 0;
+        for (; count < 5 && !lines.at_end(); ++count) lines.number();
+        if (count == 5) importing.inexact("colours of vertices are not read", importing.at(int(lines.line())));
+      }
       if (word == "usemtl") used.try_emplace(std::string(lines.rest()), int(lines.line()));
       if (word != "mtllib") continue;
       const Location at = importing.at(int(lines.line()));

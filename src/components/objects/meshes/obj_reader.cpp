@@ -109,16 +109,26 @@ DoublePoint3 centre_of(std::string_view file) {
   return own_centre(ends);
 }
 
-/// The normals of vertices whose "normals" are smoothing groups: those of the triangles of the group around the place, by area.
-/// Group 0 has none, which leaves its faces flat.
+/// The angle of a triangle at its first corner [rad].
+float angle_at(const Point3& p, const Point3& a, const Point3& b) {
+  const Vector3 u = a - p, v = b - p;
+  return std::atan2(length(cross(u, v)), dot(u, v));
+}
+
+/// The normals of vertices whose "normals" are smoothing groups: those of the triangles of the group around the place, by their
+/// angles there, so that it does not matter how polygons were cut (Thuermer & Wuethrich 1998, Computing vertex normals from
+/// polygonal facets). Group 0 has none, which leaves its faces flat.
 std::vector<Normal3> smooth_normals(const MeshData& mesh, const std::vector<Vertices::Corner>& corners) {
   const auto key = [&](std::uint32_t i) { return std::uint64_t(corners[i].position) << 32 | corners[i].normal; };
+  const auto place = [&](std::uint32_t i) { return mesh.positions[corners[i].position]; };
   std::unordered_map<std::uint64_t, Vector3> sums;
   for (const auto& t : mesh.triangles) {
-    const Vector3 area = area_vector(mesh.positions[corners[t[0]].position], mesh.positions[corners[t[1]].position],
-                                     mesh.positions[corners[t[2]].position]);
-    for (const std::uint32_t i : t)
-      if (corners[i].normal != 0) sums[key(i)] += area;
+    const Vector3 area = area_vector(place(t[0]), place(t[1]), place(t[2]));
+    const float size = length(area);
+    if (!(size > 0 && size < infinity)) continue;
+    for (size_t k = 0; k < 3; ++k)
+      if (corners[t[k]].normal != 0)
+        sums[key(t[k])] += angle_at(place(t[k]), place(t[(k + 1) % 3]), place(t[(k + 2) % 3])) / size * area;
   }
   std::vector<Normal3> normals(corners.size());
   for (std::uint32_t i = 0; i < corners.size(); ++i)

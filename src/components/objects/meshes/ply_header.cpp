@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "etendue/core/error.h"
+#include "etendue/describe/component.h"
 
 namespace etendue::ply {
 namespace {
@@ -87,6 +88,9 @@ Header read_header(std::string_view file) {
       property.count_type = *count;
       property.name = words.back();
       header.elements.back().properties.push_back(std::move(property));
+    } else if (format_known && header.elements.empty()) {
+      warn("a PLY file's header has a line that begins with " + shown(words[0]) +
+           ", which says nothing here: it is passed over");
     } else {
       fail("unknown header word " + shown(words[0]));
     }
