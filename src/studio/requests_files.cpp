@@ -202,9 +202,10 @@ Json queue(const Call& call) {
   return {{"queue", json}};
 }
 
+/// For all pages.
 Json shutdown(const Call& call) {
   require_saved(call);
-  call.studio.shutdown();
+  call.studio.shutdown(call.flag("discard"));
   return {};
 }
 

@@ -45,6 +45,14 @@ Studio::Studio(StudioSettings settings)
 }
 
 Studio::~Studio() {
+  if (ending_) return;
+  try {
+    static_cast<void>(end());
+  } catch (const std::exception&) {  // nobody is left to be told
+  }
+}
+
+std::string Studio::end() {
   ending_ = true;
   {
     const std::lock_guard lock(tasks_guard_);
@@ -55,6 +63,7 @@ Studio::~Studio() {
   answerer_.join();
   viewer_.join();
   runner_.set(nullptr);
+  return settings_.read_only || discarded_ || !document_.changed() ? std::string() : document_.save_aside();
 }
 
 void Studio::begin(const std::string& file) {
@@ -211,7 +220,8 @@ std::vector<Error> errors_at_hand() {
   }
 }
 
-void Studio::shutdown() {
+void Studio::shutdown(bool discard) {
+  discarded_ = discard;
   broadcast({{"event", "goodbye"}});
   if (on_shutdown) on_shutdown();
 }
@@ -236,6 +246,7 @@ void Studio::apply_overrides() {
     }
   }
   static_cast<void>(document_.set_overrides(all));
+  coarse_shown = coarse.load();
   ++generation;
   runner_.follow(document_.render());
   wake_viewer();

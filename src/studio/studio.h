@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -74,6 +75,9 @@ class Studio {
   /// The newest frame of what a browser watches; null when there is none.
   std::shared_ptr<const Frame> frame(const Browser&) const;
 
+  /// Ends all threads. What was edited and not saved, unless a page gave it up, is written beside the description; the path of
+  /// that file, else empty. Throws Error when it cannot be written.
+  std::string end();
   /// Called once when a page asked for the end.
   std::function<void()> on_shutdown;
   /// The manual page of a class; empty when there is none.
@@ -102,7 +106,8 @@ class Studio {
   void pin(const std::string& name, std::shared_ptr<const Image>);
   /// Counts films begun anew.
   std::atomic<std::uint32_t> generation{1};
-  std::atomic<bool> coarse{false};
+  std::atomic<bool> coarse{false};        ///< wanted
+  std::atomic<bool> coarse_shown{false};  ///< what the render makes
   /// A moving camera's picture is made fine when this time has come.
   std::optional<std::chrono::steady_clock::time_point> fine_at;
   std::map<std::string, std::string> overrides;  ///< of the session, beside a coarse picture
@@ -111,7 +116,7 @@ class Studio {
   int movement = 0;  ///< counts movements of cameras: all steps of one are one step of undo
   Queue& queue() { return queue_; }
   Tasks& tasks() { return checks_; }
-  void shutdown();
+  void shutdown(bool discard);
   void wake_viewer();
 
  private:
@@ -128,9 +133,10 @@ class Studio {
   void answer();
   void answer(const Task&);
   void look();
-  bool look_once(bool force);
-  std::shared_ptr<const Frame> make_frame(const Watch&, const RenderSnapshot&, const Image&, const FrameInfo&,
-                                          const Frame* before);
+  void look_once();
+  void show(const RenderSnapshot&, const std::set<Watch>& wanted, const std::map<Watch, std::shared_ptr<const Frame>>& before);
+  Json progress_json(const RenderSnapshot&, bool valid);
+  std::shared_ptr<const Frame> make_frame(const Watch&, const Image&, const FrameInfo&, const Frame* before);
 
   StudioSettings settings_;
   Document document_;
@@ -159,6 +165,7 @@ class Studio {
   std::condition_variable viewer_changed_;
   bool viewer_woken_ = false;
   std::atomic<bool> ending_{false};
+  std::atomic<bool> discarded_{false};  ///< a page gave up what is not saved
   Queue queue_;
   Tasks checks_;
   std::thread answerer_, viewer_;

@@ -13,9 +13,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How much of one processor looking may take: what is rendered should hardly notice.
+/// How much of the program's work looking may be: what is rendered should hardly notice.
 constexpr double share = 0.03;
-constexpr auto shortest = std::chrono::milliseconds(50), longest = std::chrono::milliseconds(1000);
+constexpr auto shortest = std::chrono::milliseconds(50), longest = std::chrono::milliseconds(4000);
+
+double processor_time(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
 
 const char* name(Runner::State state) {
   switch (state) {
@@ -44,8 +50,8 @@ Json finite(double x) { return std::isfinite(x) && x > 0 ? Json(x) : Json(); }
 }  // namespace
 
 Ref<ToneMap> tone_map_of(const std::string& text) {
-  constexpr size_t longest = 10000;
-  if (text.size() > longest) throw Error("this tone map is too long");
+  constexpr size_t most = 10000;
+  if (text.size() > most) throw Error("this tone map is too long");
   LoadOptions strict;
   strict.allow_files = false;
   language::Loader loader(strict);
@@ -77,15 +83,18 @@ void Studio::wake_viewer() {
 }
 
 Json Studio::progress_json() {
+  const std::shared_ptr<Render> render = document_.render();
+  return render ? progress_json(render->snapshot(), true) : progress_json({}, false);
+}
+
+Json Studio::progress_json(const RenderSnapshot& now, bool valid) {
   const Runner::Status status = runner_.status();
   Json json = {{"event", "progress"},
                {"state", name(status.state)},
                {"ended", status.ended ? Json(reason(*status.ended)) : Json()},
                {"generation", generation.load()},
-               {"coarse", coarse.load()}};
-  const std::shared_ptr<Render> render = document_.render();
-  if (render) {
-    const RenderSnapshot now = render->snapshot();
+               {"coarse", coarse_shown.load()}};
+  if (valid) {
     const Progress& p = now.progress;
     json["samples"] = p.samples;
     json["samples_wanted"] = p.samples_wanted;
@@ -113,11 +122,14 @@ void Studio::note_shape(const Image& picture) {
   }
 }
 
+// A look follows another when the rest of the program has worked so much longer that looking is a small part of it: by
+// processor time, which does not count what other programs do. What somebody did is shown at once.
 void Studio::look() {
   pthread_setname_np(pthread_self(), "viewer");
   std::uint64_t seen_changes = 0, seen_generation = 0;
-  Clock::time_point told{};
-  auto pause = Clock::duration(shortest);
+  Clock::time_point looked{};
+  double looked_at = 0, cost = 0;  // of the whole program, and of the last look [s of a processor]
+  auto pause = shortest;
   while (!ending_) {
     bool woken = false;
     {
@@ -127,43 +139,36 @@ void Studio::look() {
     }
     if (ending_) return;
     const Runner::Status status = runner_.status();
+    const bool rendering = status.state == Runner::State::rendering;
     const bool changed = woken || status.changes != seen_changes || generation.load() != seen_generation;
-    if (status.state != Runner::State::rendering && !changed) {
-      pause = longest / 4;
-      continue;
-    }
-    seen_changes = status.changes;
-    seen_generation = generation.load();
+    pause = rendering || changed ? shortest : longest / 4;
+    if (!changed && !rendering) continue;
+    const bool soon = coarse && Clock::now() - looked >= shortest;
+    const bool due = share * (processor_time(CLOCK_PROCESS_CPUTIME_ID) - looked_at) >= cost;
+    if (!changed && !soon && !due && Clock::now() - looked < longest) continue;
     {
       const std::lock_guard lock(browsers_guard_);
       if (browsers_.empty()) {
         frames_.clear();
-        pause = longest / 4;
         continue;
       }
     }
-    const Clock::time_point begin = Clock::now();
+    seen_changes = status.changes;
+    seen_generation = generation.load();
+    const double before = processor_time(CLOCK_THREAD_CPUTIME_ID);
     try {
-      look_once(changed);
-      if (changed || begin - told >= std::chrono::milliseconds(250)) {
-        broadcast(progress_json());
-        told = begin;
-      }
+      look_once();
     } catch (const std::exception& error) {
       notice(error.what(), "error");
-      pause = longest;
-      continue;
     }
-    const auto cost = Clock::now() - begin;
-    const auto quiet = std::chrono::duration_cast<Clock::duration>(cost / share);
-    pause =
-        std::clamp<Clock::duration>(status.state == Runner::State::rendering && !coarse ? quiet : shortest, shortest, longest);
+    cost = processor_time(CLOCK_THREAD_CPUTIME_ID) - before;
+    looked_at = processor_time(CLOCK_PROCESS_CPUTIME_ID);
+    looked = Clock::now();
   }
 }
 
-std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const RenderSnapshot& snapshot, const Image& picture,
-                                                const FrameInfo& info, const Frame* before) {
-  static_cast<void>(snapshot);
+std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const Image& picture, const FrameInfo& info,
+                                                const Frame* before) {
   const std::uint64_t number = ++frame_number_;
   Image pinned;
   const Image* image = &picture;
@@ -192,10 +197,11 @@ std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const Render
   return Frame::make(Frame::Kind::toned, shown, 0, false, info, number, before);
 }
 
-/// One frame for each kind of watching.
-bool Studio::look_once(bool) {
+/// One frame for each kind of watching, and how far it is.
+void Studio::look_once() {
   const std::shared_ptr<Render> render = document_.render();
-  if (!render) return false;
+  if (!render) return broadcast(progress_json({}, false));
+  const RenderSnapshot snapshot = render->snapshot();
   std::set<Watch> wanted;
   std::map<Watch, std::shared_ptr<const Frame>> before;
   {
@@ -204,14 +210,18 @@ bool Studio::look_once(bool) {
       if (watch.what != Watch::What::none) wanted.insert(watch);
     before = frames_;
   }
-  if (wanted.empty()) return false;
+  if (!wanted.empty()) show(snapshot, wanted, before);
+  broadcast(progress_json(snapshot, true));
+}
+
+void Studio::show(const RenderSnapshot& snapshot, const std::set<Watch>& wanted,
+                  const std::map<Watch, std::shared_ptr<const Frame>>& before) {
   const Runner::Status status = runner_.status();
-  const RenderSnapshot snapshot = render->snapshot();
   const Image picture = snapshot.picture();
   FrameInfo info;
   info.generation = generation;
   info.samples = snapshot.progress.samples;
-  info.coarse = coarse;
+  info.coarse = coarse_shown;
   info.finished = status.state == Runner::State::finished;
   const auto number_in = [&](const char* key, std::uint32_t otherwise) {
     const auto found = picture.metadata.find(key);
@@ -225,7 +235,7 @@ bool Studio::look_once(bool) {
   for (const Watch& watch : wanted) {
     const auto had = before.find(watch);
     try {
-      frames[watch] = make_frame(watch, snapshot, picture, info, had == before.end() ? nullptr : had->second.get());
+      frames[watch] = make_frame(watch, picture, info, had == before.end() ? nullptr : had->second.get());
     } catch (const std::exception& error) {  // of a tone map; whoever watches keeps what is on the screen
       notice(error.what(), "error");
       if (had != before.end()) frames[watch] = had->second;
@@ -236,7 +246,6 @@ bool Studio::look_once(bool) {
   frames_ = std::move(frames);
   for (const auto& [number, weak] : browsers_)
     if (const auto browser = weak.lock()) browser->frame_ready();
-  return true;
 }
 
 }  // namespace etendue::studio

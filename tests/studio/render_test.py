@@ -149,6 +149,17 @@ class Rendering(unittest.TestCase):
             pathlib.Path(self.folder.name, "there.etd").write_text("", encoding="utf-8")
             self.assertEqual(page.ask("save", file="there.etd")["errors"][0]["code"], "changed_on_disk")
 
+    def test_what_is_not_saved_is_kept_aside(self):
+        with self.studio.page() as page:
+            ball = next(int(i) for i, c in page.greeting["tree"]["components"].items() if c["class"] == "Sphere")
+            page.good("edit", component=ball, member="radius", text="30 cm")
+            self.assertEqual(page.ask("shutdown")["errors"][0]["code"], "busy")
+        self.studio.process.terminate()
+        self.assertEqual(self.studio.process.wait(20), 0)
+        self.assertIn("scene.unsaved.etd", self.studio.process.stderr.read())
+        self.assertIn("radius: 30 cm", pathlib.Path(self.folder.name, "scene.unsaved.etd").read_text(encoding="utf-8"))
+        self.assertEqual(self.file.read_text(encoding="utf-8"), SCENE)
+
     def test_control(self):
         with self.studio.page() as page:
             page.good("goals", samples=100000)

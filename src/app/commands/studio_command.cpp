@@ -115,6 +115,7 @@ int run_studio(const StudioOptions& options) {
   server.run();
   kill(getpid(), SIGTERM);  // in case it ended by itself
   waiter.join();
+  if (const std::string aside = studio.end(); !aside.empty()) fmt::print(stderr, "What was not saved is in {}\n", aside);
   return exit_status::done;
 }
 

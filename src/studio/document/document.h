@@ -47,6 +47,8 @@ class Document {
   /// Whether its file holds something else than was read or written there last, or is gone.
   bool changed_on_disk() const;
   void save(const std::string& file);
+  /// Writes the text, or what was typed last, beside its file under a name that is free; that name.
+  std::string save_aside() const;
   /// Reads all files that it names anew.
   void reload();
 

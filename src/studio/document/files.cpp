@@ -166,6 +166,17 @@ void Document::save(const std::string& file) {
   folder_ = folder;
 }
 
+std::string Document::save_aside() const {
+  fs::path stem = file_.empty() ? fs::path(folder_) / "new" : fs::path(file_);
+  stem.replace_extension();
+  std::string path;
+  std::error_code error;
+  for (int i = 1; path.empty() || fs::exists(path, error); ++i)
+    path = fmt::format("{}.unsaved{}.etd", stem.string(), i == 1 ? "" : fmt::format("_{}", i));
+  write_whole_file(path, draft_ ? draft_->text : text());
+  return path;
+}
+
 void Document::reload() {
   Ref<Job> job = load(*outline_, overrides_);
   replace_render(std::move(job));

@@ -112,7 +112,8 @@ Pairs pairs_of(const Job& old, Job& now, const std::function<Component*(const Co
 Merge merge(const Job& old, Job& now, const std::function<Component*(const Component&)>& counterpart) {
   Merge merge;
   merge.old_of = pairs_of(old, now, counterpart);
-  for (const Ref<Component>& part : components_of(now)) {
+  merge.parts = components_of(now);
+  for (const Ref<Component>& part : merge.parts) {
     const auto found = merge.old_of.find(part.get());
     Component* was = found == merge.old_of.end() ? nullptr : found->second;
     if (!was) merge.fresh.push_back(part), merge.structure = true;

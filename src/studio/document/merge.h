@@ -18,6 +18,8 @@ using Pairs = std::unordered_map<const Component*, Component*>;
 
 /// What the merge found out.
 struct Merge {
+  /// All parts of the new job: some are left by what holds them when that refers to old ones instead, and live on here.
+  std::vector<Ref<Component>> parts;
   std::vector<Edit> edits;
   Pairs old_of;
   /// The new parts that stay what they are, in no order.
