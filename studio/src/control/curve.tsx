@@ -1,0 +1,60 @@
+// The course of the error over time, both by their logarithms: unbiased algorithms go down by a half for four times the time.
+import type { JSX } from "preact";
+import { useEffect, useRef } from "preact/hooks";
+import { effect } from "@preact/signals";
+import UPlot from "uplot";
+import { brief } from "../model/numbers.ts";
+import { errorCourse, progress } from "../model/state.ts";
+import { percent } from "../model/numbers.ts";
+import { isDark } from "../theme.ts";
+import { texts } from "../texts.ts";
+
+export function ErrorCurve(): JSX.Element {
+  const box = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const parent = box.current;
+    if (!parent) return;
+    let plot: UPlot | null = null;
+    const end = effect(() => {
+      plot?.destroy();
+      plot = make(parent, isDark.value);
+    });
+    const endData = effect(() => {
+      const { seconds, errors } = errorCourse.value;
+      void isDark.value;
+      plot?.setData([seconds, errors.map((e) => e * 100)]);
+    });
+    const resize = new ResizeObserver(() => plot?.setSize({ width: parent.clientWidth, height: 150 }));
+    resize.observe(parent);
+    return () => {
+      end();
+      endData();
+      resize.disconnect();
+      plot?.destroy();
+    };
+  }, []);
+  const error = progress.value?.error;
+  return <div class="curve" ref={box} role="img" aria-label={texts.control.courseSays(error == null ? "–" : percent(error))} />;
+}
+
+function make(parent: HTMLElement, dark: boolean): UPlot {
+  const ink = dark ? "#aab4be" : "#4d5863";
+  const grid = { stroke: dark ? "#ffffff14" : "#00000014", width: 1 };
+  const axis = { stroke: ink, grid, ticks: grid, font: "11px system-ui", size: 34 };
+  return new UPlot(
+    {
+      width: Math.max(200, parent.clientWidth),
+      height: 150,
+      legend: { show: false },
+      cursor: { y: false },
+      scales: { x: { time: false, distr: 3, log: 10 }, y: { distr: 3, log: 10 } },
+      axes: [
+        { ...axis, size: 28, values: (_u, v) => v.map((x) => (x === null ? "" : `${brief(x, 2)} s`)) },
+        { ...axis, size: 52, values: (_u, v) => v.map((y) => (y === null ? "" : `${brief(y, 2)} %`)) },
+      ],
+      series: [{}, { stroke: dark ? "#7cc0ff" : "#0b65b8", width: 1.6, points: { show: false } }],
+    },
+    [[], []],
+    parent,
+  );
+}

@@ -1,0 +1,73 @@
+// Edits of members from panels: what is wrong is shown at the field; a slider that is dragged sends no more than the program takes.
+import { signal } from "@preact/signals";
+import { Refused } from "../model/protocol.ts";
+import { demand } from "../model/studio.ts";
+import { texts } from "../texts.ts";
+
+/** What is wrong with the last edit of a member, by `key`. */
+export const wrong = signal<ReadonlyMap<string, string>>(new Map());
+
+export const key = (component: number, member: string, index?: number): string => `${component}.${member}${index === undefined ? "" : `.${index}`}`;
+
+function setWrong(at: string, message: string | null): void {
+  if (message === null && !wrong.value.has(at)) return;
+  const next = new Map(wrong.value);
+  if (message === null) next.delete(at);
+  else next.set(at, message);
+  wrong.value = next;
+}
+
+export function forgetWrong(): void {
+  if (wrong.value.size) wrong.value = new Map();
+}
+
+export async function setMember(component: number, member: string, text: string, more: { index?: number; merge?: string } = {}): Promise<boolean> {
+  const at = key(component, member, more.index);
+  try {
+    await demand("edit", { component, member, text, ...more });
+    setWrong(at, null);
+    return true;
+  } catch (error) {
+    setWrong(at, error instanceof Refused ? error.message : texts.notices.offline);
+    return false;
+  }
+}
+
+export async function resetMember(component: number, member: string): Promise<void> {
+  try {
+    await demand("reset", { component, member });
+    setWrong(key(component, member), null);
+  } catch (error) {
+    setWrong(key(component, member), error instanceof Refused ? error.message : texts.notices.offline);
+  }
+}
+
+let drags = 0;
+
+/** Edits while something is dragged: one at a time, the newest value next, all of them one step of undo. */
+export class Dragging {
+  private readonly merge = `drag ${Date.now()} ${++drags}`;
+  private waiting: string | null = null;
+  private busy = false;
+
+  constructor(
+    private readonly component: number,
+    private readonly member: string,
+    private readonly index?: number,
+  ) {}
+
+  set(text: string): void {
+    this.waiting = text;
+    if (!this.busy) void this.send();
+  }
+
+  private async send(): Promise<void> {
+    this.busy = true;
+    while (this.waiting !== null) {
+      const text = this.waiting;
+      this.waiting = null;
+      await setMember(this.component, this.member, text, { merge: this.merge, ...(this.index === undefined ? {} : { index: this.index }) });
+    }
+    this.busy = false;
+  }
+}

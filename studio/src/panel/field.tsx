@@ -1,0 +1,124 @@
+// One member of a component: its name, what it is set by, back to the default, help, and what is wrong.
+import { signal } from "@preact/signals";
+import type { JSX } from "preact";
+import type { Member } from "../model/classes.ts";
+import { writeDefault } from "../model/classes.ts";
+import type { Component, MemberState } from "../model/protocol.ts";
+import { inline } from "../parts/markdown.tsx";
+import { Button } from "../parts/parts.tsx";
+import { texts } from "../texts.ts";
+import { ColorField } from "./color.tsx";
+import { ComponentField, ComponentList } from "./component.tsx";
+import { resetMember, wrong, key } from "./edit.ts";
+import { FileField, FileList } from "./file.tsx";
+import { NumberField } from "./number.tsx";
+import { BooleanField, ChoiceField, ChoicesField, ExpressionField, TextField } from "./simple.tsx";
+import { TransformField } from "./transform.tsx";
+import { VectorField } from "./vector.tsx";
+
+const t = texts.panel;
+
+/** The member that is told of below the panel: it must not move what a mouse is about to press. */
+const explained = signal<Member | null>(null);
+
+export function explain(member: Member | null): void {
+  explained.value = member;
+}
+
+export function Explanation(): JSX.Element {
+  const member = explained.value;
+  return (
+    <footer class="explanation">
+      {member ? (
+        <>
+          <b>{member.name}</b> {inline(member.text)}
+          <span class="facts">{facts(member)}</span>
+        </>
+      ) : (
+        <span>{t.explain}</span>
+      )}
+    </footer>
+  );
+}
+
+/** What every kind of field gets. */
+export interface FieldProps {
+  component: Component;
+  member: Member;
+  state: MemberState;
+  /** The identifier of the control, which its label names. */
+  id: string;
+}
+
+export function Field({ component, member }: { component: Component; member: Member }): JSX.Element | null {
+  const state = component.members[member.name];
+  if (!state) return null;
+  const id = `field-${component.id}-${member.name}`;
+  const problems = [...wrong.value].filter(([k]) => k === key(component.id, member.name) || k.startsWith(`${key(component.id, member.name)}.`));
+  const props = { component, member, state, id };
+  return (
+    <div class={`field type-${member.type}${state.written ? " written" : ""}${state.matters ? "" : " idle"}${problems.length ? " has-wrong" : ""}`}
+      title={state.matters ? undefined : t.doesNotMatter} onFocusIn={() => explain(member)} onMouseEnter={() => explain(member)}>
+      <label for={id} title={member.text}>
+        {member.name.replace(/_/g, " ")}
+      </label>
+      <div class="control">{control(props)}</div>
+      <div class="after">
+        {state.written && !member.required && (
+          <Button icon="reset" label={t.reset(member.name, writeDefault(member.default, member.type))} onClick={() => void resetMember(component.id, member.name)} />
+        )}
+      </div>
+      {problems.map(([, message]) => (
+        <p class="wrong" role="alert" id={`${id}-wrong`}>{message}</p>
+      ))}
+      <p class="help" id={`${id}-help`}>{member.text}</p>
+    </div>
+  );
+}
+
+function control(props: FieldProps): JSX.Element {
+  const { member } = props;
+  if (member.type === "component") return member.list ? <ComponentList {...props} /> : <ComponentField {...props} />;
+  if (member.list) {
+    if (member.type === "file") return <FileList {...props} />;
+    return member.choices ? <ChoicesField {...props} /> : <ExpressionField {...props} />;
+  }
+  switch (member.type) {
+    case "number":
+    case "integer":
+      return <NumberField {...props} />;
+    case "boolean":
+      return <BooleanField {...props} />;
+    case "choice":
+      return <ChoiceField {...props} />;
+    case "string":
+      return member.choices ? <ChoiceField {...props} /> : <TextField {...props} />;
+    case "file":
+      return <FileField {...props} />;
+    case "color":
+      return <ColorField {...props} />;
+    case "transform":
+      return <TransformField {...props} />;
+    case "vector2":
+    case "vector3":
+    case "point2":
+    case "point3":
+    case "normal3":
+      return <VectorField {...props} />;
+    default:
+      return <ExpressionField {...props} />;
+  }
+}
+
+/** Unit, range and default in one line. */
+function facts(member: Member): string {
+  const range = member.range;
+  const bounds = [
+    range?.low !== undefined ? `≥ ${range.low}` : range?.more_than !== undefined ? `> ${range.more_than}` : "",
+    range?.high !== undefined ? `≤ ${range.high}` : range?.less_than !== undefined ? `< ${range.less_than}` : "",
+  ].filter(Boolean).join(", ");
+  const standard = writeDefault(member.default, member.type);
+  return [member.unit ?? "", bounds, member.required ? t.required : t.default(standard.length > 60 ? "…" : standard), member.effect ? t.effects[member.effect] : ""]
+    .filter(Boolean)
+    .join(" · ");
+}

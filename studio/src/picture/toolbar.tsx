@@ -1,0 +1,188 @@
+// The row of tools above the picture.
+import { computed } from "@preact/signals";
+import type { JSX } from "preact";
+import { document_, progress, readOnly } from "../model/state.ts";
+import { ask, watch } from "../model/studio.ts";
+import { brief } from "../model/numbers.ts";
+import { Button } from "../parts/parts.tsx";
+import { texts } from "../texts.ts";
+import { frameSelected } from "./camera.ts";
+import { automaticStops } from "./film.ts";
+import { HistogramView } from "./histogram.tsx";
+import { command, crop, mode, setCrop, zoom, type Mode } from "./picture.tsx";
+import { savePicture } from "./save.tsx";
+import * as store from "./store.ts";
+
+const t = texts.picture;
+
+function setCurve(curve: store.Curve): void {
+  store.curve.value = curve;
+  follow();
+}
+
+/** Asks for the pixels that what is chosen needs. */
+function follow(): void {
+  if (store.curve.value === "program" && !store.falseColor.value && store.compare.value === "none" && !store.layer.value) {
+    watch({ what: "toned" });
+  } else watch(store.layer.value ? { what: "linear", layer: store.layer.value } : { what: "linear" });
+}
+
+const zoomText = computed(() => `${brief(zoom.value * 100, 3)} %`);
+
+export function PictureToolbar(): JSX.Element {
+  const modes: { name: Mode; label: string; icon: "search" | "crop" | "orbit" | "SceneObject" | "link" }[] = [
+    { name: "look", label: t.modes.look, icon: "search" },
+    { name: "pick", label: t.modes.pick, icon: "SceneObject" },
+    { name: "orbit", label: t.modes.orbit, icon: "orbit" },
+    { name: "crop", label: t.modes.crop, icon: "crop" },
+    { name: "paths", label: t.modes.paths, icon: "link" },
+  ];
+  return (
+    <div class="toolbar picture-bar" role="toolbar" aria-label={t.toolbar}>
+      <div class="cluster" role="group" aria-label={t.mouse}>
+        {modes.map((m) => (
+          <Button key={m.name} icon={m.icon} label={m.label} pressed={mode.value === m.name} disabled={m.name === "orbit" && readOnly.value}
+            onClick={() => (mode.value = m.name)} />
+        ))}
+        {crop.value && <Button label={t.wholePicture} onClick={() => void setCrop(null)} />}
+        {mode.value === "orbit" && <Button icon="target" label={t.frame} onClick={frameSelected} />}
+      </div>
+      <div class="cluster" role="group" aria-label={t.zoom}>
+        <Button icon="fit" label={t.fit} keys="F" onClick={() => command("fit")} />
+        <Button label="1:1" keys="1" onClick={() => command("one")} />
+        <output class="zoom">{zoomText.value}</output>
+      </div>
+      <Exposure />
+      <select aria-label={t.curve} title={t.curve} value={store.curve.value} onChange={(e) => setCurve(e.currentTarget.value as store.Curve)}>
+        {(["program", "filmic", "linear", "reinhard"] as const).map((c) => (
+            <option key={c} value={c}>
+              {t.curves[c]}
+            </option>
+          ))}
+      </select>
+      <Layers />
+      <div class="cluster end">
+        <details class="drop">
+          <summary class="button" title={t.more}>{t.more}</summary>
+          <More />
+        </details>
+      </div>
+    </div>
+  );
+}
+
+function Exposure(): JSX.Element {
+  const disabled = store.curve.value === "program" && !store.falseColor.value && store.compare.value === "none";
+  const change = (e: JSX.TargetedEvent<HTMLInputElement>): void => {
+    store.expose(Number(e.currentTarget.value));
+  };
+  return (
+    <div class="cluster exposure">
+      <label class="inline">
+        <span>{t.exposure}</span>
+        <input type="range" min={-10} max={10} step={0.05} value={store.stops.value} disabled={disabled} onInput={change} />
+      </label>
+      <input type="number" class="narrow" aria-label={t.exposureStops} min={-30} max={30} step={0.25} disabled={disabled}
+        value={Number(store.stops.value.toFixed(2))} onInput={change} />
+      <Button label={t.automatic} disabled={disabled} onClick={() => store.film.value && store.expose(automaticStops(store.film.value))} />
+    </div>
+  );
+}
+
+function Layers(): JSX.Element | null {
+  const layers = progress.value?.layers ?? [];
+  if (!layers.length) return null;
+  return (
+      <select
+        aria-label={t.layer}
+        title={t.layer}
+        value={store.layer.value}
+        onChange={(e) => {
+          store.layer.value = e.currentTarget.value;
+          follow();
+        }}
+      >
+        <option value="">{t.light}</option>
+        {layers.map((l) => (
+          <option key={l}>{l}</option>
+        ))}
+      </select>
+  );
+}
+
+function More(): JSX.Element {
+  const pinned = store.pinned.value;
+  const range = store.falseRange.value;
+  const setRange = (end: 0 | 1) => (e: JSX.TargetedEvent<HTMLInputElement>) => {
+    const value = Number(e.currentTarget.value);
+    store.falseRange.value = end === 0 ? [Math.min(value, range[1] - 0.5), range[1]] : [range[0], Math.max(value, range[0] + 0.5)];
+  };
+  return (
+    <div class="drop-content">
+      <HistogramView />
+      <label class="check">
+        <input
+          type="checkbox"
+          checked={store.falseColor.value}
+          onChange={(e) => {
+            store.falseColor.value = e.currentTarget.checked;
+            follow();
+          }}
+        />
+        {t.falseColor}
+      </label>
+      {store.falseColor.value && (
+        <div class="pair">
+          {([0, 1] as const).map((end) => (
+            <label key={end} class="inline">
+              <span>2^</span>
+              <input type="number" class="narrow" step={0.5} value={range[end]} aria-label={end ? t.falseHigh : t.falseLow} onInput={setRange(end)} />
+            </label>
+          ))}
+          <span class="turbo" aria-hidden="true" />
+        </div>
+      )}
+      <label class="check">
+        <input type="checkbox" checked={store.markBad.value} onChange={(e) => (store.markBad.value = e.currentTarget.checked)} />
+        {t.markBad(progress.value?.bad_samples ?? 0)}
+      </label>
+      <hr />
+      <div class="cluster">
+        <Button icon="pin" text label={pinned ? t.pinAgain : t.pin} disabled={!store.film.value}
+          onClick={() => {
+            store.pin(t.pinnedTitle(document_.value?.title ?? "", store.samplesShown.value));
+            follow();
+          }} />
+        {pinned && <Button label={t.unpin} onClick={() => (store.unpin(), follow())} />}
+      </div>
+      {pinned && (
+        <>
+          <p class="dim">{pinned.title}</p>
+          <div class="cluster" role="group" aria-label={t.compare}>
+            {(["none", "split", "flicker", "difference"] as const).map((c) => (
+              <Button key={c} label={t.compares[c]} pressed={store.compare.value === c} onClick={() => ((store.compare.value = c), follow())} />
+            ))}
+          </div>
+          {store.compare.value === "split" && (
+            <label class="inline">
+              <span>{t.splitAt}</span>
+              <input type="range" min={0} max={1} step={0.01} value={store.split.value} onInput={(e) => (store.split.value = Number(e.currentTarget.value))} />
+            </label>
+          )}
+        </>
+      )}
+      <hr />
+      <div class="cluster">
+        <Button icon="save" text label={t.save} disabled={!store.film.value} onClick={() => (savePicture.value = true)} />
+        <Button label={t.badList} onClick={() => void listBad()} />
+      </div>
+    </div>
+  );
+}
+
+async function listBad(): Promise<void> {
+  const said = await ask<{ samples: { x: number; y: number; kind: string }[] }>("bad_samples");
+  if (!said) return;
+  const { notify } = await import("../model/state.ts");
+  notify(said.samples.length ? said.samples.slice(0, 8).map((s) => `${s.x}, ${s.y}: ${s.kind}`).join("; ") : t.noBad);
+}

@@ -1,0 +1,82 @@
+// What can be done to a component in the tree.
+import { signal } from "@preact/signals";
+import type { Component, Use } from "../model/protocol.ts";
+import { components, notify, placeOfSelected, select, selectedComponent } from "../model/state.ts";
+import { ask } from "../model/studio.ts";
+import { texts } from "../texts.ts";
+
+/** What the window of classes is open for: adding to a component, or replacing one. */
+export const choosing = signal<{ what: "add" | "replace"; component: Component; use: Use | null; member?: string } | null>(null);
+export const sharing = signal<{ component: Component; use: Use } | null>(null);
+export const renaming = signal<Component | null>(null);
+
+interface Made {
+  component?: number;
+}
+
+const place = (use: Use): Record<string, unknown> => ({ component: use.id, member: use.member, ...(use.index === undefined ? {} : { index: use.index }) });
+
+export async function add(component: number, member: string, what: { class: string } | { text: string }, index?: number): Promise<void> {
+  const made = await ask<Made>("add", { component, member, ...what, ...(index === undefined ? {} : { index }) });
+  if (made?.component) select(made.component);
+}
+
+export async function replace(component: Component, className: string, use: Use | null): Promise<void> {
+  const made = await ask<Made>("replace", { component: component.id, class: className, ...(use ? { use } : {}) });
+  if (made?.component) select(made.component, use);
+}
+
+export async function remove(): Promise<void> {
+  const use = placeOfSelected.value;
+  if (!use) return;
+  const parent = components.value.get(use.id);
+  const done = await ask("remove", place(use));
+  if (!done || !parent) return;
+  // What stands there now is selected next, so that many can be removed one after another.
+  const value = components.value.get(use.id)?.members[use.member]?.value;
+  const next = Array.isArray(value) && use.index !== undefined ? value[Math.min(use.index, value.length - 1)] : undefined;
+  if (typeof next === "object" && next !== null && "component" in next) {
+    select(next.component as number, { ...use, index: Math.min(use.index ?? 0, (value as unknown[]).length - 1) });
+  } else select(parent.id);
+}
+
+export async function duplicate(): Promise<void> {
+  const use = placeOfSelected.value;
+  if (use?.index === undefined) return notify(texts.tree.onlyInLists);
+  const made = await ask<Made>("duplicate", place(use));
+  if (made?.component) select(made.component, { ...use, index: use.index + 1 });
+}
+
+export async function moveBy(by: -1 | 1): Promise<void> {
+  const use = placeOfSelected.value;
+  if (use?.index === undefined) return;
+  const list = components.value.get(use.id)?.members[use.member]?.value;
+  const to = use.index + by;
+  if (!Array.isArray(list) || to < 0 || to >= list.length) return;
+  const component = selectedComponent.value;
+  if (await ask("move", { ...place(use), to })) select(component?.id ?? null, { ...use, index: to });
+}
+
+/** Brings an entry of a list before another entry, of the same list or another one. */
+export async function moveTo(use: Use, target: Use): Promise<void> {
+  if (use.index === undefined || target.index === undefined) return;
+  const same = use.id === target.id && use.member === target.member;
+  const to = same && target.index > use.index ? target.index - 1 : target.index;
+  if (same && to === use.index) return;
+  await ask("move", { ...place(use), to, ...(same ? {} : { component_to: target.id, member_to: target.member }) });
+}
+
+export async function share(use: Use, with_: number): Promise<void> {
+  if (await ask("share", { ...place(use), with: with_ })) select(with_, use);
+}
+
+export async function unshare(): Promise<void> {
+  const use = placeOfSelected.value;
+  if (!use) return;
+  const made = await ask<Made>("unshare", place(use));
+  if (made?.component) select(made.component, use);
+}
+
+export async function rename(component: Component, name: string | null): Promise<boolean> {
+  return (await ask("rename", { component: component.id, name })) !== null;
+}

@@ -1,0 +1,139 @@
+// Starts the program's studio on a copy of a scene, and Debian's Chromium on its page. Ends both.
+import { chromium } from "playwright-core";
+import { spawn, execFileSync } from "node:child_process";
+import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const here = dirname(fileURLToPath(import.meta.url));
+export const repository = resolve(here, "../..");
+const build = process.env.ETENDUE_BUILD ?? join(repository, "build");
+export const program = process.env.ETENDUE_PROGRAM ?? join(build, "etendue");
+const page = process.env.ETENDUE_STUDIO_PAGE ?? join(build, "studio/index.html");
+export const chromiumPath = process.env.ETENDUE_CHROMIUM ?? "/usr/bin/chromium";
+
+/** A folder of its own that goes away with the test. */
+export function scratch(t) {
+  const folder = mkdtempSync(join(tmpdir(), "etendue-studio-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  return folder;
+}
+
+export function run(...arguments_) {
+  return execFileSync(program, arguments_, { encoding: "utf8", maxBuffer: 1 << 28, stdio: ["ignore", "pipe", "pipe"] });
+}
+
+/** Starts `etendue studio` with a text as its document; gives the address, the file and a way to end it. */
+export async function startStudio(t, text, ...more) {
+  const folder = scratch(t);
+  const file = join(folder, "scene.etd");
+  if (text !== null) writeFileSync(file, text);
+  if (existsSync(join(repository, "scenes/data"))) cpSync(join(repository, "scenes/data"), join(folder, "data"), { recursive: true });
+  const child = spawn(program, ["studio", "--no-browser", "--page", page, ...more, ...(text === null ? [] : [file])], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+  let errors = "";
+  child.stderr.on("data", (data) => (errors += data));
+  let wanted = false;
+  const ended = new Promise((done) => child.on("exit", done));
+  child.on("exit", (code, signal) => {
+    if (!wanted) console.error(`the studio ended by itself: ${code ?? signal}: ${errors}`);
+  });
+  t.after(async () => {
+    wanted = true;
+    child.kill("SIGTERM");
+    await ended;
+  });
+  const address = await new Promise((done, fail) => {
+    let said = "";
+    child.stdout.on("data", (data) => {
+      said += data;
+      const found = /http:\/\/\S+/.exec(said);
+      if (found) done(found[0]);
+    });
+    child.on("exit", (code) => fail(new Error(`the studio ended with ${code}: ${errors}`)));
+  });
+  return { address, file, folder, read: () => readFileSync(file, "utf8") };
+}
+
+export async function openBrowser(t) {
+  const browser = await chromium.launch({
+    executablePath: chromiumPath,
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+  t.after(() => browser.close());
+  return browser;
+}
+
+/** Opens the page and waits for its tree; fails the test for every error the page throws. */
+export async function openPage(t, browser, address, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
+  const opened = await context.newPage();
+  const errors = [];
+  opened.on("pageerror", (error) => errors.push(String(error)));
+  t.after(() => {
+    if (errors.length) throw new Error(`the page threw: ${errors.join("; ")}`);
+  });
+  await opened.goto(address);
+  await opened.waitForSelector("[role=treeitem]");
+  return opened;
+}
+
+/** A connection of its own to the program, from within a page: requests without clicks, for preparing and checking. */
+export async function connect(opened) {
+  await opened.evaluate(async () => {
+    const socket = new WebSocket(`ws://${location.host}/socket${location.search}`);
+    const waiting = new Map();
+    let last = 0;
+    const state = { components: new Map(), root: null, text: "", document: null };
+    globalThis.studio = {
+      state,
+      ask: (what, more = {}) =>
+        new Promise((done) => {
+          waiting.set(++last, done);
+          socket.send(JSON.stringify({ id: last, do: what, ...more }));
+        }),
+    };
+    const tree = (said) => {
+      if (said.components) {
+        state.components = new Map(Object.values(said.components).map((c) => [c.id, c]));
+        state.root = said.root;
+      } else for (const c of Object.values(said.update ?? {})) state.components.set(c.id, c);
+    };
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = ({ data }) => {
+      if (typeof data !== "string") return;
+      const said = JSON.parse(data);
+      if (said.event === "tree") tree(said);
+      if (said.event === "document") state.document = said;
+      if (said.event === "text" && said.text !== undefined) state.text = said.text;
+      if (said.event === "text" && said.changes) {
+        for (const c of [...said.changes].sort((a, b) => b.begin - a.begin)) state.text = state.text.slice(0, c.begin) + c.insert + state.text.slice(c.end);
+      }
+      if (said.id !== undefined) waiting.get(said.id)?.(said);
+    };
+    await new Promise((done) => (socket.onopen = done));
+    const hello = await studio.ask("hello", { protocol: 1 });
+    state.text = hello.text.text;
+    state.document = hello.document;
+    if (hello.tree) tree(hello.tree);
+    await studio.ask("watch", { what: "none" });
+  });
+  return {
+    ask: (what, more) => opened.evaluate(([w, m]) => studio.ask(w, m), [what, more]),
+    text: () => opened.evaluate(() => studio.state.text),
+    components: () => opened.evaluate(() => [...studio.state.components.values()]),
+    component: (id) => opened.evaluate((i) => studio.state.components.get(i) ?? null, id),
+    root: () => opened.evaluate(() => studio.state.components.get(studio.state.root)),
+  };
+}
+
+/** Waits until something holds. */
+export async function until(what, test, seconds = 10) {
+  const end = Date.now() + seconds * 1000;
+  for (;;) {
+    const value = await test();
+    if (value) return value;
+    if (Date.now() > end) throw new Error(`not within ${seconds} s: ${what}; it is ${JSON.stringify(value)}`);
+    await new Promise((done) => setTimeout(done, 30));
+  }
+}

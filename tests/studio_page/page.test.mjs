@@ -1,0 +1,196 @@
+// What people do on the page, against the real program: panels, text, undo, keys, two browsers, accessibility.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { test } from "node:test";
+import { connect, openBrowser, openPage, run, scratch, startStudio, until } from "./harness.mjs";
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+const small = `# A ball, lit by the sky. This comment stays.
+white = Lambertian { color: 0.75 }   # so does this
+
+Job {
+    renderer: PathTracer { samples: 4 }
+    camera:   PerspectiveCamera { from: [0, 1, 5] m, to: [0, 0.5, 0] m }   # where from
+    image:    ImageBuffer { width: 64, height: 48 }
+    scene: BvhScene { objects: [
+        Sphere { radius: 30 cm,   shader: white }   # the ball
+        Environment { emission: EnvironmentEmission { radiance: 1 } }
+    ] }
+}
+`;
+
+async function begin(t, text = small) {
+  const studio = await startStudio(t, text);
+  const browser = await openBrowser(t);
+  const page = await openPage(t, browser, studio.address);
+  const program = await connect(page);
+
+  return { studio, browser, page, program };
+}
+
+const row = (page, name) => page.locator("[role=treeitem]", { hasText: name }).first();
+const field = (page, name) => page.locator(".field", { has: page.locator("label", { hasText: new RegExp(`^${name}$`) }) }).first();
+
+test("a panel's edit changes the value in the text and nothing else", async (t) => {
+  const { page, program, studio } = await begin(t);
+  assert.equal(await program.text(), small);
+  await row(page, "Sphere").click();
+  const entry = field(page, "radius").locator("input.entry");
+  assert.equal(await entry.inputValue(), "30 cm");
+  await entry.fill("45 cm");
+  await entry.press("Enter");
+  const wanted = small.replace("30 cm", "45 cm");
+  await until("the text has the new radius", async () => (await program.text()) === wanted);
+  await page.keyboard.press("Control+s");
+  await until("it is saved", () => studio.read() === wanted);
+});
+
+test("what is refused is said at the field, and changes nothing", async (t) => {
+  const { page, program } = await begin(t);
+  await row(page, "Sphere").click();
+  const radius = field(page, "radius");
+  await radius.locator("input.entry").fill("-1 m");
+  await radius.locator("input.entry").press("Enter");
+  await radius.locator("[role=alert]").waitFor();
+  assert.equal(await program.text(), small);
+});
+
+test("sliders, choices and resets; one drag is one step of undo", async (t) => {
+  const { page, program } = await begin(t);
+  await row(page, "Sphere").click();
+  const slider = field(page, "radius").locator("input[type=range]");
+  await slider.focus();
+  await slider.evaluate((e) => {
+    for (const v of [0.2, 0.4, 0.6]) {
+      e.value = v;
+      e.dispatchEvent(new Event("input", { bubbles: true }));
+    }
+    e.dispatchEvent(new Event("change", { bubbles: true }));
+  });
+  await until("the radius is dragged, in its unit", async () => /radius: 251 cm/.test(await program.text()));
+  await page.keyboard.press("Control+z");
+  await until("one undo is enough", async () => (await program.text()) === small);
+  await field(page, "sides").locator("select").selectOption("front");
+  await until("the choice is written", async () => /sides: front/.test(await program.text()));
+  await field(page, "sides").locator("button[aria-label^='Back to']").click();
+  await until("and not written any more", async () => (await program.text()) === small).catch(async (e) => assert.equal(await program.text(), small, String(e)));
+});
+
+test("two browsers see one document", async (t) => {
+  const { page, browser, program, studio } = await begin(t);
+  const other = await openPage(t, browser, studio.address);
+  await row(page, "Sphere").click();
+  await row(other, "Sphere").click();
+  await field(page, "radius").locator("input.entry").fill("1 m");
+  await field(page, "radius").locator("input.entry").press("Enter");
+  await until("the other sees it", async () => (await field(other, "radius").locator("input.entry").inputValue()) === "1 m");
+  await other.keyboard.press("Control+z");
+  await until("and takes it back", async () => (await program.text()) === small);
+});
+
+test("the text is edited as typed; what is not valid waits; panels follow", async (t) => {
+  const { page, program } = await begin(t);
+  await row(page, "Sphere").click();
+  await page.click("#tab-text");
+  await page.locator(".cm-line", { hasText: "the ball" }).click();
+  await page.keyboard.press("Home");
+  for (let i = 0; i < "Sphere { radius: 30".length; ++i) await page.keyboard.press("ArrowRight");
+  await page.keyboard.type("0");
+  await until("the panel has the new radius", async () => (await field(page, "radius").locator("input.entry").inputValue()) === "300 cm");
+  await page.keyboard.type("x");
+  await page.locator(".problems").waitFor();
+  assert.equal(await program.text(), small.replace("30 cm", "300 cm"), "the document keeps what is valid");
+  await page.keyboard.press("Backspace");
+  await page.locator(".problems").waitFor({ state: "detached" });
+});
+
+test("axe finds nothing wrong, in light and dark, in any view", async (t) => {
+  const { page, browser, studio } = await begin(t);
+  const check = async (on, what) => {
+    await on.evaluate(axe);
+    const { violations } = await on.evaluate(() => globalThis.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"] }));
+    assert.deepEqual(violations.map((v) => `${what}: ${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 140)).join(" | ")}`), []);
+  };
+  const light = await openPage(t, browser, studio.address, { colorScheme: "light" });
+  for (const [on, name] of [[page, "dark"], [light, "light"]]) {
+    if (name === "dark") await on.emulateMedia({ colorScheme: "dark" });
+    await check(on, `${name} picture`);
+    await row(on, "Sphere").click();
+    await on.click("text=Goals, error, queue");
+    await check(on, `${name} panel`);
+    await on.click("#tab-text");
+    await check(on, `${name} text`);
+    await on.click("#tab-paths");
+    await check(on, `${name} paths`);
+    await on.click("#tab-picture");
+    await on.locator("[aria-label='Add…']").first().click();
+    await on.locator("dialog").waitFor();
+    await check(on, `${name} classes`);
+    await on.keyboard.press("Escape");
+  }
+});
+
+test("a scene is built from nothing by keys alone, and renders to the bytes its text renders to", async (t) => {
+  const studio = await startStudio(t, null);
+  const browser = await openBrowser(t);
+  const page = await openPage(t, browser, studio.address);
+  const program = await connect(page);
+  const press = (keys) => page.keyboard.press(keys);
+  const focusTree = () => page.locator("[role=tree]").focus();
+  const goTo = async (name) => {
+    await focusTree();
+    await press("Home");
+    for (let i = 0; i < 60; ++i) {
+      const now = await page.locator("[role=treeitem][aria-selected=true]").first().textContent();
+      if (now?.includes(name)) return;
+      await press("ArrowDown");
+    }
+    throw new Error(`no row ${name}`);
+  };
+  const add = async (to, name) => {
+    await goTo(to);
+    await press("Insert");
+    await page.locator("dialog input[role=combobox]").waitFor();
+    await page.keyboard.type(name);
+    await press("Enter");
+    await page.locator("dialog").waitFor({ state: "detached" });
+    await until(`${name} is selected`, async () => (await page.locator("[role=treeitem][aria-selected=true]").first().textContent())?.includes(name));
+  };
+  const scene = (await program.components()).find((c) => c.class.endsWith("Scene"));
+  assert.ok(scene, "an empty document has a scene");
+  await add(scene.class, "Sphere");
+  await press("Enter"); // to its panel
+  await until("a field has the focus", () => page.evaluate(() => document.activeElement?.closest(".panel") !== null));
+  // Tab to the radius, and type it.
+  for (let i = 0; i < 60; ++i) {
+    if (await page.evaluate(() => document.activeElement?.id.endsWith("-radius"))) break;
+    await press("Tab");
+  }
+  await press("Control+a");
+  await page.keyboard.type("40 cm");
+  await press("Enter");
+  await until("the radius is written", async () => /radius: 40 cm/.test(await program.text()));
+  await add("Sphere", "Environment");
+  await press("Control+Shift+s");
+  const name = page.locator("dialog input[type=text]");
+  await name.waitFor();
+  await name.focus();
+  await press("Control+a");
+  await page.keyboard.type("built.etd");
+  await press("Enter");
+  const file = `${studio.folder}/built.etd`;
+  await until("it is saved", () => {
+    try {
+      return readFileSync(file, "utf8") !== "";
+    } catch {
+      return false;
+    }
+  });
+  assert.equal(readFileSync(file, "utf8"), await program.text());
+  const out = scratch(t);
+  run("render", file, "--samples", "2", "-o", `${out}/a.exr`);
+  run("render", file, "--samples", "2", "-o", `${out}/b.exr`);
+  assert.ok(readFileSync(`${out}/a.exr`).equals(readFileSync(`${out}/b.exr`)));
+});
