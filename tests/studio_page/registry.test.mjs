@@ -77,7 +77,7 @@ test("every class is created and every member edited; saved, read again, undone"
   const browser = await openBrowser(t);
   const page = await openPage(t, browser, studio.address, { viewport: { width: 1280, height: 1400 } });
   const program = await connect(page);
-  await page.evaluate(readFileSync(join(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "panel_driver.js"), "utf8"));
+  await page.evaluate(readFileSync(new URL("panel_driver.js", import.meta.url), "utf8"));
   await program.ask("stop");
   const other = join(studio.folder, "edited.etd");
   let edits = 0;

@@ -14,7 +14,8 @@ command -v node >/dev/null || skip "there is no Node"
 [[ -x ${ETENDUE_CHROMIUM:-/usr/bin/chromium} ]] || skip "there is no Chromium"
 [[ -f ${ETENDUE_STUDIO_PAGE:-$build/studio/index.html} ]] || skip "the studio's page is not built"
 [[ -d $here/node_modules/playwright-core && -d $here/node_modules/axe-core ]] || skip "the packages of the tests are not installed"
-(cd "$here/../../studio" && node build.mjs --tests --out "$build/studio")
+[[ -d $here/../../studio/node_modules/typescript ]] || skip "the packages of the page are not installed"
+(cd "$here/../../studio" && node node_modules/typescript/bin/tsc && node build.mjs --tests --out "$build/studio")
 # One after another: each has a browser and a render.
 node --test "$build"/studio/tests/*.mjs
 for file in "$here"/*.test.mjs; do node --test "$file"; done

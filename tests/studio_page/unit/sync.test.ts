@@ -121,3 +121,20 @@ test("what is not valid stays in the editor and is sent again with what is typed
   assert.ok(sync.isClean);
   sync.stop();
 });
+
+test("a draft that is typed back to what was is given up", async () => {
+  const sent: Change[][] = [];
+  const sync = new Sync(Text.of(["ab"]), 1, {
+    send: async (_revision, changes) => (sent.push(changes), { revision: 1, valid: changes.length === 0 }),
+    apply: () => assert.fail("nothing comes from elsewhere"),
+  }, 1e6);
+  sync.typed(ChangeSet.of({ from: 1, insert: "(" }, 2));
+  await sync.flush();
+  sync.typed(ChangeSet.of({ from: 1, to: 2 }, 3));
+  await sync.flush();
+  assert.deepEqual(sent[1], [], "no changes: the program forgets the draft");
+  assert.ok(sync.isClean);
+  await sync.flush();
+  assert.equal(sent.length, 2, "once");
+  sync.stop();
+});
