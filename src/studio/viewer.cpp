@@ -14,7 +14,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// How much of the program's work looking may be: what is rendered should hardly notice.
-constexpr double share = 0.03;
+constexpr double share = 0.03, share_when_fresh = 0.12;
+constexpr auto fresh = std::chrono::seconds(2);
 constexpr auto shortest = std::chrono::milliseconds(50), longest = std::chrono::milliseconds(4000);
 
 double processor_time(clockid_t clock) {
@@ -127,7 +128,7 @@ void Studio::note_shape(const Image& picture) {
 void Studio::look() {
   pthread_setname_np(pthread_self(), "viewer");
   std::uint64_t seen_changes = 0, seen_generation = 0;
-  Clock::time_point looked{};
+  Clock::time_point looked{}, begun{};
   double looked_at = 0, cost = 0;  // of the whole program, and of the last look [s of a processor]
   auto pause = shortest;
   while (!ending_) {
@@ -144,7 +145,9 @@ void Studio::look() {
     pause = rendering || changed ? shortest : longest / 4;
     if (!changed && !rendering) continue;
     const bool soon = coarse && Clock::now() - looked >= shortest;
-    const bool due = share * (processor_time(CLOCK_PROCESS_CPUTIME_ID) - looked_at) >= cost;
+    // What was begun anew is looked at more often: of it most is to be seen.
+    const double part = Clock::now() - begun < fresh ? share_when_fresh : share;
+    const bool due = part * (processor_time(CLOCK_PROCESS_CPUTIME_ID) - looked_at) >= cost;
     if (!changed && !soon && !due && Clock::now() - looked < longest) continue;
     {
       const std::lock_guard lock(browsers_guard_);
@@ -153,6 +156,7 @@ void Studio::look() {
         continue;
       }
     }
+    if (seen_generation != generation.load()) begun = Clock::now();
     seen_changes = status.changes;
     seen_generation = generation.load();
     const double before = processor_time(CLOCK_THREAD_CPUTIME_ID);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "etendue/language/language.h"
 #include "language/lexer.h"
 #include "language/writer.h"
 #include "text_editor.h"
@@ -34,6 +35,12 @@ std::string snake_case(const std::string& class_name) {
     text += capital ? char(c - 'A' + 'a') : c;
   }
   return text;
+}
+
+Member one_of(const Member& list) {
+  Member one = list;
+  one.list = false;
+  return one;
 }
 
 /// A value for a member that must be written.
@@ -73,14 +80,55 @@ std::string required_text(const Member& member) {
   }
 }
 
+/// What a list may hold that is empty by default, for those that must not be: a part, or the corners of a triangle. Empty:
+/// nothing is known.
+std::string entries_text(const Member& member) {
+  const auto* numbers = member.default_value.as<Numbers>();
+  const auto* list = member.default_value.as<Value::List>();
+  if (!member.list || (numbers && !numbers->values.empty()) || (list && !list->empty())) return {};
+  if (member.kind == Kind::component) return "[" + required_text(one_of(member)) + "]";
+  if (member.kind == Kind::point3) return "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
+  if (member.name == "triangles") return "[[0, 1, 2]]";
+  if (member.name == "indices") return "[0, 1, 2]";
+  if (member.name == "face_sizes") return "[3]";
+  return {};
+}
+
+bool can_be_prepared(const std::string& text) {
+  try {
+    prepare_tree(*parse_component(text, "new part"));
+    return true;
+  } catch (const std::exception&) {  // Error and Errors
+    return false;
+  }
+}
+
+std::string component_text(const ClassInfo& info, const std::vector<std::string>& members) {
+  return members.empty() ? info.name + " {}" : fmt::format("{} {{ {} }}", info.name, fmt::join(members, ", "));
+}
+
 }  // namespace
 
 std::string new_component_text(const ClassInfo& info) {
   std::vector<std::string> members;
   for (const Member& member : info.members)
     if (member.required) members.push_back(member.name + ": " + required_text(member));
-  if (members.empty()) return info.name + " {}";
-  return fmt::format("{} {{ {} }}", info.name, fmt::join(members, ", "));
+  const std::string text = component_text(info, members);
+  if (can_be_prepared(text)) return text;
+  for (const bool parts : {true, false}) {
+    std::vector<std::string> more;
+    bool points = false;  // the first list of points is that of places; others would be of times, or of other places
+    for (const Member& member : info.members) {
+      const std::string entries = entries_text(member);
+      const bool again = member.kind == Kind::point3 && std::exchange(points, points || !entries.empty());
+      if (!entries.empty() && (member.kind == Kind::component) == parts && !again)
+        more.push_back(member.name + ": " + entries);
+      else if (member.required)
+        more.push_back(member.name + ": " + required_text(member));
+    }
+    if (const std::string filled = component_text(info, more); can_be_prepared(filled)) return filled;
+  }
+  return text;  // whoever adds it says what is missing
 }
 
 void TextEditor::replace_class(const Ref<Component>& part, const ClassInfo& now) {
