@@ -30,6 +30,8 @@ export class Screen {
   private readonly held: (Film | null)[] = [null, null];
   private heldToned: Toned | null = null;
   private readonly mipmaps: boolean;
+  /** Which textures have averages of their pixels. */
+  private readonly averaged = [false, false, false];
 
   /** Throws where the browser has no WebGL 2. */
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -102,7 +104,7 @@ export class Screen {
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, changed.y0, film.width, changed.y1 - changed.y0, gl.RGBA, gl.HALF_FLOAT,
         film.pixels.subarray(from, changed.y1 * film.width * 4));
     }
-    this.filter(zoom, isNew || changed !== null);
+    this.filter(unit, zoom, isNew || changed !== null);
   }
 
   private uploadToned(toned: Toned, zoom: number): void {
@@ -111,23 +113,22 @@ export class Screen {
     const isNew = toned !== this.heldToned;
     if (isNew) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, toned.width, toned.height, 0, gl.RGBA, gl.UNSIGNED_BYTE, toned.pixels);
     this.heldToned = toned;
-    this.filter(zoom, isNew);
+    this.filter(2, zoom, isNew);
   }
 
   /** Large pixels are squares; small ones are averaged. */
-  private filter(zoom: number, changed: boolean): void {
+  private filter(unit: number, zoom: number, changed: boolean): void {
     const gl = this.gl;
     const small = zoom < 1 && this.mipmaps;
-    if (small && (changed || !this.averaged.has(gl.getParameter(gl.TEXTURE_BINDING_2D)))) {
+    if (small && (changed || !this.averaged[unit])) {
       gl.generateMipmap(gl.TEXTURE_2D);
-      this.averaged.add(gl.getParameter(gl.TEXTURE_BINDING_2D));
+      this.averaged[unit] = true;
     } else if (changed) {
-      this.averaged.delete(gl.getParameter(gl.TEXTURE_BINDING_2D));
+      this.averaged[unit] = false;
     }
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, small ? gl.LINEAR_MIPMAP_LINEAR : gl.NEAREST);
   }
-  private readonly averaged = new Set<unknown>();
 
   private bind(unit: number): void {
     this.gl.activeTexture(this.gl.TEXTURE0 + unit);

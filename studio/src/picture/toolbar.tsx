@@ -80,7 +80,7 @@ function Exposure(): JSX.Element {
     <div class="cluster exposure">
       <label class="inline">
         <span>{t.exposure}</span>
-        <input type="range" min={-10} max={10} step={0.05} value={store.stops.value} disabled={disabled} onInput={change} />
+        <input type="range" aria-label={t.exposure} min={-10} max={10} step={0.05} value={store.stops.value} disabled={disabled} onInput={change} />
       </label>
       <input type="number" class="narrow" aria-label={t.exposureStops} min={-30} max={30} step={0.25} disabled={disabled}
         value={Number(store.stops.value.toFixed(2))} onInput={change} />
