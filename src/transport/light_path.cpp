@@ -52,7 +52,10 @@ void PathSpace::begin(LightPath& y, const LightPath& x, int vertices) const {
 void PathSpace::move(LightPath& path, Arena& to) const {
   path.arena = &to;
   for (PathVertex& v : path.x)
-    if (v.on_surface()) {
+    if (!v.on_surface()) {
+      v.point.media = v.media = nullptr;  // of a luminaire that was met; a walk from there finds them anew
+      v.scatter = nullptr;
+    } else {
       if (v.media) v.point.media = v.media = to.make<MediumStack>(*v.media);
       v.scatter = scattering_at(v.point, v.out, path.wavelengths, to);
     }

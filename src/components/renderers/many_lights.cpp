@@ -26,8 +26,8 @@ class ManyLights final : public Renderer {
               "Walter et al. 2005; Conty Estevez & Kulla 2018; Yuksel 2019");
     describe_virtual_lights<&ManyLights::max_depth, &ManyLights::roulette_depth, &ManyLights::heuristic, &ManyLights::nearest,
                             &ManyLights::compensate>(d);
-    d.member<&ManyLights::walks>("walks", "1", "from luminaires in each step: every vertex is a light", range(1, 1e7),
-                                 soft(100, 1e6), logarithmic)
+    d.member<&ManyLights::walks>("walks", "1", "from luminaires in each step: every vertex is a light, which takes about 1 kB",
+                                 range(1, 1e6), soft(100, 1e5), logarithmic)
         .member<&ManyLights::cut>("cut", "1", "groups of lights at each place, of which one light each is taken",
                                   range(1, 4096), soft(1, 256), logarithmic)
         .member<&ManyLights::samples_per_tree>("samples_per_tree", "1",
