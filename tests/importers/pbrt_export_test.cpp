@@ -20,11 +20,14 @@ Exported exported(const Ref<Job>& job, const std::string& path) {
 
 /// A job with a camera that sees all of it, and its picture's mean with as many samples as make it good to half a per cent.
 Ref<Job> job_of(const std::string& objects, const std::string& camera = "from: [1, 2, 6] m, to: [0, 0, 0] m, fov: 40 deg") {
-  return load_job_text("Job {\n tone_map: ExposureToneMap {}\n renderer: PathTracer { samples: 1024, max_depth: 6 }\n camera: PerspectiveCamera { " + camera +
-                           " }\n image: ImageBuffer { width: 12, height: 8, filter: BoxFilter {} }\n scene: BruteForceScene { "
-                           "objects: [\n" +
-                           objects + "\n] }\n}\n",
-                       "test.etd");
+  return load_job_text(
+      "Job {\n tone_map: ExposureToneMap {}\n renderer: PathTracer { samples: 1024, max_depth: 6 }\n camera: PerspectiveCamera "
+      "{ " +
+          camera +
+          " }\n image: ImageBuffer { width: 12, height: 8, filter: BoxFilter {} }\n scene: BruteForceScene { "
+          "objects: [\n" +
+          objects + "\n] }\n}\n",
+      "test.etd");
 }
 
 /// Exports, imports and compares pixel by pixel: relative to the brightest, within noise.

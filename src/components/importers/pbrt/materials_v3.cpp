@@ -141,24 +141,33 @@ Ref<Component> translucent(Reader& reader, const Parameters& p) {
   return shader;
 }
 
-/// Burley's principled material by OpenPBR, which has the same parts under other names.
 Ref<Component> disney(Reader& reader, const Parameters& p) {
   const Location at = p.at;
-  const Ref<Component> shader = reader.make("Principled", at);
+  const bool thin = p.boolean("thin", false);
+  const Ref<Component> shader = reader.make(thin ? "DisneyThin" : "DisneyPrincipled", at);
   const auto carry = [&](const char* from, const char* to, double otherwise) {
-    if (p.has(from)) set_map(*shader, to, number_map(reader, p, {from}, otherwise), at);
+    set_map(*shader, to, number_map(reader, p, {from}, otherwise), at);
   };
   set_map(*shader, "base_color", color_map(reader, p, {"color"}, 0.5, Use::reflectance), at);
-  carry("metallic", "base_metalness", 0);
-  set_map(*shader, "specular_roughness", number_map(reader, p, {"roughness"}, 0.5), at);
-  carry("anisotropic", "specular_roughness_anisotropy", 0);
-  carry("spectrans", "transmission_weight", 0);
-  carry("clearcoat", "coat_weight", 0);
-  carry("sheen", "fuzz_weight", 0);
+  carry("roughness", "roughness", 0.5);
+  carry("anisotropic", "anisotropic", 0);
+  carry("spectrans", "spec_trans", 0);
+  carry("speculartint", "spec_tint", 0);
+  carry("sheen", "sheen", 0);
+  carry("sheentint", "sheen_tint", 0.5);
+  carry("flatness", "flatness", 0);
+  if (thin) {
+    carry("difftrans", "diff_trans", 1);
+    p.ignore({"metallic", "clearcoat", "clearcoatgloss"});
+  } else {
+    carry("metallic", "metallic", 0);
+    carry("clearcoat", "clearcoat", 0);
+    carry("clearcoatgloss", "clearcoat_gloss", 1);
+  }
   const Value eta = index_of(reader, p, {"eta"}, 1.5);
-  if (const Number* n = eta.as<Number>()) set_member(*shader, "specular_ior", std::clamp(n->value, 1.0, 4.0), at);
-  if (p.boolean("thin", false)) set_member(*shader, "thin_walled", true, at);
-  reader.importing.inexact("Disney's material is OpenPBR's here, whose parts are alike but not the same", at);
+  if (const Number* n = eta.as<Number>()) set_member(*shader, "ior", n->value, at);
+  if (p.has("scatterdistance"))
+    reader.importing.inexact("the scattering below a Disney material's surface is left out", p.place("scatterdistance"));
   return shader;
 }
 

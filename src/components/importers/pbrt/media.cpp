@@ -53,13 +53,69 @@ void homogeneous(Reader& reader, const std::string& name, const Parameters& p) {
   reader.media[name] = medium;
 }
 
+/// Density on a regular grid between p0 and p1 of the coordinates of its directive, nothing outside.
+void grid(Reader& reader, const std::string& name, Parameters& p) {
+  const Location at = p.at;
+  const int nx = p.integer("nx", 1), ny = p.integer("ny", 1), nz = p.integer("nz", 1);
+  std::vector<double> density = p.take_numbers("density");
+  if (nx < 1 || ny < 1 || nz < 1 || double(nx) * ny * nz != double(density.size()))
+    throw Error(fmt::format("a grid of {} x {} x {} cannot have {} densities", nx, ny, nz, density.size()), p.place("density"));
+  const Ref<Component> medium = reader.make("GridVolume", at, name);
+  set_member(*medium, "resolution", Numbers{{double(nx), double(ny), double(nz)}, 1, Dimension::none}, at);
+  const double scale = p.number("scale", 1);
+  for (double& d : density) d *= scale;
+  set_member(*medium, "density", Numbers{std::move(density), 1, Dimension::none}, at);
+  set_member(*medium, "outside", "empty", at);
+  const bool v3 = reader.version == 3;
+  const auto coefficient = [&](const char* parameter, const std::array<double, 3>& otherwise) {
+    const Parameter* given = p.find(parameter);
+    return given ? spectrum_of(reader, p, *given, Use::coefficient)
+           : v3  ? rgb_color("srgb", otherwise[0], otherwise[1], otherwise[2])
+                 : flat_spectrum(1);
+  };
+  set_member(*medium, "absorption", coefficient("sigma_a", {0.0011, 0.0024, 0.014}), at);
+  set_member(*medium, "scattering", coefficient("sigma_s", {2.55, 3.21, 3.77}), at);
+  set_member(*medium, "anisotropy", p.number("g", 0), at);
+  if (const Parameter* light = p.first_of({"Le", "temperature", "Lescale"})) {
+    p.ignore({"Le", "temperature", "Lescale", "temperatureoffset", "temperaturescale"});
+    reader.importing.inexact("the light that a medium emits is left out", light->at);
+  }
+  const DoublePoint3 p0 = p.point("p0", {0, 0, 0}), p1 = p.point("p1", {1, 1, 1});
+  const DoubleVector3 size{p1.x - p0.x, p1.y - p0.y, p1.z - p0.z};
+  const Transform placed = reader.state.ctm[0] * Transform::translate({p0.x, p0.y, p0.z}) * Transform::scale(size);
+  if (!placed.valid()) throw Error("the box of a grid, from p0 to p1, has no volume", p.place("p1"));
+  reader.grids[name] = placed;
+  reader.media[name] = medium;
+}
+
 }  // namespace
+
+Ref<Component> medium_for(Reader& reader, const std::string& name, const AnimatedTransform& object, Location at) {
+  const auto found = reader.media.find(name);
+  if (found == reader.media.end()) {
+    std::vector<std::string> known;
+    for (const auto& [n, m] : reader.media) known.push_back(n);
+    throw Error(fmt::format("there is no medium named '{}'{}", name, suggestion(name, known)), at);
+  }
+  const auto placed = reader.grids.find(name);
+  if (placed == reader.grids.end() || !found->second) return found->second;
+  if (object.animated()) reader.importing.inexact("a grid of density moves with the object it is in", at);
+  // Each object has a grid of its own, placed in its own coordinates.
+  const Ref<Component> own = copy(*found->second);
+  own->origin = std::make_unique<Component::Origin>();
+  own->origin->location = at;
+  own->origin->name = name;
+  set_member(*own, "placement", object.still().inverse() * placed->second, at);
+  return own;
+}
 
 void make_medium(Reader& reader, const std::string& name, Parameters&& p) {
   const std::string type = p.text("type", "homogeneous");
   if (type == "homogeneous") {
     homogeneous(reader, name, p);
-  } else if (type == "heterogeneous" || type == "uniformgrid" || type == "rgbgrid" || type == "cloud" || type == "nanovdb") {
+  } else if (type == "heterogeneous" || type == "uniformgrid") {
+    grid(reader, name, p);
+  } else if (type == "rgbgrid" || type == "cloud" || type == "nanovdb") {
     reader.importing.inexact(fmt::format("a medium of type '{}' is left out: there is none where it would be", type), p.at);
     p.forget();
     reader.media[name] = nullptr;

@@ -85,6 +85,7 @@ class Reader {
   std::vector<Material> materials{1};
   std::map<std::string, size_t, std::less<>> named_materials;
   std::map<std::string, Ref<Component>, std::less<>> float_textures, spectrum_textures, media;
+  std::map<std::string, Transform, std::less<>> grids;  ///< of media that are grids: from the unit cube to the world
 
   AnimatedTransform to_world() const { return to_world(Transform()); }
   /// Of what stands at `inner` in the present coordinates.
@@ -176,6 +177,8 @@ void set_emission(Component& object, const Ref<Component>& emission, Location at
 
 // media.cpp
 void make_medium(Reader&, const std::string& name, Parameters&&);
+/// The medium of a name for an object that stands in the world so; null: it was left out.
+Ref<Component> medium_for(Reader&, const std::string& name, const AnimatedTransform& object, Location at);
 
 // job.cpp, view.cpp
 void set_renderer(Reader&, Component& job);

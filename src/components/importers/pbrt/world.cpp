@@ -32,15 +32,9 @@ void Reader::shape(const std::string& type, Parameters&& p) {
     importing.inexact("objects that are instanced do not emit in pbrt, nor here", at);
   else if (state.light)
     set_emission(object, area_emission(*this, *state.light, made.turned, made.pieces), at);
-  const auto medium = [&](const std::string& name) -> Ref<Component> {
-    const auto found = media.find(name);
-    if (found != media.end()) return found->second;
-    std::vector<std::string> known;
-    for (const auto& [n, m] : media) known.push_back(n);
-    throw Error(fmt::format("there is no medium named '{}'{}", name, suggestion(name, known)), at);
-  };
   if (!state.inside.empty())
-    if (const Ref<Component> inside = medium(state.inside)) set_member(object, "interior", inside, at);
+    if (const Ref<Component> inside = medium_for(*this, state.inside, transform, at))
+      set_member(object, "interior", inside, at);
   if (!state.outside.empty() && state.outside != state.inside)
     importing.inexact(fmt::format("the medium '{}' outside of an object is that of what it stands in", state.outside), at);
   bool no_uvs = type == "trianglemesh";
