@@ -71,8 +71,6 @@ class Lexer {
   /// Right after a '[': reads a list of plain numbers, or of rows of 2 to 4 plain numbers each, to its ']' into packed
   /// form. When the list holds anything else nothing is read. Lists of millions of numbers take this way.
   bool read_numbers(Numbers&);
-  /// The byte behind what was read last.
-  size_t position() const { return s_.position; }
 
  private:
   struct State {

@@ -17,8 +17,8 @@ std::vector<double> list(const Component& part, const char* member) {
   return numbers ? numbers->values : std::vector<double>();
 }
 
-ExportedMesh from_file(const std::string& path, std::uint32_t number, bool smooth) {
-  MeshData data = read_mesh(path, number);
+ExportedMesh from_file(const std::string& path, const std::string& part, bool smooth) {
+  MeshData data = read_mesh(path, part);
   if (smooth && data.normals.empty() && !data.faceted) smooth_normals(data);
   ExportedMesh mesh;
   for (const Point3& p : data.positions)
@@ -35,8 +35,8 @@ ExportedMesh from_members(const SceneObject& object) {
   const FilePath* path = file.as<FilePath>();
   ExportedMesh mesh;
   if (path && !path->empty()) {
-    const Value number = get(object, "number"), smooth = get(object, "smooth");
-    mesh = from_file(path->resolved(), std::uint32_t(number.as<Number>()->value), *smooth.as<bool>());
+    const Value part = get(object, "part"), smooth = get(object, "smooth");
+    mesh = from_file(path->resolved(), *part.as<std::string>(), *smooth.as<bool>());
   } else {
     mesh.positions = list(object, "positions");
     for (const double i : list(object, "triangles")) mesh.indices.push_back(std::uint32_t(i));
