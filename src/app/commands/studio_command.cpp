@@ -81,7 +81,6 @@ int run_studio(const StudioOptions& options) {
   studio::ServerSettings server_settings;
   server_settings.port = static_cast<unsigned short>(options.port);
   server_settings.page = options.page.empty() ? page_file() : options.page;
-  server_settings.licences = (fs::path(server_settings.page).parent_path() / "licences.txt").string();
   if (!options.listen.empty()) {
     server_settings.address = options.listen;
     server_settings.password = password(options);

@@ -98,12 +98,6 @@ http::response<http::string_body> Server::Members::answer(const http::request<ht
     } catch (const Error& error) {
       refuse(http::status::service_unavailable, "The page is not built: start the studio with ./etendue studio.\n");
     }
-  } else if (path == "/licences") {
-    try {
-      response.body() = read_regular_file(settings.licences);
-    } catch (const Error&) {
-      refuse(http::status::not_found, "There is no such file.\n");
-    }
   } else if (path.starts_with("/manual/") && path.ends_with(".md")) {
     response.body() = Studio::manual_page(path.substr(8, path.size() - 11));
     if (response.body().empty()) refuse(http::status::not_found, "There is no such class.\n");

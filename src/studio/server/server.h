@@ -13,7 +13,6 @@ struct ServerSettings {
   unsigned short port = 0;  ///< 0: any that is free
   std::string password;     ///< empty: none, and only the token lets in
   std::string page;         ///< the file of the page
-  std::string licences;     ///< beside it; may be missing
 };
 
 class Server {
