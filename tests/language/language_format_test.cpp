@@ -21,8 +21,8 @@ TEST(Layout, IsThis) {
                    "Job{ renderer :PathTracer { samples:a }   # how\n  scene: BvhScene { objects: [ # many\n\n"
                    "Sphere {} # one\n\t# its own line\n[1,\n-2]\nf (1)\n] } } # end  "),
             "# first\na = 3 * (x - 1); b = [1, 2, 3] mm\n\nf(x, y = 2) = if x < y and not (x == 0) then -x^-2 else y[0]\n"
-            "Job { renderer: PathTracer { samples: a }  # how\n    scene: BvhScene { objects: [           # many\n"
-            "        Sphere {}                          # one\n        # its own line\n        [1,\n            -2]\n"
+            "Job { renderer: PathTracer { samples: a }  # how\n    scene: BvhScene { objects: [           # many\n\n"
+            "        Sphere {}  # one\n        # its own line\n        [1,\n            -2]\n"
             "        f(1)\n    ] } }  # end\n")
       << layout("a=3");
 }
