@@ -48,7 +48,7 @@ class TriangleMesh final : public TriangleObject {
             "file", "", "a PLY file (text or binary), an OBJ file or one of Mitsuba's serialized meshes; none: the lists below",
             Effect::rebuild)
         .member<&TriangleMesh::mesh_number>("number", "1", "which mesh of a file that holds several, counted from 0",
-                                       Effect::rebuild, when("file"))
+                                            Effect::rebuild, when("file"))
         .member<&TriangleMesh::positions>("positions", "m", "the vertices, when there is no file", Effect::rebuild)
         .member<&TriangleMesh::triangles>(
             "triangles", "1", "three vertices, counting from 0, for each triangle; counter-clockwise seen from the front",
