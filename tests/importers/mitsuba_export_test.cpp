@@ -27,7 +27,8 @@ Exported export_job(const TemporaryFolder& folder, const std::string& job) {
 }
 
 std::string job(const std::string& objects) {
-  return "Job {\n renderer: PathTracer { samples: 4096, max_depth: 4 }\n camera: PerspectiveCamera { from: [0, 1, 6] m, to: [0, "
+  return "Job {\n renderer: PathTracer { samples: 4096, max_depth: 4 }\n camera: PerspectiveCamera { from: [0, 1, 6] m, to: "
+         "[0, "
          "0, 0] m, "
          "fov: 35 deg }\n image: ImageBuffer { width: 12, height: 8, filter: BoxFilter {} }\n scene: BvhScene { objects: [\n" +
          objects + "\n] }\n}\n";

@@ -52,8 +52,9 @@ std::string Folders::inside(const std::string& path) const {
 std::vector<NamedFile> files_loaded_by(const Outline& outline, const std::string& folder) {
   std::vector<NamedFile> files;
   const auto resolved = [&](const std::string& text) { return FilePath{text, folder}.resolved(); };
-  for (const auto* list : {&outline.syntax().includes, &outline.syntax().plugins})
-    for (const language::Label& label : *list) files.push_back({resolved(label.text), label.at});
+  for (const language::Inclusion& include : outline.syntax().includes)
+    files.push_back({resolved(include.path.text), include.path.at});
+  for (const language::Label& plugin : outline.syntax().plugins) files.push_back({resolved(plugin.text), plugin.at});
   std::vector<const Node*> rest;
   for (const language::Definition& d : outline.syntax().definitions) rest.push_back(&d.value);
   for (const Node& c : outline.syntax().components) rest.push_back(&c);

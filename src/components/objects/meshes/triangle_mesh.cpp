@@ -48,7 +48,7 @@ class TriangleMesh final : public TriangleObject {
                                      Effect::rebuild)
         .member<&TriangleMesh::part>("part", "",
                                      "which mesh of a file that has several: of glTF \"meshes[0].primitives[1]\", of OBJ the "
-                                     "faces of a material, \"usemtl brass\"",
+                                     "faces of a material, \"usemtl brass\", of Mitsuba's serialized meshes the number, \"0\"",
                                      Effect::rebuild)
         .member<&TriangleMesh::positions>("positions", "m", "the vertices, when there is no file", Effect::rebuild)
         .member<&TriangleMesh::triangles>(
