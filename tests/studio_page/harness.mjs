@@ -111,6 +111,7 @@ export async function connect(opened) {
       }
       if (said.id !== undefined) waiting.get(said.id)?.(said);
     };
+    socket.onclose = () => waiting.forEach((done) => done({ ok: false, errors: [{ message: "the connection was lost" }] }));
     await new Promise((done) => (socket.onopen = done));
     const hello = await studio.ask("hello", { protocol: 1 });
     state.text = hello.text.text;

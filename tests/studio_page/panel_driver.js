@@ -41,11 +41,18 @@ globalThis.driver = (() => {
     }
     const chosen = document.querySelector("[role=option][aria-selected=true] b")?.textContent;
     const before = selectedId();
+    const told = () => document.querySelector(".notice-error span")?.textContent;
+    document.querySelectorAll(".notice button").forEach((b) => b.click());
+    await until(() => !told());
     key(input, "Enter");
-    await until(() => !document.querySelector("dialog"));
-    const made = await until(() => selectedId() !== before && document.querySelector(".panel-title")?.textContent?.includes(chosen) && selectedId(), 4000);
-    const told = document.querySelector(".notice-error span")?.textContent;
-    if (!made && told) throw new Error(`refused: ${told}`);
+    await until(() => !document.querySelector("dialog.chooser"));
+    const made = await until(() => {
+      const files = document.querySelector("dialog.browser"); // it needs a file, which there is not
+      if (files) [...files.querySelectorAll("button")].find((b) => b.textContent === "Cancel")?.click();
+      if (told()) return -1;
+      return selectedId() !== before && document.querySelector(".panel-title")?.textContent?.includes(chosen) && selectedId();
+    }, 6000);
+    if (made === -1) throw new Error(`refused: ${told()}`);
     return made || 0;
   }
 
@@ -60,8 +67,8 @@ globalThis.driver = (() => {
     button.click();
     const opened = await until(() => document.querySelector("dialog.chooser") || selectedId() !== id, 2000);
     if (opened instanceof HTMLElement) return choose(name);
-    await pause(100);
-    return 0;
+    // There is but one class: it was added at once.
+    return (await until(() => component(id)?.members[member]?.value?.component, 2000)) ?? 0;
   }
 
   const signature = (id, member) => {
@@ -121,7 +128,7 @@ globalThis.driver = (() => {
       try {
         const made = await create(m.name, m.offered.length > 1 || field.querySelector(".go") || m.list ? other : undefined);
         await until(() => signature(id, m.name) !== before, 1500);
-        if (made) {
+        if (made && selectedId() !== id) {
           const back = [...document.querySelectorAll(".panel-head nav .link")].pop();
           back?.click();
           await until(() => selectedId() === id, 1500);
@@ -164,5 +171,12 @@ globalThis.driver = (() => {
     return tryTexts(id, m.name, 0, ["0.25", "0.5", "2", "1", "-1"]);
   }
 
-  return { select, create, edit, selectedId };
+  /** Selects a component that the present panel refers to. */
+  async function go(id) {
+    const [holder] = component(id)?.uses ?? [];
+    fieldOf(holder?.id, holder?.member)?.querySelector(".go")?.click();
+    await until(() => selectedId() === id, 2000);
+  }
+
+  return { select, create, edit, go, selectedId };
 })();

