@@ -26,7 +26,7 @@ int run(const std::string& path, std::vector<std::string> folders) {
   folders.push_back(folder.empty() ? "." : folder);
   limit_process(size);
   Assimp::Importer importer;
-  importer.SetIOHandler(new FilesWithin(folders));  // the importer deletes it
+  importer.SetIOHandler(new FilesWithin(folders));                      // the importer deletes it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // it would make something to see of what has no mesh
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 60);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
