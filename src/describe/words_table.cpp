@@ -401,7 +401,6 @@ constexpr ForeignWord members[] = {
     {"HomogeneousVolume", "sigmaa", many, "'absorption'"},
     {"HomogeneousVolume", "sigmas", many, "'scattering'"},
     {"HomogeneousVolume", "sigmat", mitsuba, "'absorption' and 'scattering', of which it is the sum"},
-    {"HomogeneousVolume", "albedo", many, "'scattering' over the sum of 'scattering' and 'absorption'"},
     {"HomogeneousVolume", "density", many, "'scattering' and 'absorption'"},
     {"HomogeneousVolume", "g", many, "'anisotropy'"},
     {"HomogeneousVolume", "phase", many, "'anisotropy'"},

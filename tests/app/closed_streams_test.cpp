@@ -154,7 +154,7 @@ TEST_F(StreamsTest, limits_that_limit_nothing_are_refused) {
 }
 
 TEST_F(StreamsTest, a_test_of_nothing_is_no_success) {
-  EXPECT_EQ(run({"conform", "Importer", "--quick"}), 1);
+  EXPECT_EQ(run({"conform", "Handle", "--plugin", ETENDUE_CONFORM_FAULTS_LIBRARY, "--quick"}), 1);
   EXPECT_TRUE(says("nothing was tested")) << err;
   EXPECT_EQ(run({"conform", "BoxFilter", "--quick", "--drawn", "0"}), 0) << err;
 }

@@ -56,6 +56,16 @@ class Knob : public Component {
 };
 const Register<Knob> knob;
 
+/// An interface that nothing is made of.
+class Handle : public Component {
+ public:
+  using Interface = Handle;
+  using Parent = Component;
+  static void describe(Description<Handle>& d) { d.summary("Is pulled."); }
+  virtual void pull() = 0;
+};
+const Register<Handle> handle;
+
 class LooseKnob final : public Knob {
  public:
   static void describe(Description<LooseKnob>& d) { d.summary("Turns back by less."); }

@@ -129,9 +129,8 @@ class TestTrap final : public SceneObject {
   bool closed() const override { return true; }
 };
 
-const Register<TestTrap> registered;
-
 TEST(Robustness, PathsThatAreHeldInPlaceEnd) {
+  static const Register<TestTrap> registered;  // only here: whoever draws objects at random must not get one
   for (const char* renderer :
        {"PathTracer", "BidirectionalPathTracer", "LightTracer", "DistributionRenderer", "WhittedRenderer", "DirectRenderer"}) {
     SCOPED_TRACE(renderer);

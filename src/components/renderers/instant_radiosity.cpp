@@ -25,7 +25,7 @@ class InstantRadiosity final : public Renderer {
     describe_virtual_lights<&InstantRadiosity::max_depth, &InstantRadiosity::roulette_depth, &InstantRadiosity::heuristic,
                             &InstantRadiosity::nearest, &InstantRadiosity::compensate>(d);
     d.member<&InstantRadiosity::walks>("walks", "1", "from luminaires in each step: every vertex lights every pixel",
-                                       range(1, 100000), soft(1, 1000), logarithmic);
+                                       range(1, 100000), soft(1, 64), logarithmic);
   }
 
   PathClasses finds() const override { return compensate ? compensated_virtual_lights_find : bounded_virtual_lights_find; }

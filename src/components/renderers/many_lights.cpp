@@ -27,12 +27,12 @@ class ManyLights final : public Renderer {
     describe_virtual_lights<&ManyLights::max_depth, &ManyLights::roulette_depth, &ManyLights::heuristic, &ManyLights::nearest,
                             &ManyLights::compensate>(d);
     d.member<&ManyLights::walks>("walks", "1", "from luminaires in each step: every vertex is a light, which takes about 1 kB",
-                                 range(1, 1e6), soft(100, 1e5), logarithmic)
+                                 range(1, 1e6), soft(10, 2000), logarithmic)
         .member<&ManyLights::cut>("cut", "1", "groups of lights at each place, of which one light each is taken",
-                                  range(1, 4096), soft(1, 256), logarithmic)
+                                  range(1, 4096), soft(1, 64), logarithmic)
         .member<&ManyLights::samples_per_tree>("samples_per_tree", "1",
                                                "samples of each pixel in a step, after which there are other lights",
-                                               range(1, 65536), soft(1, 64), logarithmic);
+                                               range(1, 65536), soft(1, 16), logarithmic);
   }
 
   PathClasses finds() const override { return compensate ? compensated_virtual_lights_find : bounded_virtual_lights_find; }

@@ -114,7 +114,9 @@ Converter::Surface Converter::mixture(const Element& e, Uv uv, const std::string
   if (differ) inexact(e, "what is black from behind in one part of a mixture is seen from both sides here");
   const auto mixed = [&](const Ref<Component>& first, const Ref<Component>& second, Value amount, const std::string& called) {
     Ref<Component> mix = make("MixShader", e, called);
-    if (first) set_member(*mix, "first", first, e.at);
+    Ref<Component> black;
+    if (!first) set_member(*(black = make("Lambertian", e, "")), "color", 0.0, e.at);
+    set_member(*mix, "first", first ? first : black, e.at);
     set_member(*mix, "second", second, e.at);
     set(*mix, "amount", amount);
     return mix;
