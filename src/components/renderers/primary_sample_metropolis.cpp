@@ -61,6 +61,8 @@ Ref<Renderer> for_direct_light(const Renderer& inner) {
 
 std::unique_ptr<RenderProcess> PrimarySampleMetropolis::begin(const RenderContext& context) const {
   if (!inner) fail("inner", "needs a renderer whose paths it mutates");
+  if (inner->estimator() == Estimator::correlated)
+    fail("inner", "has no paths that could be mutated: those of a step share light that the numbers of one do not make");
   if (inner->steps_depend()) fail("inner", "learns in its own steps, of which none are taken here: only its paths are");
   const Ref<Renderer> short_paths = direct ? for_direct_light(*inner) : nullptr;
   return std::make_unique<MutatedPaths>(
