@@ -1,7 +1,7 @@
 // The panel of the selected component, made from the description of its class alone.
 import { useSignal } from "@preact/signals";
 import type { JSX } from "preact";
-import { useEffect } from "preact/hooks";
+import { useLayoutEffect } from "preact/hooks";
 import { ownGroupsFirst, type Member } from "../model/classes.ts";
 import type { Component } from "../model/protocol.ts";
 import { classes, components, locked, placeOfSelected, select, selectedComponent } from "../model/state.ts";
@@ -17,7 +17,8 @@ const t = texts.panel;
 
 export function Panel(): JSX.Element {
   const component = selectedComponent.value;
-  useEffect(() => {
+  // Before anything can be typed into the new panel: an effect after the next frame would take away what was refused meanwhile.
+  useLayoutEffect(() => {
     forgetWrong();
     explain(null);
   }, [component?.id]);
