@@ -6,7 +6,9 @@
 #include <mutex>
 
 #include "data_uri.h"
+#include "files/contained_file.h"
 #include "files/regular_file.h"
+#include "primitive.h"
 
 namespace etendue::gltf {
 namespace {
@@ -50,7 +52,16 @@ std::uint32_t word(const char* at) {
 
 bool register_converter(const std::vector<std::string>& endings, Converter convert) {
   for (const std::string& ending : endings) converters()[ending] = convert;
-  return true;
+  return register_parts(endings);
+}
+
+bool register_parts(const std::vector<std::string>& endings) {
+  register_container(endings, [](const std::string& container, const std::string& name) {
+    return Document::open(container)->image_bytes(name);
+  });
+  return register_mesh_format(endings, [](const std::string& path, const std::string& part) {
+    return read_primitive(*Document::open(path), PartName::parse(part));
+  });
 }
 
 std::shared_ptr<const Document> Document::open(const std::string& path, const Importing* given) {

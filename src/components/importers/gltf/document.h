@@ -58,8 +58,12 @@ class Document {
   std::string own_bytes_;  // of a converted file
 };
 
+/// Lets meshes and images be read where they lie in files with these endings. At the program's start.
+bool register_parts(const std::vector<std::string>& endings);
+
 /// Makes a .glb of a file of another format, in memory. Throws Error with the reason alone.
 using Converter = std::string (*)(const std::string& path, const Importing&);
+/// Says who converts files with these endings, whose parts are registered too.
 bool register_converter(const std::vector<std::string>& endings, Converter);
 
 }  // namespace etendue::gltf

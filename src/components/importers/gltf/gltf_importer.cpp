@@ -2,36 +2,21 @@
 
 #include <algorithm>
 
-#include "files/contained_file.h"
 #include "import_document.h"
+#include "materials.h"
 #include "scene_builder.h"
 
 namespace etendue {
 namespace gltf {
 namespace {
 
-/// Extensions that are read, or whose absence changes nothing that is shown.
-constexpr const char* known_extensions[] = {"KHR_texture_transform",
-                                            "KHR_lights_punctual",
-                                            "KHR_mesh_quantization",
-                                            "EXT_mesh_gpu_instancing",
-                                            "EXT_texture_webp",
-                                            "KHR_materials_transmission",
-                                            "KHR_materials_volume",
-                                            "KHR_materials_ior",
-                                            "KHR_materials_specular",
-                                            "KHR_materials_clearcoat",
-                                            "KHR_materials_sheen",
-                                            "KHR_materials_iridescence",
-                                            "KHR_materials_dispersion",
-                                            "KHR_materials_anisotropy",
-                                            "KHR_materials_unlit",
-                                            "KHR_materials_emissive_strength",
-                                            "KHR_materials_pbrSpecularGlossiness"};
+/// Extensions that are read, or whose absence changes nothing that is shown, those of materials aside.
+constexpr const char* known_extensions[] = {"KHR_texture_transform", "KHR_lights_punctual", "KHR_mesh_quantization",
+                                            "EXT_mesh_gpu_instancing", "EXT_texture_webp"};
 
 void check_extensions(Importing& importing, const Document& document) {
   const auto known = [](const std::string& name) {
-    return std::ranges::find(known_extensions, name) != std::end(known_extensions);
+    return std::ranges::find(known_extensions, name) != std::end(known_extensions) || is_known_material_extension(name);
   };
   std::vector<std::string> required;
   for (const Json& name : list_in(document.json(), "extensionsRequired")) {
@@ -67,11 +52,7 @@ Ref<Component> job_of(Importing& importing, const Ref<Scene>& scene, const MadeC
   return job;
 }
 
-std::string unpack(const std::string& container, const std::string& name) {
-  return Document::open(container)->image_bytes(name);
-}
-
-const bool registered_container = register_container({"gltf", "glb"}, unpack);
+const bool registered_parts = register_parts({"gltf", "glb"});
 
 }  // namespace
 

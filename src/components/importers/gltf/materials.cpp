@@ -11,7 +11,6 @@ std::array<double, 3> rgb(const Json& object, const char* key, double otherwise)
   return numbers<3>(object, key).value_or(std::array<double, 3>{otherwise, otherwise, otherwise});
 }
 
-/// The extensions of materials that are read, or change nothing that a path tracer shows.
 constexpr const char* known_extensions[] = {"KHR_materials_transmission",
                                             "KHR_materials_volume",
                                             "KHR_materials_ior",
@@ -29,6 +28,10 @@ constexpr const char* known_extensions[] = {"KHR_materials_transmission",
 double reflectance_of(double ior) { return std::pow((ior - 1) / (ior + 1), 2); }
 
 }  // namespace
+
+bool is_known_material_extension(std::string_view name) {
+  return std::ranges::find(known_extensions, name) != std::end(known_extensions);
+}
 
 const Material& Materials::get(std::optional<size_t> material, bool colored, bool faded) {
   const Key key{material, colored, faded};
@@ -177,7 +180,7 @@ void Materials::read_volume(const Json& extensions, Surface& s) {
 
 void Materials::note_unknown(const Json& extensions) {
   for (const auto& [name, value] : extensions.items())
-    if (std::ranges::find(known_extensions, name) == std::end(known_extensions))
+    if (!is_known_material_extension(name))
       importing_.inexact(fmt::format("the extension {} of materials is not known", name), at());
 }
 

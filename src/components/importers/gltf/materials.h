@@ -15,6 +15,9 @@ struct Material {
   bool lamp = false;  ///< it shines more than a display's white
 };
 
+/// Whether an extension of materials is read, or changes nothing that a path tracer shows.
+bool is_known_material_extension(std::string_view name);
+
 class Materials {
  public:
   Materials(Importing& importing, const Document& document) : importing_(importing), document_(document) {}

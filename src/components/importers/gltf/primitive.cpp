@@ -172,14 +172,4 @@ MeshData read_primitive(const Document& document, const PartName& part) {
   });
 }
 
-namespace {
-
-MeshData read_part(const std::string& path, const std::string& part) {
-  return read_primitive(*Document::open(path), PartName::parse(part));
-}
-
-const bool registered = register_mesh_format({"gltf", "glb"}, read_part);
-
-}  // namespace
-
 }  // namespace etendue::gltf

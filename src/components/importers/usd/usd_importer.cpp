@@ -6,9 +6,7 @@
 #include "components/importers/assimp/helper_process.h"
 #include "components/importers/gltf/document.h"
 #include "components/importers/gltf/import_document.h"
-#include "components/importers/gltf/primitive.h"
 #include "components/objects/meshes/mesh_data.h"
-#include "files/contained_file.h"
 
 namespace etendue {
 namespace {
@@ -27,17 +25,7 @@ std::string convert(const std::string& path, const Importing& importing) {
   return run_program(chosen && *chosen ? chosen : "python3", arguments, "etendue_usd.py");
 }
 
-MeshData read_part(const std::string& path, const std::string& part) {
-  return gltf::read_primitive(*gltf::Document::open(path), gltf::PartName::parse(part));
-}
-
-std::string unpack(const std::string& container, const std::string& name) {
-  return gltf::Document::open(container)->image_bytes(name);
-}
-
 const bool known_converter = gltf::register_converter(endings(), convert);
-const bool known_meshes = register_mesh_format(endings(), read_part);
-const bool known_container = register_container(endings(), unpack);
 
 class UsdImporter final : public Importer {
  public:
