@@ -5,6 +5,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "bmp_header.h"
 #include "etendue/core/error.h"
 #include "exr_header.h"
 #include "files/regular_file.h"
@@ -99,6 +100,7 @@ CheckedInput open_checked(const std::string& path) {
   const char* const reader = reader_for(*file, path);
   check_exr_header(path);
   check_png_chunks(path);
+  check_bmp_header(path);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
   if (!input) refuse(OIIO::geterror());
   OIIO::ImageSpec ignored;

@@ -194,6 +194,30 @@ TEST_F(HostileFiles, a_png_holds_what_its_pieces_claim) {
   EXPECT_TRUE(said("text.png") && said("claims 2147483646 bytes")) << err;
 }
 
+// A BMP whose pixels of 24 bits are said to be packed as those of 8 are: the library's reader went beyond what it had unpacked.
+TEST_F(HostileFiles, a_bmp_is_packed_in_a_way_that_goes_with_its_bits) {
+  const auto bmp = [](char bits, char packing, char begin) {
+    std::string file("BM\x4a\x4\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x7\0\0\0\x5\0\0\0\x1\0\x18\0\x1\0\0\0", 34);
+    file[10] = begin;
+    file[28] = bits;
+    file[30] = packing;
+    return file + std::string(1064, '\x1');
+  };
+  folder.write("plain.bmp", bmp(24, 0, 54));
+  folder.write("packed.bmp", bmp(24, 1, 54));
+  folder.write("way.bmp", bmp(8, 7, 54));
+  std::string beyond = bmp(24, 0, 54);
+  beyond[11] = '\x7';
+  folder.write("beyond.bmp", beyond);
+  EXPECT_EQ(run({"image", "info", "plain.bmp"}, "2000000"), 0) << err;
+  EXPECT_EQ(run({"image", "info", "packed.bmp"}, "2000000"), 2) << err;
+  EXPECT_TRUE(said("packed.bmp") && said("24 bits cannot be packed")) << err;
+  EXPECT_EQ(run({"image", "info", "way.bmp"}, "2000000"), 2) << err;
+  EXPECT_TRUE(said("8 bits cannot be packed in the way 7")) << err;
+  EXPECT_EQ(run({"image", "info", "beyond.bmp"}, "2000000"), 2) << err;
+  EXPECT_TRUE(said("begin at byte 1846 of 1098")) << err;
+}
+
 // A TIFF so near the end of whole numbers that its place and its width add up to none.
 TEST_F(HostileFiles, windows_of_pictures_lie_where_they_can_be_counted) {
   std::string tiff("II*\0\x8\0\0\0", 8);

@@ -10,8 +10,8 @@ namespace {
 
 /// Triangles side by side; lanes that hold none have all corners in one place, which no ray meets.
 struct Block {
-  Floats corner[3][3] = {};  ///< by corner and axis
-  std::uint32_t primitive[lanes] = {};
+  Floats corner[3][3] = {};                             ///< by corner and axis
+  std::uint32_t owner[lanes] = {}, number[lanes] = {};  ///< whose triangle, and which of its own
 
   Floats operator()(int k, int axis) const { return corner[k][axis]; }
 };
@@ -22,7 +22,8 @@ struct BlockHit {
   Floats t;
   LaneBits met;
 
-  BlockHit(const Block& block, const ShearedRay<Floats>& ray, float limit) : weights(corner_weights(ray, block)) {
+  [[gnu::always_inline]] BlockHit(const Block& block, const ShearedRay<Floats>& ray, float limit)
+      : weights(corner_weights(ray, block)) {
     met = inside(weights);
     if (!met) return;
     t = plane_distance(ray, block);
@@ -49,13 +50,14 @@ class BvhScene final : public Scene {
     Ray rest = ray;
     bool found = primitives_.nearest_endless(rest, hit);
     const ShearedRay<Floats> sheared(ray);
-    std::uint32_t triangle = none;
+    const Block* block = nullptr;
+    int met_lane = 0;
     traverse(bvh_, ray, rest.maximum, [&](std::uint32_t first, std::uint32_t count) {
       if (count & WideNode::objects) [[unlikely]] {
         for (std::uint32_t i = first; i < first + (count & ~WideNode::objects); ++i)
           if (objects_[i]->intersect(rest, hit)) {
             rest.maximum = hit.distance;
-            triangle = none;
+            block = nullptr;
             found = true;
           }
         return false;
@@ -67,15 +69,14 @@ class BvhScene final : public Scene {
           if (!(here.t[lane] < rest.maximum)) continue;
           here.fill(lane, hit);
           rest.maximum = hit.distance;
-          triangle = blocks_[i].primitive[lane];
+          block = &blocks_[i];
+          met_lane = lane;
         }
       }
       return false;
     });
-    if (triangle == none) return found;
-    hit.object = primitives_.object(triangle);
-    hit.primitive = primitives_.number(triangle);
-    hit.depth = 0;
+    if (!block) return found;
+    name(*block, met_lane, hit);
     return true;
   }
 
@@ -108,11 +109,9 @@ class BvhScene final : public Scene {
         const BlockHit here(blocks_[i], sheared, ray.maximum);
         for (LaneBits met = here.met; met; met &= met - 1) {
           const int lane = std::countr_zero(met);
-          const std::uint32_t triangle = blocks_[i].primitive[lane];
           Hit hit;
           here.fill(lane, hit);
-          hit.object = primitives_.object(triangle);
-          hit.primitive = primitives_.number(triangle);
+          name(blocks_[i], lane, hit);
           list.add(hit);
         }
       }
@@ -134,10 +133,15 @@ class BvhScene final : public Scene {
       for (int i = 0; i < lanes; ++i)
         if (node.count[i]) fill_leaf(node.child[i], node.count[i]);
     bvh_.order = {};
+    primitives_.forget_items();
   }
 
  private:
-  static constexpr std::uint32_t none = ~0u;
+  void name(const Block& block, int lane, Hit& hit) const {
+    hit.object = primitives_.owner(block.owner[lane]);
+    hit.primitive = block.number[lane];
+    hit.depth = 0;
+  }
 
   /// Puts what a leaf holds into blocks or the list of objects, and lets the leaf say where.
   void fill_leaf(std::uint32_t& child, std::uint32_t& count) {
@@ -152,7 +156,8 @@ class BvhScene final : public Scene {
       const size_t lane = i % lanes;
       if (lane == 0) blocks_.emplace_back();
       Block& block = blocks_.back();
-      block.primitive[lane] = own[i];
+      block.owner[lane] = primitives_.owner_of(own[i]);
+      block.number[lane] = primitives_.number(own[i]);
       for (int k = 0; k < 3; ++k) {
         const Point3& p = primitives_.corner(own[i], k);
         block.corner[k][0][lane] = p.x;

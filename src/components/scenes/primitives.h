@@ -25,7 +25,12 @@ class Primitives {
   bool triangle(size_t i) const { return items_[i].triangle != whole; }
   /// The triangle's number within its object.
   std::uint32_t number(size_t i) const { return items_[i].triangle; }
-  const SceneObject* object(size_t i) const { return owners_[items_[i].owner].object; }
+  const SceneObject* object(size_t i) const { return owner(owner_of(i)); }
+  /// Objects are counted too.
+  std::uint32_t owner_of(size_t i) const { return items_[i].owner; }
+  const SceneObject* owner(std::uint32_t number) const { return owners_[number].object; }
+  /// For who has noted owners and numbers: all that is asked for by `i` is gone, and its memory.
+  void forget_items() { items_ = {}; }
   const Point3& corner(size_t i, int k) const {
     const Item& item = items_[i];
     const TriangleView& view = owners_[item.owner].view;

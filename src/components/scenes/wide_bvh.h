@@ -91,19 +91,29 @@ inline void traverse(const WideBvh& bvh, const Ray& ray, const float& limit, con
   for (;;) {
     Floats entries;
     LaneBits met = test(*node, limit, entries);
-    Waiting* const before = top;
-    for (; met; met &= met - 1) {
+    Waiting next;
+    bool found = std::has_single_bit(met);
+    if (found) {
+      // Most nodes let the ray on into one child. Its numbers need not wait until they are stored and loaded again.
       const int i = std::countr_zero(met);
-      const Waiting child{entries[i], node->child[i], node->count[i]};
-      // Sorted as they come: few are met.
-      Waiting* place = top++;
-      for (; place != before && place[-1].entry < child.entry; --place) *place = place[-1];
-      *place = child;
+      next = {entries[i], node->child[i], node->count[i]};
+    } else {
+      Waiting* const before = top;
+      for (; met; met &= met - 1) {
+        const int i = std::countr_zero(met);
+        const Waiting child{entries[i], node->child[i], node->count[i]};
+        // Sorted as they come: few are met.
+        Waiting* place = top++;
+        for (; place != before && place[-1].entry < child.entry; --place) *place = place[-1];
+        *place = child;
+      }
     }
-    for (;;) {
-      if (top == stack) return;
-      const Waiting next = *--top;
-      if (next.entry > limit) continue;
+    for (;; found = false) {
+      if (!found) {
+        if (top == stack) return;
+        next = *--top;
+        if (next.entry > limit) continue;
+      }
       if (next.count == 0) {
         node = &bvh.nodes[next.child];
         break;

@@ -65,6 +65,7 @@ void FaceAttributes::add(const std::vector<float>& row) {
 void FaceAttributes::finish() {
   Element triangles = element_;
   triangles.count = triangles_;
+  if (!triangles_) return;  // empty lists are nowhere
   std::vector<Column> columns;
   for (size_t g = 0; g < groups_.size(); ++g) {
     const size_t width = groups_[g].properties.size();
