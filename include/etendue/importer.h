@@ -14,6 +14,9 @@
 
 namespace etendue {
 
+/// The structure that imported scenes are searched by: the fastest one on most scenes (docs/performance.md, "Structures").
+inline constexpr const char* imported_structure = "BvhScene";
+
 /// One file being imported: what it may read, and what was said of it. All importers find files, make parts and tell what they
 /// could not express through it, so that these are the same for every format.
 class Importing {

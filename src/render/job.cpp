@@ -97,7 +97,7 @@ bool is_far(const Camera& camera, const Scene& scene) {
 void Job::require_parts() const {
   if (!renderer) fail("renderer", "a job needs a renderer, such as PathTracer {}");
   if (!camera) fail("camera", "a job needs a camera, such as PerspectiveCamera { from: [0, 0, -5] m, to: [0, 0, 0] m }");
-  if (!scene) fail("scene", "a job needs a scene, such as EmbreeScene { objects: [ Sphere {} ] }");
+  if (!scene) fail("scene", "a job needs a scene, such as BvhScene { objects: [ Sphere {} ] }");
   if (!image) fail("image", "a job needs an image buffer, such as ImageBuffer { width: 512, height: 512 }");
   if (!wavelengths) fail("wavelengths", "a job needs a wavelength sampler, such as HeroWavelengths {}");
   if (camera->shutter_close < camera->shutter_open) camera->fail("shutter_close", "the shutter closes before it opens");

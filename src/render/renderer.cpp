@@ -35,7 +35,7 @@ static const Register<Renderer> registered;
 
 Renderer::Renderer()
     : sampler(ref_cast<Sampler>(Registry::instance().create("SobolSampler"))),
-      light_sampler(ref_cast<LightSampler>(Registry::instance().create("PowerLightSampler"))) {}
+      light_sampler(ref_cast<LightSampler>(Registry::instance().create("TreeLightSampler"))) {}
 
 std::unique_ptr<RenderProcess> Renderer::start(const RenderContext& context) const {
   if (!sampler) fail("sampler", "a renderer needs a sampler");

@@ -8,6 +8,7 @@
 #include "etendue/scene_object.h"
 #include "images/linear_image.h"
 #include "quantity.h"
+#include "texel_distribution.h"
 
 namespace etendue {
 namespace {
@@ -65,8 +66,7 @@ class EnvironmentEmission final : public EmissionShader {
 
   void prepare() override {
     image_ = {};
-    importance_.clear();
-    total_ = 0;
+    texels_.clear();
     if (!map && file.empty()) fail("radiance", "a map or a colour is needed");
     constant_map_ = map && map->constant();
     factor_ = scale;
@@ -127,24 +127,22 @@ class EnvironmentEmission final : public EmissionShader {
   }
 
   bool only_at_infinity() const override { return true; }
-  bool knows_incident() const override { return total_ > 0; }
+  bool knows_incident() const override { return texels_.total() > 0; }
 
   DirectionSample sample_incident(Point2 u) const override {
-    if (!(total_ > 0)) return {};
-    const size_t width = size_t(image_.width), height = size_t(image_.height);
-    const size_t y = choose(rows_.data(), height, u.y), x = choose(columns_.data() + y * width, width, u.x);
-    const float phi = 2 * pi * (float(x) + u.x) / float(width);
-    const float cosine = float(lerp(double(u.y), row_cosines_[y], row_cosines_[y + 1]));
+    if (!(texels_.total() > 0)) return {};
+    const auto [x, y, within, density] = texels_.choose(u);
+    const float phi = 2 * pi * (float(x) + within.x) / float(image_.width);
+    const float cosine = float(lerp(double(within.y), row_cosines_[y], row_cosines_[y + 1]));
     const float sine = safe_sqrt((1 - cosine) * (1 + cosine));
-    const Vector3 d{sine * std::sin(phi), cosine, -sine * std::cos(phi)};
-    return {d, incident_density(d)};
+    return {{sine * std::sin(phi), cosine, -sine * std::cos(phi)}, density};
   }
   float incident_density(const Vector3& towards) const override {
-    if (!(total_ > 0)) return 0;
+    if (!(texels_.total() > 0)) return 0;
     const Point2 p = place(towards);
     const int x = std::min(int(p.x * float(image_.width)), image_.width - 1);
     const int y = clamp_row(int(row_at(p.y) + 0.5f));
-    return float(double(importance_[size_t(y) * size_t(image_.width) + size_t(x)]) / total_);
+    return texels_.density(size_t(x), size_t(y));
   }
 
   FilePath file;
@@ -273,61 +271,37 @@ class EnvironmentEmission final : public EmissionShader {
     std::vector<float> raw(w * h);
     for (size_t i = 0; i < raw.size(); ++i) raw[i] = texel_importance(image_.rgb.data() + 3 * i);
 
-    importance_.resize(w * h);
+    std::vector<float> importance(w * h);
     for (int y = 0; y < height; ++y) {
       const size_t above = size_t(std::max(y - 1, 0)), below = size_t(std::min(y + 1, height - 1));
       const auto column = [&](size_t x) {
         return 0.75f * raw[size_t(y) * w + x] + 0.125f * (raw[above * w + x] + raw[below * w + x]);
       };
       for (size_t x = 0; x < w; ++x)
-        importance_[size_t(y) * w + x] =
+        importance[size_t(y) * w + x] =
             0.75f * column(x) + 0.125f * (column(x == 0 ? w - 1 : x - 1) + column(x + 1 == w ? 0 : x + 1));
     }
 
     row_cosines_.resize(h + 1);
     for (size_t y = 0; y <= h; ++y) row_cosines_[y] = std::cos(3.14159265358979323846 * border(y, h));
-    std::vector<double> row_sums(h);
-    columns_.resize(w * h);
+    std::vector<double> solid_angles(h);
     std::array<double, 3> sums{};
     for (size_t y = 0; y < h; ++y) {
-      const double solid_angle = 2 * 3.14159265358979323846 / double(w) * (row_cosines_[y] - row_cosines_[y + 1]);
-      double row = 0;
-      for (size_t x = 0; x < w; ++x) row += double(importance_[y * w + x]);
-      double sum = 0;
-      for (size_t x = 0; x < w; ++x) {
-        sum += double(importance_[y * w + x]);
-        columns_[y * w + x] = row > 0 ? float(sum / row) : float(x + 1) / float(w);
-        for (size_t c = 0; c < 3; ++c) sums[c] += double(image_.rgb[(y * w + x) * 3 + c]) * solid_angle;
-      }
-      row_sums[y] = row * solid_angle;
-      total_ += row_sums[y];
+      solid_angles[y] = 2 * 3.14159265358979323846 / double(w) * (row_cosines_[y] - row_cosines_[y + 1]);
+      for (size_t x = 0; x < w; ++x)
+        for (size_t c = 0; c < 3; ++c) sums[c] += double(image_.rgb[(y * w + x) * 3 + c]) * solid_angles[y];
     }
-    rows_.resize(h);
-    double sum = 0;
-    for (size_t y = 0; y < h; ++y) {
-      sum += row_sums[y];
-      rows_[y] = total_ > 0 ? float(sum / total_) : float(y + 1) / float(h);
-    }
+    texels_.build(std::move(importance), w, solid_angles);
     for (size_t c = 0; c < 3; ++c) mean_[c] = float(sums[c] / (4 * 3.14159265358979323846));
-  }
-
-  /// An interval of a cumulative distribution; u becomes the uniform place in it.
-  static size_t choose(const float* cumulative, size_t count, float& u) {
-    const size_t i = std::min(size_t(std::upper_bound(cumulative, cumulative + count, u) - cumulative), count - 1);
-    const float low = i == 0 ? 0 : cumulative[i - 1], high = cumulative[i];
-    u = high > low ? clamp((u - low) / (high - low), 0, one_minus_epsilon) : 0.5f;
-    return i;
   }
 
   const RgbSpace* space_ = nullptr;
   bool constant_map_ = true;
   float factor_ = 1;  // multiplies all radiance
   LinearImage image_;
-  std::array<float, 3> mean_{};        // RGB over the sphere
-  std::vector<float> importance_;      // per texel
-  double total_ = 0;                   // of importance times solid angle
-  std::vector<float> rows_, columns_;  // cumulative probabilities: of rows, and in each row of its texels
-  std::vector<double> row_cosines_;    // cos(theta) at the rows' borders
+  std::array<float, 3> mean_{};      // RGB over the sphere
+  TexelDistribution texels_;         // by importance times solid angle
+  std::vector<double> row_cosines_;  // cos(theta) at the rows' borders
 };
 
 const Register<EnvironmentEmission> registered;

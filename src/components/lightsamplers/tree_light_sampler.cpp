@@ -15,12 +15,13 @@ class TreeLightSampler final : public LightSampler {
   static void describe(Description<TreeLightSampler>& d) {
     d.summary(
         "Chooses luminaires by a bound of the light they send to the point, from a tree over their places, directions and "
-        "powers: for scenes with many of them.",
+        "powers.",
         "Conty Estevez & Kulla 2018, Importance sampling of many lights with adaptive tree splitting");
   }
 
   void build(const Scene& scene) override {
     const auto all = scene.luminaires();
+    only_ = all.size() == 1 ? all.front() : nullptr;
     const std::vector<double> powers = luminaire_powers(all);
     by_power_.build(all, powers);
     std::vector<LightBounds> placed;
@@ -56,6 +57,7 @@ class TreeLightSampler final : public LightSampler {
   }
 
   LightChoice choose(const Point3& point, const Normal3& normal, float number) const override {
+    if (only_) return {only_, 1};
     if (number < outside_) {
       float rest = number / outside_;
       size_t i = 0;
@@ -74,6 +76,7 @@ class TreeLightSampler final : public LightSampler {
     return {luminaires_[choice.emitter], (1 - outside_) * choice.probability};
   }
   float probability(const Point3& point, const Normal3& normal, const SceneObject& luminaire) const override {
+    if (only_) return &luminaire == only_ ? 1 : 0;
     const size_t index = size_t(luminaire.luminaire_index);
     if (index >= places_.size() || by_power_.luminaires()[index] != &luminaire) return 0;
     if (places_[index] != nowhere) return (1 - outside_) * tree_.probability(point, normal, places_[index]);
@@ -87,6 +90,7 @@ class TreeLightSampler final : public LightSampler {
  private:
   static constexpr std::uint32_t nowhere = ~0u;
 
+  const SceneObject* only_ = nullptr;  ///< when there is one: nothing is to be chosen, and the tree is not asked
   PowerTable by_power_;
   LightTree tree_;
   std::vector<const SceneObject*> luminaires_, everywhere_;

@@ -19,8 +19,9 @@ class EmbreeScene final : public Scene {
 
  public:
   static void describe(Description<EmbreeScene>& d) {
-    d.summary("A scene searched by Embree's bounding volume hierarchies: the fastest for all but a handful of triangles.",
-              "Wald et al. 2014, \"Embree: a kernel framework for efficient CPU ray tracing\"")
+    d.summary(
+         "A scene searched by Embree's bounding volume hierarchies, which take less memory for a large mesh than BvhScene's.",
+         "Wald et al. 2014, \"Embree: a kernel framework for efficient CPU ray tracing\"")
         .group("Structure")
         .member<&EmbreeScene::quality>("quality", "", "effort spent on the hierarchy: high takes longest to build",
                                        choices("low", "medium", "high"), Effect::rebuild)

@@ -55,7 +55,7 @@ class Import final : public Scene {
     const Ref<Job> job = ref_cast<Job>(imported);
     const Ref<Scene> scene = job ? job->scene : ref_cast<Scene>(imported);
     if (!scene) fail("file", "'" + path + "' holds nothing that can be seen");
-    over_ = ref_cast<Scene>(Registry::instance().create("EmbreeScene"));
+    over_ = ref_cast<Scene>(Registry::instance().create(imported_structure));
     objects.clear();
     for (const Ref<SceneObject>& object : scene->objects) {
       prepare_tree(*object);

@@ -12,7 +12,7 @@ SceneBuilder::SceneBuilder(Importing& importing, const Document& document)
       moment_(moment()),
       pose_(document, moment_),
       materials_(importing, document),
-      scene_(ref_cast<Scene>(importing.make("EmbreeScene", importing.at()))) {}
+      scene_(ref_cast<Scene>(importing.make(imported_structure, importing.at()))) {}
 
 /// What `-D camera=name` chooses from a list, by name or number.
 size_t SceneBuilder::chosen(const char* parameter, const char* list, size_t otherwise) {
@@ -164,7 +164,7 @@ Ref<Scene> SceneBuilder::shared(size_t mesh) {
   Ref<Scene>& scene = shared_[mesh];
   const std::vector<Ref<SceneObject>> objects = primitives(mesh, PartName{false, mesh, 0, {}, 0});
   if (objects.empty()) return scene;
-  scene = ref_cast<Scene>(importing_.make("EmbreeScene", at(), plain_name(text(document_.element("meshes", mesh), "name"))));
+  scene = ref_cast<Scene>(importing_.make(imported_structure, at(), plain_name(text(document_.element("meshes", mesh), "name"))));
   scene->objects = objects;
   return scene;
 }

@@ -32,7 +32,7 @@ class MeshImporter final : public Importer {
     Ref<Component> mesh = importing.make("TriangleMesh", at);
     set_member(*mesh, "file", FilePath{importing.path(), {}}, at);
     set(*mesh, "shader", Value(made.shader, at));
-    const Ref<Scene> scene = ref_cast<Scene>(importing.make("EmbreeScene", at));
+    const Ref<Scene> scene = ref_cast<Scene>(importing.make(imported_structure, at));
     scene->objects.push_back(ref_cast<SceneObject>(mesh));
     // What is printed or machined stands on the xy plane.
     if (importing.path().size() > 4 && std::tolower(importing.path()[importing.path().size() - 3]) == 's')

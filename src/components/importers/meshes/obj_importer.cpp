@@ -43,7 +43,7 @@ class ObjImporter final : public Importer {
     const std::vector<std::string> parts = obj_parts(importing.path());
     std::map<std::string, MtlMaterial> materials;
     const std::map<std::string, int> used = read_libraries(importing, materials);
-    const Ref<Scene> scene = ref_cast<Scene>(importing.make("EmbreeScene", importing.at()));
+    const Ref<Scene> scene = ref_cast<Scene>(importing.make(imported_structure, importing.at()));
     for (const std::string& name : parts) {
       const auto line = used.find(name);
       const Location at = importing.at(line == used.end() ? 0 : line->second);

@@ -25,7 +25,7 @@ Ref<Job> Converter::job(const Element& scene) {
   const Element* sensor = sensors.empty() ? nullptr : sensors.front();
   if (sensors.size() > 1) importing_.inexact("the scene has several sensors: the first counts", sensors[1]->at);
 
-  Ref<Component> objects = importing_.make("EmbreeScene", scene.at);
+  Ref<Component> objects = importing_.make(imported_structure, scene.at);
   Value::List list;
   std::vector<Error> errors;
   for (const Property& p : scene.properties) {

@@ -101,7 +101,7 @@ Ref<Component> Converter::curves(const Element& e) {
 
 Ref<Component> Converter::group(const Element& e) {
   if (const auto known = groups_.find(&e); known != groups_.end()) return known->second;
-  Ref<Component> scene = make("EmbreeScene", e);
+  Ref<Component> scene = make(imported_structure, e);
   Value::List list;
   for (const Element* inner : e.all("shape"))
     if (const Ref<SceneObject> object = shape(*inner)) list.emplace_back(Ref<Component>(object), inner->at);

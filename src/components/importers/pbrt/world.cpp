@@ -52,7 +52,7 @@ void Reader::begin_object(const std::string& name, Location at) {
 }
 
 Ref<Scene> Reader::scene_of(const std::vector<Ref<SceneObject>>& objects, Location at, const std::string& name) {
-  const Ref<Component> scene = make("EmbreeScene", at, name);
+  const Ref<Component> scene = make(imported_structure, at, name);
   Ref<Scene> result = ref_cast<Scene>(scene);
   result->objects = objects;
   return result;
