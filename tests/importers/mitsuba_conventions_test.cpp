@@ -217,5 +217,14 @@ TEST(MitsubaSurface, IndicesByName) {
   EXPECT_NEAR(index(2, "ior"), 1.49 / 1.000277, 1e-4);  // Mitsuba 3.9 prints 1.48959
 }
 
+TEST(MitsubaSurface, AMetalOfNoMaterialReflectsAllLight) {
+  for (const char* metal : {"<bsdf type=\"roughconductor\">", "<bsdf type=\"conductor\"><float name=\"k\" value=\"1\"/>"}) {
+    const std::string shape = wall(metal + std::string("<float name=\"alpha\" value=\"0.01\"/></bsdf>"));
+    const Imported i = import_text(scene(sensor() + integrator() + shape + "<emitter type=\"constant\"/>"));
+    ASSERT_TRUE(i.job) << i.told();
+    EXPECT_NEAR(test::measure(i.job).mean.y, 1, 0.005) << metal;
+  }
+}
+
 }  // namespace
 }  // namespace etendue::mitsuba_test
