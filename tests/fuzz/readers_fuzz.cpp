@@ -61,7 +61,7 @@ void import(const std::string& path) {
     const ImportedJob imported = import_job(*importer_of(path), path, {});
     for (const Error& note : imported.notes) check(note);
     for (const std::string& file : files_named_by(*imported.job)) {
-      const fs::path real = fs::weakly_canonical(file);
+      const fs::path real = fs::weakly_canonical(fs::absolute(file));
       if (real.string().rfind(folder.string() + "/", 0) != 0) stop("it leaves its folder: " + file);
     }
     if (write_description(*imported.job).empty()) stop("a description without words");
