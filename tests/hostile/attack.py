@@ -9,7 +9,7 @@ processor's time, and five times as long by the clock, as other programs may be 
 
     crash     it was ended by a signal, or by a sanitizer
     time      it took longer
-    memory    it used more than 2 GB, or ran out of memory, for an input below 1 MB
+    memory    it used more than --memory, or ran out of memory, for an input below 1 MB
     nameless  it failed without the name of the damaged file
     odd       an exit status that is none of 0, 1, 2, or "unexpected failure"
 
@@ -138,12 +138,13 @@ def main():
     parser.add_argument("--keep", help="a folder for the inputs that something is reported of")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--seconds", type=float, default=SECONDS)
+    parser.add_argument("--memory", type=int, default=2048, help="[MB]")
     parser.add_argument("--sanitized", action="store_true")
     parser.add_argument("--server", help="libhostile_server.so: the program is started once, which is ten times as fast")
     arguments = parser.parse_args()
     arguments.program = str(pathlib.Path(arguments.program).resolve())
     arguments.server = arguments.server and str(pathlib.Path(arguments.server).resolve())
-    arguments.memory = 2 << 30
+    arguments.memory <<= 20
     arguments.environment = dict(os.environ)
     if arguments.sanitized:
         arguments.environment["ASAN_OPTIONS"] = "allocator_may_return_null=0:detect_leaks=0:hard_rss_limit_mb=4096:max_allocation_size_mb=4096"

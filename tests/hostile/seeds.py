@@ -8,9 +8,12 @@ import json
 import pathlib
 import struct
 import subprocess
-import zlib
+import tempfile
 
 import seed_images
+import seed_models
+import seed_scenes
+from seed_models import CORNERS, FACES, obj
 
 
 @dataclasses.dataclass
@@ -61,9 +64,6 @@ def numpy_array(shape, kind="f4"):
 
 # ---- meshes ---------------------------------------------------------------------------------------------------------------
 
-CORNERS = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (0, 0, 1)]
-FACES = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4), (0, 1, 2, 3)]
-
 
 def ply(kind):
     order = ">" if "big" in kind else "<"
@@ -87,13 +87,6 @@ def ply(kind):
     return text.encode() + body
 
 
-def obj():
-    lines = ["# made for a test"] + ["v %g %g %g" % c for c in CORNERS] + ["vt %g %g" % c[:2] for c in CORNERS] + ["vn 0 0 1"]
-    lines += ["f " + " ".join(f"{i + 1}/{i + 1}/1" for i in f) for f in FACES[:3]]
-    lines += ["f " + " ".join(str(i + 1) for i in FACES[3]), "f -5// -4// -3//", "f 1 2 \\", " 3 4"]
-    return "\n".join(lines).encode() + b"\n"
-
-
 def meshes():
     for kind in ("ascii", "binary_little_endian", "binary_big_endian"):
         for thing in ("TriangleMesh", "SubdivisionSurface"):
@@ -108,82 +101,24 @@ def meshes():
 SMALL = ["--quiet", "--set", "image.width=4", "--set", "image.height=4", "--set", "renderer.samples=1", "-o", "out.npy"]
 
 
-def gltf_json(uri=None):
-    positions = struct.pack("<15f", *(x for c in CORNERS for x in c))
-    indices = struct.pack("<12H", *(i for f in FACES[:4] for i in f))
-    times = struct.pack("<2f", 0, 1)
-    moved = struct.pack("<6f", 0, 0, 0, 1, 0, 0)
-    pieces = [positions, indices, times, moved]
-    views, offset = [], 0
-    for piece in pieces:
-        views.append({"buffer": 0, "byteOffset": offset, "byteLength": len(piece)})
-        offset += len(piece)
-    text = {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 2]}],
-        "nodes": [{"children": [1], "scale": [1, 2, 1]}, {"mesh": 0, "translation": [0, 1, 0]}, {"camera": 0, "translation": [0, 0, 5]}],
-        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "aspectRatio": 1.0, "znear": 0.1}}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
-        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.2, 0.7], "baseColorTexture": {"index": 0}},
-                       "alphaMode": "MASK", "extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1}}}],
-        "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 33071}],
-        "images": [{"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="}],
-        "animations": [{"samplers": [{"input": 2, "output": 3}], "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}]}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 5},
-                      {"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 12},
-                      {"bufferView": 2, "componentType": 5126, "type": "SCALAR", "count": 2},
-                      {"bufferView": 3, "componentType": 5126, "type": "VEC3", "count": 2}],
-        "bufferViews": views, "buffers": [{"byteLength": offset, **({"uri": uri} if uri else {})}],
-    }
-    return json.dumps(text).encode(), b"".join(pieces)
+def models(program):
+    for name, file, data, text, files in seed_models.models():
+        read = "model.obj" if name == "mtl" else file
+        yield Seed(name, file, data, [["render", read, *SMALL], ["convert", read, "-o", "-"]], files, text)
+    for name, file, data, text, files in seed_models.models_of_libraries():
+        if name != "usd" or reads_usd(program, data):
+            yield Seed(name, file, data, [["render", file, *SMALL]], files, text)
 
 
-def glb():
-    text, binary = gltf_json()
-    text += b" " * (-len(text) % 4)
-    binary += bytes(-len(binary) % 4)
-    return (b"glTF" + struct.pack("<III", 2, 28 + len(text) + len(binary), len(text)) + b"JSON" + text
-            + struct.pack("<I", len(binary)) + b"BIN\0" + binary)
-
-
-def stl_binary():
-    data = b"made for a test".ljust(80) + struct.pack("<I", 4)
-    for face in FACES[:4]:
-        data += struct.pack("<12fH", 0, 0, 1, *(x for i in face for x in CORNERS[i]), 0)
-    return data
-
-
-def stl_text():
-    lines = ["solid test"]
-    for face in FACES[:4]:
-        lines += ["facet normal 0 0 1", "outer loop", *("vertex %g %g %g" % CORNERS[i] for i in face), "endloop", "endfacet"]
-    return "\n".join(lines + ["endsolid"]).encode()
-
-
-OFF = ("OFF\n5 5 0\n" + "".join("%g %g %g\n" % c for c in CORNERS) + "".join(f"{len(f)} {' '.join(map(str, f))}\n" for f in FACES)).encode()
-MTL = (b"newmtl a\nKd 0.5 0.2 0.1\nKs 0.5 0.5 0.5\nNs 50\nillum 2\nmap_Kd -s 2 2 -o 0.5 0 -clamp on none.png\nnewmtl b\nPr 0.2\nPm 1\n"
-       b"d 0.5\nKe 1 1 1\nTf 1 1 1\nNi 1.5\nbump -bm 0.2 none.png\n")
-
-
-def models():
-    text, binary = gltf_json("input.bin")
-    yield Seed("glb", "input.glb", glb(), [["render", "input.glb", *SMALL], ["convert", "input.glb", "-o", "-"]])
-    yield Seed("gltf", "input.gltf", text, [["render", "input.gltf", *SMALL]], {"input.bin": binary}, True)
-    yield Seed("obj model", "input.obj", b"mtllib input.mtl\n" + obj() + b"usemtl a\nf 1 2 3\ns 1\nusemtl b\nf 1 3 4\n",
-               [["render", "input.obj", *SMALL]], {"input.mtl": MTL}, True)
-    yield Seed("mtl", "input.mtl", MTL, [["render", "model.obj", *SMALL]],
-               {"model.obj": b"mtllib input.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n"}, True)
-    yield Seed("stl binary", "input.stl", stl_binary(), [["render", "input.stl", *SMALL]])
-    yield Seed("stl text", "input.stl", stl_text(), [["render", "input.stl", *SMALL]], {}, True)
-    yield Seed("off", "input.off", OFF, [["render", "input.off", *SMALL]], {}, True)
+def reads_usd(program, data):
+    """Whether the Python package is there that reads it."""
+    with tempfile.NamedTemporaryFile(suffix=".usda") as file:
+        file.write(data)
+        file.flush()
+        return subprocess.run([program, "check", file.name], capture_output=True).returncode == 0
 
 
 # ---- measured data --------------------------------------------------------------------------------------------------------
-
-
-def volume(channels):
-    """A cloud of 3 x 2 x 2 cells in Mitsuba's format."""
-    return b"VOL\3" + struct.pack(f"<5i6f{12 * channels}f", 1, 3, 2, 2, channels, -1, -1, -1, 1, 1, 1,
-                                  *((i % 5) / 4 for i in range(12 * channels)))
 
 
 def merl(half=3, difference=2, azimuth=4):
@@ -244,8 +179,8 @@ def tables():
     yield Seed("npy grid", "input.npy", numpy_array((4, 5, 6)), [RENDER], grid)
     cloud = {"scene.etd": scene('Sphere { shader: PassThrough {}, interior: GridVolume { file: "input.vol", file_box: true, '
                                 'extinction: 1 } }')}
-    for channels in (1, 3):
-        yield Seed(f"vol {channels}", "input.vol", volume(channels), [RENDER], cloud)
+    for channels, encoding in ((1, 1), (3, 1), (1, 3)):
+        yield Seed(f"vol {channels} {encoding}", "input.vol", seed_scenes.volume(channels, encoding), [RENDER], cloud)
     for kind in ("f4", "f8"):
         yield Seed("npy " + kind, "input.npy", numpy_array((3, 4, 3), kind), [["image", "info", "input.npy"]])
     yield Seed("merl", "input.binary", merl(), [RENDER], shading('MerlShader { file: "input.binary" }'))
@@ -265,94 +200,20 @@ JSON = rb"""{ "$schema": "etendue.schema.json", "$params": { "grey": 0.5 }, "$na
 """
 
 
-PBRT = b"""LookAt 0 0 -5 0 0 0 0 1 0
-Camera "perspective" "float fov" [ 40 ] "float shutteropen" 0
-Sampler "halton" "integer pixelsamples" 1
-Integrator "volpath" "integer maxdepth" 3
-Film "rgb" "integer xresolution" 4 "integer yresolution" [ 4 ] "string filename" "out.exr"
-TransformTimes 0 1
-WorldBegin # a comment
-LightSource "infinite" "blackbody L" 5000 "float scale" .5
-Texture "checks" "spectrum" "checkerboard" "float uscale" 4 "rgb tex1" [ .1 .2 .3 ] "spectrum tex2" [ 400 .1 700 .9 ]
-MakeNamedMaterial "matt" "string type" "diffuse" "texture reflectance" "checks"
-MakeNamedMaterial "both" "string type" "mix" "string materials" [ "matt" "matt" ] "float amount" .25
-MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 1 2 3 ] "float scale" 0.1
-AttributeBegin
-  ActiveTransform EndTime Translate 1 0 0 ActiveTransform All
-  Rotate 30 0 1 0 Scale 1 2 -1 ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 1 1 1 1 ]
-  AreaLightSource "diffuse" "spectrum L" "stdillum-A" "bool twosided" true
-  Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] "integer indices" [ 0 1 2 1 3 2 ] "normal N" [ 0 0 1 0 0 1 0 0 1 0 0 1 ]
-AttributeEnd
-Attribute "shape" "float radius" 2
-ObjectBegin "thing" NamedMaterial "both" MediumInterface "fog" "" Shape "sphere" Shape "disk" "float phimax" 90 ObjectEnd
-CoordinateSystem "here" CoordSysTransform "camera" ObjectInstance "thing" ReverseOrientation
-Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" .1
-Shape "curve" "point3 P" [ 0 0 0 1 0 0 1 1 0 0 1 1 ] "float width0" .1 "float width1" .2
-Shape "loopsubdiv" "integer levels" 1 "point3 P" [ 0 0 0 1 0 0 0 1 0 0 0 1 ] "integer indices" [ 0 2 1 0 1 3 1 2 3 0 3 2 ]
-"""
-PBRT_V3 = b"""Film "image" "integer xresolution" 2 "integer yresolution" 2 Camera "orthographic" WorldBegin
-LightSource "spot" "rgb I" [ 1 1 1 ] "point from" [ 0 1 0 ] "rgb scale" [ 2 2 2 ] LightSource "distant" "color L" [ 1 0 1 ]
-Material "uber" "rgb Kd" [ .1 .2 .3 ] "float opacity" .5 Shape "cylinder" Material "glass" "float index" 1.3 Shape "cone"
-Material "substrate" "float uroughness" .2 Shape "heightfield" "integer nu" 2 "integer nv" 2 "float Pz" [ 0 1 2 3 ]
-Material "translucent" Shape "hyperboloid" "point p1" [ 1 0 0 ] "point p2" [ .5 1 1 ] Material "disney" Shape "paraboloid" WorldEnd
-"""
-
-
-MITSUBA = b"""<?xml version="1.0" encoding="utf-8"?>
-<scene version="3.0.0">
-  <default name="spp" value="4"/> <default name="kind" value="path"/>
-  <integrator type="$kind"><integer name="max_depth" value="5"/></integrator>
-  <sensor type="thinlens"><float name="fov" value="40"/><string name="fov_axis" value="smaller"/>
-    <float name="aperture_radius" value="0.1"/><float name="focus_distance" value="3"/>
-    <transform name="to_world"><lookat origin="0, 1, 5" target="0 0 0" up="0 1 0"/></transform>
-    <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="6"/><rfilter type="mitchell"/></film>
-    <sampler type="multijitter"><integer name="sample_count" value="$spp"/></sampler></sensor>
-  <bsdf type="twosided" id="paint"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance">
-    <rgb name="color0" value="0.1 0.2 0.3"/><spectrum name="color1" value="400:0.1, 500:0.8, 700:0.4"/>
-    <transform name="to_uv"><scale x="3" y="4"/><rotate z="1" angle="30"/></transform></texture></bsdf></bsdf>
-  <alias id="paint" as="colour"/>
-  <medium type="homogeneous" id="fog"><rgb name="sigma_t" value="#102030"/><phase type="hg"><float name="g" value="0.3"/></phase></medium>
-  <shape type="shapegroup" id="group"><shape type="sphere"><point name="center" x="1"/><ref id="colour"/></shape>
-    <shape type="cube"><bsdf type="roughplastic"><string name="distribution" value="ggx"/></bsdf></shape></shape>
-  <shape type="instance"><ref id="group"/><transform name="to_world"><matrix value="1 0 0 0 0 2 0 1 0 0 1 0 0 0 0 1"/></transform></shape>
-  <shape type="rectangle"><bsdf type="mask"><float name="opacity" value="0.5"/><bsdf type="roughconductor">
-    <string name="material" value="Au"/></bsdf></bsdf></shape>
-  <shape type="cylinder"><bsdf type="dielectric"><string name="int_ior" value="bk7"/></bsdf><ref name="interior" id="fog"/></shape>
-  <emitter type="spot"><rgb name="intensity" value="5"/></emitter> <emitter type="constant"/>
-</scene>
-"""
-MITSUBA_OLD = b"""<scene version="0.5.0"><integrator type="volpath"><integer name="maxDepth" value="65"/></integrator>
-  <sensor type="perspective"><float name="fov" value="70"/><transform name="toWorld"><matrix value="-1 0 0 6 0 1 0 1 0 0 -1 2 0 0 0 1"/>
-    </transform><film type="ldrfilm"><integer name="width" value="8"/><integer name="height" value="8"/><float name="gamma" value="2.2"/>
-    <boolean name="banner" value="false"/></film></sensor>
-  <bsdf type="mixturebsdf" id="mix"><string name="weights" value="0.3, 0.5"/><bsdf type="phong"><float name="exponent" value="10"/></bsdf>
-    <bsdf type="coating"><rgb name="sigmaA" value="0.1"/><bsdf type="conductor"><rgb name="eta" value="1 2 3"/><rgb name="k" value="3"/>
-    </bsdf></bsdf></bsdf>
-  <shape type="disk"><ref id="mix"/><emitter type="area"><srgb name="radiance" value="#ffcc00"/></emitter></shape></scene>
-"""
-
-
-def serialized_mesh():
-    """Two meshes of one triangle each, as Mitsuba 0.5 writes them."""
-    body = struct.pack("<I", 0x1001) + b"name\0" + struct.pack("<QQ", 3, 1)
-    body += struct.pack("<18f", 0, 0, 0, 1, 0, 0, 0, 1, 0, *[0, 0, 1] * 3) + struct.pack("<3I", 0, 1, 2)
-    part = struct.pack("<HH", 0x041C, 4) + zlib.compress(body)
-    return part * 2 + struct.pack("<QQI", 0, len(part), 2)
-
-
 def scenes_of_others():
-    yield Seed("mitsuba", "input.xml", MITSUBA, [["check", "input.xml"]], {}, True)
-    yield Seed("mitsuba 0.5", "input.xml", MITSUBA_OLD, [["check", "input.xml"]], {}, True)
-    fragment = b'<scene version="3.0.0"><bsdf type="diffuse" id="white"/><shape type="sphere"><ref id="white"/></shape></scene>'
-    whole = {"scene.xml": b'<scene version="3.0.0"><include filename="input.xml"/><sensor type="perspective"/></scene>'}
-    yield Seed("mitsuba included", "input.xml", fragment, [["check", "scene.xml"]], whole, True)
-    mesh = {"scene.xml": b'<scene version="3.0.0"><shape type="serialized"><string name="filename" value="input.serialized"/>'
-                         b'<integer name="shape_index" value="1"/></shape><sensor type="perspective"/></scene>'}
-    yield Seed("serialized mesh", "input.serialized", serialized_mesh(), [["check", "scene.xml"]], mesh, False)
-    yield Seed("pbrt v4", "input.pbrt", PBRT, [["check", "input.pbrt"]], {}, True)
-    yield Seed("pbrt v3", "input.pbrt", PBRT_V3, [["check", "input.pbrt"]], {}, True)
-    whole = {"scene.pbrt": b'Camera "perspective" Film "rgb" WorldBegin Include "input.pbrt" Shape "sphere"'}
-    yield Seed("pbrt included", "input.pbrt", PBRT.split(b"comment")[1], [["check", "scene.pbrt"]], whole, True)
+    files = {**seed_scenes.beside(), "brdf.bsdf": rgl()}
+    for name, data in seed_scenes.mitsuba_scenes():
+        yield Seed(name, "input.xml", data, [["check", "input.xml"]], files, True)
+    whole = {"scene.xml": seed_scenes.MITSUBA_INCLUDING}
+    yield Seed("mitsuba included", "input.xml", seed_scenes.MITSUBA_FRAGMENT, [["check", "scene.xml"]], whole, True)
+    mesh = {"scene.xml": seed_scenes.SERIALIZED_NAMING}
+    for version, flags in ((4, 0x1001), (4, 0x200B), (3, 0x1012)):
+        data = seed_scenes.serialized_mesh(version, flags)
+        yield Seed(f"serialized {version} {flags:x}", "input.serialized", data, [["check", "scene.xml"]], mesh)
+    for name, data in seed_scenes.pbrt_scenes():
+        yield Seed(name, "input.pbrt", data, [["check", "input.pbrt"]], files, True)
+    whole = {"scene.pbrt": seed_scenes.PBRT_INCLUDING}
+    yield Seed("pbrt included", "input.pbrt", seed_scenes.PBRT_FRAGMENT, [["check", "scene.pbrt"]], whole, True)
 
 
 def descriptions():
@@ -383,7 +244,7 @@ def checkpoints(program, folder):
 
 
 def seeds(program, plugin, folder):
-    found = (list(images()) + list(meshes()) + list(models()) + list(tables()) + list(descriptions()) + list(scenes_of_others()) +
+    found = (list(images()) + list(meshes()) + list(models(program)) + list(tables()) + list(descriptions()) + list(scenes_of_others()) +
              checkpoints(program, folder))
     if plugin:
         data = pathlib.Path(plugin).read_bytes()

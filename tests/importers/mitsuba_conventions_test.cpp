@@ -201,6 +201,29 @@ TEST(MitsubaMedium, ExtinctionTimesScaleOverTheWayThrough) {
   EXPECT_NEAR(seen(import_text(scene(sensor() + integrator(1, "volpath") + lamp + medium)), 8192).y, std::exp(-0.5 * 2), 0.02);
 }
 
+// The importer once looked at the cube's transform after it was gone, which AddressSanitizer saw.
+TEST(MitsubaMedium, AGridStandsInTheWorldAndNotInItsObject) {
+  const TemporaryFolder folder;
+  std::string grid = "VOL\3";
+  for (const std::int32_t number : {1, 1, 1, 1, 1}) grid.append(reinterpret_cast<const char*>(&number), 4);
+  for (const float number : {0.f, 0.f, 0.f, 1.f, 1.f, 1.f, 0.5f}) grid.append(reinterpret_cast<const char*>(&number), 4);
+  folder.write("grid.vol", grid);
+  const Imported i = import_text(
+      folder,
+      scene(sensor() + integrator(2, "volpath") +
+            "<shape type=\"cube\"><transform name=\"to_world\"><translate z=\"3\"/></transform><bsdf type=\"null\"/>"
+            "<medium name=\"interior\" type=\"heterogeneous\"><volume type=\"gridvolume\" name=\"sigma_t\"><string "
+            "name=\"filename\" value=\"grid.vol\"/><transform name=\"to_world\"><scale value=\"2\"/></transform></volume>"
+            "</medium></shape>"));
+  ASSERT_EQ(i.told(), "");
+  const Value placement = get(part(i.object(0), "interior"), "placement");
+  const Transform expected = Transform::translate({0, 0, -3}) * Transform::scale({2, 2, 2});
+  if (const auto* placed = placement.as<AnimatedTransform>())
+    EXPECT_EQ(placed->still().exact(), expected.exact());
+  else
+    EXPECT_EQ(placement.as<Transform>()->exact(), expected.exact());
+}
+
 TEST(MitsubaSurface, IndicesByName) {
   const Imported i = import_text(scene(sensor() + integrator() +
                                        wall("<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"diamond\"/></bsdf>") +
@@ -215,6 +238,15 @@ TEST(MitsubaSurface, IndicesByName) {
   EXPECT_NEAR(index(0, "exterior"), 1.000277, 1e-6);
   EXPECT_NEAR(index(1, "ior"), 1.5046, 1e-4);
   EXPECT_NEAR(index(2, "ior"), 1.49 / 1.000277, 1e-4);  // Mitsuba 3.9 prints 1.48959
+}
+
+TEST(MitsubaSurface, AMetalOfNoMaterialReflectsAllLight) {
+  for (const char* metal : {"<bsdf type=\"roughconductor\">", "<bsdf type=\"conductor\"><float name=\"k\" value=\"1\"/>"}) {
+    const std::string shape = wall(metal + std::string("<float name=\"alpha\" value=\"0.01\"/></bsdf>"));
+    const Imported i = import_text(scene(sensor() + integrator() + shape + "<emitter type=\"constant\"/>"));
+    ASSERT_TRUE(i.job) << i.told();
+    EXPECT_NEAR(test::measure(i.job).mean.y, 1, 0.005) << metal;
+  }
 }
 
 }  // namespace

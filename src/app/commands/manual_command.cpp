@@ -21,7 +21,7 @@ namespace {
 struct ManualOptions {
   std::string folder;
   std::vector<std::string> plugins;
-  bool pictures = false;
+  bool pictures = false, missing = false;
   int samples = 256;
 };
 
@@ -59,7 +59,7 @@ int render_pictures(const ManualOptions& options) {
   for (const ClassInfo* info : Registry::instance().all()) {
     try {
       const std::optional<PictureScene> scene = picture_of(*info, fixtures);
-      if (!scene) continue;
+      if (!scene || (options.missing && std::filesystem::exists(folder / picture_file(*info)))) continue;
       render_picture(*scene, info->name, (folder / picture_file(*info)).string(), options.samples);
       fmt::print("{}\n", picture_file(*info));
     } catch (...) {  // a plugin may throw anything
@@ -90,14 +90,14 @@ std::string pictures_page(const std::filesystem::path& folder) {
 int write_manual(const ManualOptions& options) {
   for (const std::string& plugin : options.plugins) Registry::instance().load_plugin(plugin);
   if (options.folder.empty()) {
-    if (options.pictures) throw Error("pictures need a folder: give one with -o");
+    if (options.pictures || options.missing) throw Error("pictures need a folder: give one with -o");
     for (const ManualPage& page : manual_pages()) fmt::print("{}\n", page.text);
     return exit_status::done;
   }
   std::error_code problem;
   std::filesystem::create_directories(options.folder, problem);
   if (problem) throw Error(fmt::format("cannot make the folder '{}': {}", options.folder, problem.message()));
-  const int failed = options.pictures ? render_pictures(options) : 0;
+  const int failed = options.pictures || options.missing ? render_pictures(options) : 0;
   // A picture that is there stands on its class's page, whenever it was made.
   std::vector<ManualPage> pages = manual_pages([&](const ClassInfo& info) {
     std::string text;
@@ -125,11 +125,13 @@ void add_manual_command(CLI::App& program, Run& run) {
       ->type_name("FILE")
       ->allow_extra_args(false);
   command->add_flag("--pictures", options->pictures, "Render a small picture of each class that can be seen; takes minutes");
+  command->add_flag("--missing", options->missing, "The pictures that are not there yet");
   command->add_option("--samples", options->samples, "Samples per pixel of the pictures")
       ->type_name("N")
       ->check(CLI::Range(1, 1 << 30).description(""))
       ->capture_default_str();
-  command->footer("\nExamples\n  etendue manual | less\n  etendue manual -o manual --pictures");
+  command->footer(
+      "\nExamples\n  etendue manual | less\n  etendue manual -o manual --pictures\n  etendue manual -o manual --missing");
   command->callback([options, &run] { run = [options] { return write_manual(*options); }; });
 }
 

@@ -103,8 +103,9 @@ Ref<Component> Converter::grid(const Element& e, const Element& volume, const Co
   } else {
     set_member(*grid, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
   }
-  const auto* placed = get(object, "transform").as<AnimatedTransform>();
-  const auto* still = get(object, "transform").as<Transform>();
+  const Value transform = get(object, "transform");
+  const auto* placed = transform.as<AnimatedTransform>();
+  const auto* still = transform.as<Transform>();
   const Transform to_world = placed ? placed->still() : (still ? *still : Transform());
   const Transform placement = to_world.inverse() * volume.transform().transform.still();
   if (!placement.identity()) set_member(*grid, "placement", placement, volume.location_of("to_world"));

@@ -84,6 +84,14 @@ Converter::Surface Converter::dielectric(const Element& e, Uv uv, const std::str
   return {shader, true};
 }
 
+namespace {
+
+/// Mitsuba's metal without absorption, of index 0, which reflects all light: F = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2) at
+/// normal incidence, which for k = 1 is 1 - 2 n here to the first order. An index is more than 0.
+constexpr float almost_no_index = 1e-6f;
+
+}  // namespace
+
 Converter::Surface Converter::conductor(const Element& e, Uv uv, const std::string& name) {
   std::string material = e.string("material", e.old && !e.has("eta") ? "Cu" : "none");
   const bool by_numbers = e.has("eta") || e.has("k");
@@ -111,10 +119,10 @@ Converter::Surface Converter::conductor(const Element& e, Uv uv, const std::stri
         const Color c = spectrum_of(e, of, otherwise);
         return exterior == 1 ? c : scaled_spectrum(1 / exterior, c);
       };
-      set_member(*shader, "ior", complex_index(part("eta", 0), part("k", 1)), e.at);
+      set_member(*shader, "ior", complex_index(part("eta", double(almost_no_index)), part("k", 1)), e.at);
     }
   } else if (material == "none" || material == "None") {
-    set_member(*shader, "ior", complex_index(flat_spectrum(0), flat_spectrum(1)), e.at);  // reflects all light
+    set_member(*shader, "ior", complex_index(flat_spectrum(almost_no_index), flat_spectrum(1)), e.at);  // reflects all light
   } else {
     // Mitsuba's names may tell who measured: "Cu_palik".
     const std::string element = material.substr(0, material.find('_'));
