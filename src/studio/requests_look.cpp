@@ -169,9 +169,29 @@ class Wires {
   size_t most_;
 };
 
+/// One object of the scene itself; those inside nested scenes have no bounds in the world's coordinates.
+Json wires_of(const Job& job, const Component& wanted, size_t most) {
+  Wires wires(job.world_centre(), most);
+  Json reply = {{"lines", Json::array()}, {"whole", true}, {"low", nullptr}, {"high", nullptr}};
+  for (const Ref<SceneObject>& object : job.scene->objects) {
+    if (object.get() != &wanted || object->unbounded() || object->infinite()) continue;
+    const Bounds3 bounds = object->bounds();
+    if (bounds.empty()) continue;
+    if (const auto triangles = object->triangles())
+      wires.mesh(*triangles, most);
+    else
+      wires.box(bounds);
+    const auto world = [&](const Point3& p) { return triple(job.world_centre() + DoubleVector3(p - Point3{})); };
+    reply = {{"lines", std::move(wires.lines)}, {"whole", !wires.full()}, {"low", world(bounds.low)}, {"high", world(bounds.high)}};
+    break;
+  }
+  return reply;
+}
+
 Json wireframe(const Call& call) {
   static_cast<void>(call.studio.valid_render());
   const Job& job = call.studio.document().job();
+  if (call.has("component")) return wires_of(job, *call.component(), size_t(call.integer_or("most", 5000, 100, 1'000'000)));
   const auto most = size_t(call.integer_or("most", 50000, 100, 1'000'000));
   Wires wires(job.world_centre(), most);
   const auto& objects = job.scene->objects;
