@@ -57,7 +57,9 @@ const isA = (name, wanted) => {
 };
 const fromInfinity = new Set(["EnvironmentEmission", "SkyEmission"]);
 const hostOf = (name) => (fromInfinity.has(name) ? ["sky", "emission"] : null) ?? Object.entries(hosts).find(([kind]) => isA(name, kind) && !(kind === "Scene" && name === "BvhScene"))?.[1];
-const concrete = classes.filter((c) => !c.abstract && c.name !== "Job");
+// Importers and exporters are commands' own: nothing in a description holds one.
+const held = new Set(classes.flatMap((c) => c.members.filter((m) => m.type === "component").map((m) => m.class)));
+const concrete = classes.filter((c) => !c.abstract && c.name !== "Job" && [...held].some((kind) => isA(c.name, kind)));
 
 /** All values, with components written out where they stand; without places and identifiers. */
 function values(components, root) {
