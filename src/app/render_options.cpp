@@ -69,6 +69,9 @@ void RenderOptions::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(CLI::Range(1, 1 << 20).description(""))
       ->excludes(pixel_option);
+  command.add_option("--tev", tev, "Show the picture in the viewer tev while it is rendered; PORT is 14158 unless it is said")
+      ->type_name("HOST[:PORT]")
+      ->excludes(pixel_option);
   for (CLI::Option* option : checkpoint_options) pixel_option->excludes(option);
 }
 

@@ -27,6 +27,7 @@ struct RenderOptions : SceneOptions {
   int paths = 5;       ///< how many of a pixel's samples are told
   std::string replay;  ///< the JSON file they are written to; empty: none
   int fireflies = 0;   ///< how many samples are listed after the render
+  std::string tev;     ///< where a tev shows the picture, as written; empty: nowhere
 
   void add_to(CLI::App& command);
 

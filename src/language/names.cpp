@@ -239,6 +239,17 @@ void Evaluator::undefined(const std::string& text, Location at) {
   }
 }
 
+namespace {
+
+/// A camera with a name that nothing uses is a view that was kept: the studio saves them, and whoever wants it names it.
+bool is_saved_view(const Value& value) {
+  const auto* part = value.as<Ref<Component>>();
+  const ClassInfo* camera = Registry::instance().find("Camera");
+  return part && *part && camera && (*part)->class_info().is_a(*camera);
+}
+
+}  // namespace
+
 void Evaluator::check_unused(const char* source) {
   std::vector<Entry*> unused;
   for (Entry& entry : entries_)
@@ -255,7 +266,7 @@ void Evaluator::check_unused(const char* source) {
     if (!entry->used && entry->replaced)
       warn(fmt::format("has no effect: nothing uses the param '{}'", entry->home->prefix() + label.text),
            {intern("-D " + entry->home->prefix() + label.text), 0, 0});
-    else if (!entry->used && label.at.file == source)
+    else if (!entry->used && label.at.file == source && !is_saved_view(entry->value))
       warn(fmt::format("'{}' is defined but not used", label.text), label.at);
   }
   for (const Label& label : unused_parameters_)

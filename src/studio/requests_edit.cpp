@@ -37,6 +37,7 @@ void Studio::tell_edit(const Applied& applied, const Call* call) {
   const TextChange& change = applied.change;
   const bool textual = change.begin != change.end || !change.insert.empty();
   runner_.follow(render);
+  runner_.hurry();
   ++generation;
   if (textual) {
     const size_t begin = d.places().units(change.begin);
@@ -60,11 +61,13 @@ void Studio::tell_edit(const Applied& applied, const Call* call) {
     broadcast({{"event", "tree"}, {"revision", d.revision()}, {"update", update}, {"names", names_json(d)}});
   }
   tell_document();
+  follow_sides();
   wake_viewer();
 }
 
 void Studio::tell_all() {
   runner_.follow(document_.render());
+  for (const auto& side : sides_.all()) side->reload();
   ++generation;
   text_units_ = document_.places().size();
   broadcast(document_json());

@@ -58,6 +58,8 @@ Json hello(const Call& call) {
   const auto protocol = call.integer("protocol", 1, 1'000'000);
   if (protocol != 1) throw RequestError("bad_request", "this studio speaks protocol 1; reload the page");
   Json reply = {{"protocol", 1}, {"read_only", studio.settings().read_only}, {"browser", call.browser.number}};
+  reply["viewing"] = studio.settings().viewing;
+  reply["pictures"] = studio.pictures_json();
   const Json vocabulary = vocabulary_json();
   for (const auto& [key, value] : vocabulary.items()) reply[key] = value;
   reply["folders"] = studio.folders().all();
@@ -65,6 +67,7 @@ Json hello(const Call& call) {
   reply["text"] = studio.text_json();
   reply["tree"] = tree_json(studio.document());
   reply["progress"] = studio.progress_json();
+  reply["renders"] = studio.sides_json()["renders"];
   reply["queue"] = studio.queue().json();
   return reply;
 }
@@ -100,6 +103,7 @@ void begin_anew(const Call& call) {
   call.studio.overrides.clear();
   call.studio.coarse = false;
   call.studio.fine_at.reset();
+  call.studio.sides().clear();
   call.studio.tell_all();
 }
 
@@ -172,12 +176,6 @@ Json manual(const Call& call) {
   return {{"markdown", page}};
 }
 
-Json conform(const Call& call) {
-  const std::string name = call.text("class");
-  if (!Registry::instance().find(name)) static_cast<void>(Registry::instance().create(name));
-  return {{"task", call.studio.tasks().conform(name)}};
-}
-
 Json queue(const Call& call) {
   Queue& queue = call.studio.queue();
   if (call.has("add")) {
@@ -213,9 +211,9 @@ Json shutdown(const Call& call) {
 
 std::span<const Request> file_requests() {
   static constexpr Request all[] = {
-      {"hello", true, hello},    {"save", false, save},         {"open", false, open},    {"new", false, create},
-      {"reload", false, reload}, {"files", false, files},       {"manual", true, manual}, {"conform", false, conform},
-      {"queue", false, queue},   {"shutdown", false, shutdown},
+      {"hello", true, hello},   {"save", false, save},     {"open", false, open},
+      {"new", false, create},   {"reload", false, reload}, {"files", false, files},
+      {"manual", true, manual}, {"queue", false, queue},   {"shutdown", false, shutdown},
   };
   return all;
 }

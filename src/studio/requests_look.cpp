@@ -50,7 +50,7 @@ Json pick(const Call& call) {
 }
 
 Json probe(const Call& call) {
-  const auto render = call.studio.valid_render();
+  const auto render = call.render();
   const RenderSnapshot now = render->snapshot();
   const Image picture = now.picture();
   const auto corner = [&](const char* key) {
@@ -79,19 +79,19 @@ Json probe(const Call& call) {
 
 Json replay(const Call& call) {
   make_fine(call.studio);
-  const auto render = call.studio.valid_render();
+  const auto render = call.render();
   const int x = int(call.integer("x", 0, 1 << 20)), y = int(call.integer("y", 0, 1 << 20));
   constexpr int most_paths = 1000;
   const Document& document = call.studio.document();
-  const auto samples = std::int64_t(document.job().renderer->samples);
+  const auto samples = std::int64_t(render->job().renderer->samples);
   const PixelReplay paths = call.has("sample")
                                 ? replay_sample(*render, x, y, std::uint32_t(call.integer("sample", 0, samples - 1)))
                                 : replay_pixel(*render, x, y, size_t(call.integer_or("paths", 10, 1, most_paths)));
-  return {{"replay", Json::parse(replay_json(document.job(), paths, document.file(), "etendue render " + document.file()))}};
+  return {{"replay", Json::parse(replay_json(render->job(), paths, document.file(), "etendue render " + document.file()))}};
 }
 
 Json fireflies(const Call& call) {
-  const auto render = call.studio.valid_render();
+  const auto render = call.render();
   const auto count = size_t(call.integer_or("count", 20, 1, 10000));
   const bool kept = render->film().largest_kept() > 0;
   if (!kept) {
@@ -119,7 +119,7 @@ Json fireflies(const Call& call) {
 
 Json bad_samples(const Call& call) {
   Json list = Json::array();
-  for (const BadSample& bad : call.studio.valid_render()->film().first_bad_samples()) {
+  for (const BadSample& bad : call.render()->film().first_bad_samples()) {
     const char* kind = bad.kind == BadSample::Kind::not_a_number ? "not a number"
                        : bad.kind == BadSample::Kind::infinite   ? "infinite"
                                                                  : "negative";
@@ -169,9 +169,29 @@ class Wires {
   size_t most_;
 };
 
+/// One object of the scene itself; those inside nested scenes have no bounds in the world's coordinates.
+Json wires_of(const Job& job, const Component& wanted, size_t most) {
+  Wires wires(job.world_centre(), most);
+  Json reply = {{"lines", Json::array()}, {"whole", true}, {"low", nullptr}, {"high", nullptr}};
+  for (const Ref<SceneObject>& object : job.scene->objects) {
+    if (object.get() != &wanted || object->unbounded() || object->infinite()) continue;
+    const Bounds3 bounds = object->bounds();
+    if (bounds.empty()) continue;
+    if (const auto triangles = object->triangles())
+      wires.mesh(*triangles, most);
+    else
+      wires.box(bounds);
+    const auto world = [&](const Point3& p) { return triple(job.world_centre() + DoubleVector3(p - Point3{})); };
+    reply = {{"lines", std::move(wires.lines)}, {"whole", !wires.full()}, {"low", world(bounds.low)}, {"high", world(bounds.high)}};
+    break;
+  }
+  return reply;
+}
+
 Json wireframe(const Call& call) {
   static_cast<void>(call.studio.valid_render());
   const Job& job = call.studio.document().job();
+  if (call.has("component")) return wires_of(job, *call.component(), size_t(call.integer_or("most", 5000, 100, 1'000'000)));
   const auto most = size_t(call.integer_or("most", 50000, 100, 1'000'000));
   Wires wires(job.world_centre(), most);
   const auto& objects = job.scene->objects;

@@ -12,21 +12,27 @@ namespace etendue::studio {
 namespace {
 
 Json start(const Call& call) {
-  static_cast<void>(call.studio.valid_render());
-  call.studio.runner().start();
+  static_cast<void>(call.render());
+  call.studio.runner_of(call.render_number()).start();
   return {};
 }
 Json pause(const Call& call) {
-  call.studio.runner().pause();
+  call.studio.runner_of(call.render_number()).pause();
   return {};
 }
 Json stop(const Call& call) {
-  call.studio.runner().stop();
+  call.studio.runner_of(call.render_number()).stop();
   return {};
 }
 
 Json restart(const Call& call) {
-  const auto render = call.studio.valid_render();
+  static_cast<void>(call.render());
+  if (const int number = call.render_number(); number != 0) {
+    if (call.has("seed")) throw RequestError("bad_request", "the seed is that of all renders: restart the document's own");
+    call.studio.sides().find(number)->restart();
+    call.studio.wake_viewer();
+    return {};
+  }
   if (call.has("seed")) call.studio.overrides["seed"] = std::to_string(call.integer("seed", 0, std::int64_t(1) << 53));
   call.studio.apply_overrides();
   if (call.studio.fireflies_kept > 0) call.studio.valid_render()->film().keep_largest(call.studio.fireflies_kept);
@@ -87,15 +93,17 @@ Json watch(const Call& call) {
     watch.what = Watch::What::toned;
   else if (what != "none")
     throw RequestError("bad_request", "'what' must be linear, toned or none");
+  watch.render = call.render_number();
+  if (watch.what != Watch::What::none) static_cast<void>(call.studio.runner_of(watch.render));  // throws when there is none
   watch.layer = call.text_or("layer", "");
   watch.tone_map = call.text_or("tone_map", "");
   if (!watch.tone_map.empty()) static_cast<void>(tone_map_of(watch.tone_map));  // throws when it is none
-  call.studio.set_watch(call.browser, watch);
+  call.studio.set_watch(call.browser, int(call.integer_or("slot", 0, 0, Studio::most_slots - 1)), watch);
   return {};
 }
 
 Json save_picture(const Call& call) {
-  const auto render = call.studio.valid_render();
+  const auto render = call.render();
   const std::string path = allowed_path(call, call.text("file"));
   const std::string ending = std::filesystem::path(path).extension().string();
   std::vector<std::string> known;
@@ -117,7 +125,7 @@ Json save_picture(const Call& call) {
 Json save_state(const Call& call) {
   const std::string path = allowed_path(call, call.text("file"));
   require_free(call, path);
-  call.studio.valid_render()->save(path);
+  call.render()->save(path);
   return {{"file", path}};
 }
 
@@ -129,7 +137,7 @@ Json load_state(const Call& call) {
 }
 
 Json pin(const Call& call) {
-  auto picture = std::make_shared<const Image>(call.studio.valid_render()->picture());
+  auto picture = std::make_shared<const Image>(call.render()->picture());
   call.studio.pin(call.text_or("name", "pinned"), std::move(picture));
   return {};
 }

@@ -15,8 +15,9 @@ constexpr size_t largest_echo = 200;
 const Request* find_request(const std::string& name) {
   static const std::map<std::string, const Request*, std::less<>> all = [] {
     std::map<std::string, const Request*, std::less<>> map;
-    for (const auto list : {edit_requests(), structure_requests(), text_requests(), render_requests(), camera_requests(),
-                            look_requests(), file_requests()})
+    for (const auto list :
+         {edit_requests(), structure_requests(), text_requests(), render_requests(), side_requests(), camera_requests(),
+          look_requests(), file_requests(), view_requests(), picture_requests(), task_requests()})
       for (const Request& request : list) map.emplace(request.name, &request);
     return map;
   }();
@@ -38,6 +39,8 @@ std::shared_ptr<const std::string> written(const Json& json) {
 Studio::Studio(StudioSettings settings)
     : settings_(std::move(settings)),
       document_(settings_.render, settings_.folders),
+      runner_(turns_),
+      sides_(settings_.render, settings_.folders, turns_),
       queue_(settings_.render, [this] { tell_queue(); }),
       checks_([this](const Json& event) { broadcast(event); }) {
   answerer_ = std::thread([this] { answer(); });
@@ -62,6 +65,7 @@ std::string Studio::end() {
   wake_viewer();
   answerer_.join();
   viewer_.join();
+  sides_.clear();
   runner_.set(nullptr);
   return settings_.read_only || discarded_ || !document_.changed() ? std::string() : document_.save_aside();
 }
@@ -114,20 +118,22 @@ void Studio::tell_queue() {
   broadcast(json);
 }
 
-void Studio::set_watch(const Browser& browser, const Watch& watch) {
+void Studio::set_watch(const Browser& browser, int slot, const Watch& watch) {
   {
     const std::lock_guard lock(browsers_guard_);
-    watches_[browser.number] = watch;
+    watches_[browser.number][slot] = watch;
   }
   wake_viewer();
 }
 
-std::shared_ptr<const Frame> Studio::frame(const Browser& browser) const {
+std::map<int, std::shared_ptr<const Frame>> Studio::frames(const Browser& browser) const {
+  std::map<int, std::shared_ptr<const Frame>> all;
   const std::lock_guard lock(browsers_guard_);
-  const auto watch = watches_.find(browser.number);
-  if (watch == watches_.end()) return nullptr;
-  const auto found = frames_.find(watch->second);
-  return found == frames_.end() ? nullptr : found->second;
+  const auto watches = watches_.find(browser.number);
+  if (watches == watches_.end()) return all;
+  for (const auto& [slot, watch] : watches->second)
+    if (const auto found = frames_.find(watch); found != frames_.end()) all.emplace(slot, found->second);
+  return all;
 }
 
 // ---- requests ---------------------------------------------------------------------------------------------------------------
@@ -249,6 +255,8 @@ void Studio::apply_overrides() {
   coarse_shown = coarse.load();
   ++generation;
   runner_.follow(document_.render());
+  runner_.hurry();
+  follow_sides();
   wake_viewer();
 }
 
@@ -300,6 +308,8 @@ double Call::number(const char* key) const {
 }
 
 double Call::number_or(const char* key, double otherwise) const { return has(key) ? number(key) : otherwise; }
+
+int Call::render_number() const { return int(integer_or("render", 0, 0, 2'000'000'000)); }
 
 std::optional<size_t> Call::index(const char* key) const {
   if (!has(key)) return {};

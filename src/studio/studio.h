@@ -18,6 +18,7 @@
 #include "studio/pixels/frame.h"
 #include "studio/pixels/runner.h"
 #include "studio/queue.h"
+#include "studio/sides.h"
 #include "studio/tasks.h"
 
 namespace etendue::studio {
@@ -26,11 +27,17 @@ struct StudioSettings {
   RenderSettings render;
   Folders folders;
   bool read_only = false;
+  bool viewing = false;              ///< it only shows pictures (Studio::show_pictures)
+  std::vector<std::string> plugins;  ///< that were named when it was started
+  /// What a user should know about a prepared job that is no error, with its kind; and which light its renderer misses.
+  std::function<std::vector<std::pair<std::string, Error>>(const Job&)> warnings;
+  std::function<std::vector<std::string>(const Job&)> advice;
 };
 
 /// What a page wants to see.
 struct Watch {
   enum class What : std::uint8_t { none, linear, toned } what = What::none;
+  int render = 0;        ///< 0: the document's own; else one beside it
   std::string layer;     ///< empty: the picture itself
   std::string tone_map;  ///< as text; empty: the job's
   bool operator==(const Watch&) const = default;
@@ -67,19 +74,25 @@ class Studio {
 
   /// Before any browser comes: what it begins with. Empty: an empty description in the working folder.
   void begin(const std::string& file);
+  /// Instead of that: pictures alone.
+  void show_pictures(std::vector<std::pair<std::string, std::shared_ptr<const Image>>>);
 
   void join(const std::shared_ptr<Browser>&);
   void leave(const Browser&);
   /// A request; the answer goes to the browser's `send`. Never throws, whatever the text is.
   void request(const std::shared_ptr<Browser>&, std::string text);
-  /// The newest frame of what a browser watches; null when there is none.
-  std::shared_ptr<const Frame> frame(const Browser&) const;
+  /// A browser watches several pictures, by slots of its own.
+  static constexpr int most_slots = 8;
+  /// The newest frame of what a browser watches in each slot; null when there is none.
+  std::map<int, std::shared_ptr<const Frame>> frames(const Browser&) const;
 
   /// Ends all threads. What was edited and not saved, unless a page gave it up, is written beside the description; the path of
   /// that file, else empty. Throws Error when it cannot be written.
   std::string end();
   /// Called once when a page asked for the end.
   std::function<void()> on_shutdown;
+  /// Whether it asked for a new beginning after that, with plugins as they are now.
+  std::atomic<bool> begin_again{false};
   /// The manual page of a class; empty when there is none.
   static std::string manual_page(const std::string& class_name);
   const StudioSettings& settings() const { return settings_; }
@@ -101,9 +114,22 @@ class Studio {
   Json text_json() const;
   Json progress_json();
   std::shared_ptr<Render> valid_render();
-  void set_watch(const Browser&, const Watch&);
+  /// The document's own render, or the one beside it that a number names. Throws Error when there is none.
+  std::shared_ptr<Render> render_of(int number);
+  Runner& runner_of(int number);
+  Sides& sides() { return sides_; }
+  /// Those beside the document's follow what became of it; not while a camera moves.
+  void follow_sides();
+  void tell_sides();
+  Json sides_json();
+  /// How the error of a render went down.
+  Json course_json(int render);
+  void set_watch(const Browser&, int slot, const Watch&);
   /// Keeps a picture for comparing; null: no longer.
   void pin(const std::string& name, std::shared_ptr<const Image>);
+  /// Throws Error when there is none.
+  std::shared_ptr<const Image> pinned(const std::string& name) const;
+  Json pictures_json() const;
   /// Counts films begun anew.
   std::atomic<std::uint32_t> generation{1};
   std::atomic<bool> coarse{false};        ///< wanted
@@ -124,35 +150,47 @@ class Studio {
     std::shared_ptr<Browser> from;
     std::string text;
   };
-  struct Viewed {
-    Watch watch;
-    std::shared_ptr<const Frame> frame;
+  /// A render as it is at a moment.
+  struct Shown {
+    int number = 0;  // 0: the document's own
+    std::shared_ptr<Render> render;
+    RenderSnapshot snapshot;
+    Runner::Status status;
+    std::uint32_t generation = 0;
+    bool coarse = false;
   };
   void tell_queue();
-  void note_shape(const Image& picture);
+  void note_shape(const Shown&, const Image& picture);
   void answer();
   void answer(const Task&);
   void look();
   void look_once();
-  void show(const RenderSnapshot&, const std::set<Watch>& wanted, const std::map<Watch, std::shared_ptr<const Frame>>& before);
-  Json progress_json(const RenderSnapshot&, bool valid);
-  std::shared_ptr<const Frame> make_frame(const Watch&, const Image&, const FrameInfo&, const Frame* before);
+  using Frames = std::map<Watch, std::shared_ptr<const Frame>>;
+  void show(const Shown&, const std::set<Watch>& wanted, const Frames& before, Frames& made);
+  Shown shown();
+  Shown shown(Side&);
+  Json progress_json(const Shown&);
+  Json side_json(const Side&, const Shown&);
+  std::shared_ptr<const Frame> make_frame(const Watch&, const Render&, const Image&, FrameInfo, const Frame* before);
 
   StudioSettings settings_;
   Document document_;
+  Turns turns_;
   Runner runner_;
+  Sides sides_;
 
   mutable std::mutex browsers_guard_;
   std::map<int, std::weak_ptr<Browser>> browsers_;
-  std::map<int, Watch> watches_;
-  std::map<Watch, std::shared_ptr<const Frame>> frames_;
+  std::map<int, std::map<int, Watch>> watches_;  // of browsers, by slots
+  Frames frames_;
   int next_browser_ = 1;
   struct Shape {
     std::uint32_t generation = 0;
     int width = 0, height = 0;
     std::vector<std::string> layers;
   };
-  Shape shape_;  // of the picture that was looked at last
+  std::map<int, Shape> shapes_;  // of the pictures that were looked at last, by render
+  std::map<int, Course> courses_;
   std::uint64_t frame_number_ = 0;
   std::map<std::string, std::shared_ptr<const Image>> pins_;
   std::atomic<std::int64_t> queue_told_{0};
@@ -188,6 +226,9 @@ struct Call {
   double number(const char* key) const;
   double number_or(const char* key, double otherwise) const;
   std::optional<size_t> index(const char* key = "index") const;
+  /// The render that 'render' names; without it the document's own.
+  int render_number() const;
+  std::shared_ptr<Render> render() const { return studio.render_of(render_number()); }
   Ref<Component> component(const char* key = "component") const;
 };
 
@@ -200,9 +241,13 @@ std::span<const Request> edit_requests();
 std::span<const Request> structure_requests();
 std::span<const Request> text_requests();
 std::span<const Request> render_requests();
+std::span<const Request> side_requests();
 std::span<const Request> camera_requests();
 std::span<const Request> look_requests();
 std::span<const Request> file_requests();
+std::span<const Request> view_requests();
+std::span<const Request> picture_requests();
+std::span<const Request> task_requests();
 
 // ---- JSON of what there is (json_*.cpp)
 // ---------------------------------------------------------------------------------------

@@ -1,63 +1,165 @@
 #include "tasks.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include "check/conform/conformance.h"
+#include <csignal>
+
 #include "etendue/core/error.h"
 
 namespace etendue::studio {
 
-using Json = nlohmann::ordered_json;
-
 Tasks::~Tasks() {
+  {
+    const std::lock_guard lock(guard_);
+    for (Running& r : running_) r.ended = true;
+  }
   for (Running& r : running_) r.thread.join();
 }
 
 void Tasks::sweep() {
   running_.remove_if([](Running& r) {
     if (r.done) r.thread.join();
-    return r.done;
+    return r.done.load();
   });
 }
 
-int Tasks::conform(const std::string& class_name) {
+int Tasks::work(const std::string& title, std::function<Json(const Work&)> what) {
+  constexpr size_t most = 2;
   const std::lock_guard lock(guard_);
   sweep();
-  if (running_.size() >= 2) throw Error("two checks are running already: wait until one is done");
-  const int number = next_++;
+  if (running_.size() >= most) throw Error("two tasks are running already: wait until one is done, or end it");
   Running& entry = running_.emplace_back();
-  entry.thread = std::thread([this, number, class_name, &entry] {
-    Json event = {{"event", "task"}, {"task", number}};
+  entry.number = next_++;
+  entry.thread = std::thread([this, &entry, title, what = std::move(what)] {
+    constexpr size_t longest = 64 << 10;
+    const Json head = {{"event", "task"}, {"task", entry.number}, {"title", title}};
+    std::string text;
+    double fraction = 0;
+    Json last = head;
+    const auto tell = [&] {
+      Json event = head;
+      event["state"] = "running";
+      event["text"] = text;
+      event["fraction"] = fraction;
+      tell_(event);
+    };
+    const Work work{entry.ended,
+                    [&](double f) {
+                      fraction = f;
+                      tell();
+                    },
+                    [&](const std::string& more) {
+                      text += more;
+                      // Of endless texts the end tells most.
+                      if (text.size() > longest) text = "…" + text.substr(text.size() - longest / 2);
+                      tell();
+                    }};
     try {
-      conform::Options options;
-      options.classes = {class_name};
-      options.effort = conform::Effort::quick;
-      options.progress = [&](const std::string&, int done, int of) {
-        tell_({{"event", "task"},
-               {"task", number},
-               {"state", "running"},
-               {"text", ""},
-               {"fraction", double(done) / std::max(of, 1)}});
-      };
-      int passed = 0, failed = 0, not_tried = 0;
-      std::string text;
-      for (const conform::Outcome& o : conform::conform(options)) {
-        ++(o.result == conform::Result::passed ? passed : o.result == conform::Result::failed ? failed : not_tried);
-        if (o.result == conform::Result::failed) text += fmt::format("{}: {}\n{}\n", o.class_name, o.check, o.detail);
-      }
-      event["state"] = failed == 0 ? "done" : "failed";
-      event["text"] =
-          fmt::format("{}: {} checks passed, {} failed, {} not tried\n{}", class_name, passed, failed, not_tried, text);
+      tell();
+      const Json result = what(work);
+      last["state"] = entry.ended ? "ended" : "done";
+      for (const auto& [key, value] : result.items()) last[key] = value;
     } catch (const std::exception& error) {
-      event["state"] = "failed";
-      event["text"] = error.what();
+      last["state"] = entry.ended ? "ended" : "failed";
+      text += error.what();
     }
-    event["fraction"] = 1;
-    tell_(event);
-    const std::lock_guard done(guard_);
+    last["text"] = text;
+    last["fraction"] = 1;
+    tell_(last);
     entry.done = true;
   });
-  return number;
+  return entry.number;
+}
+
+void Tasks::end(int number) {
+  const std::lock_guard lock(guard_);
+  for (Running& r : running_)
+    if (r.number == number && !r.done) {
+      r.ended = true;
+      return;
+    }
+  throw Error(fmt::format("there is no task {} that is running", number));
+}
+
+// ---- processes --------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// A process of this program; what it says comes out of `output`. Ends with this object.
+struct Process {
+  explicit Process(const std::vector<std::string>& arguments) {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) throw Error("there are no more pipes to be had");
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&files, ends[1], STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&files, ends[1], STDERR_FILENO);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t none, standard;  // signals are blocked here and ignored: not there
+    sigemptyset(&none);
+    sigemptyset(&standard);
+    sigaddset(&standard, SIGPIPE);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setsigdefault(&attributes, &standard);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+    std::vector<char*> list;
+    for (const std::string& a : arguments) list.push_back(const_cast<char*>(a.c_str()));
+    list.push_back(nullptr);
+    const int failed = posix_spawn(&number, "/proc/self/exe", &files, &attributes, list.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
+    close(ends[1]);
+    output = ends[0];
+    if (failed == 0) return;
+    close(output);
+    throw Error("no process can be started");
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  ~Process() {
+    if (number > 0) {
+      kill(number, SIGKILL);
+      waitpid(number, nullptr, 0);
+    }
+    close(output);
+  }
+  /// Its exit status; negative when a signal ended it.
+  int wait() {
+    int status = 0;
+    waitpid(number, &status, 0);
+    number = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  pid_t number = 0;
+  int output = -1;
+};
+
+}  // namespace
+
+int Tasks::run(const std::string& title, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "etendue");
+  return work(title, [arguments = std::move(arguments)](const Work& work) -> Json {
+    Process process(arguments);
+    std::vector<char> some(64 << 10);
+    while (!work.ended) {
+      pollfd ready{process.output, POLLIN, 0};
+      if (poll(&ready, 1, 100) <= 0) continue;
+      const ssize_t count = read(process.output, some.data(), some.size());
+      if (count <= 0) break;
+      work.say(std::string(some.data(), size_t(count)));
+    }
+    if (work.ended) return Json::object();
+    const int status = process.wait();
+    if (status < 0) throw Error(fmt::format("\n(it was ended by signal {})", -status));
+    return {{"status", status}, {"passed", status == 0}};
+  });
 }
 
 }  // namespace etendue::studio

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <set>
 
 #include "language/loader.h"
@@ -23,30 +24,6 @@ double processor_time(clockid_t clock) {
   clock_gettime(clock, &t);
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
-
-const char* name(Runner::State state) {
-  switch (state) {
-    case Runner::State::empty: return "empty";
-    case Runner::State::rendering: return "rendering";
-    case Runner::State::paused: return "paused";
-    case Runner::State::finished: return "finished";
-    case Runner::State::failed: return "stopped";
-  }
-  return "";
-}
-
-const char* reason(Ended ended) {
-  switch (ended) {
-    case Ended::samples: return "samples";
-    case Ended::time: return "time";
-    case Ended::error: return "error";
-    case Ended::interrupted: return "paused";
-    case Ended::aborted: return "stopped";
-  }
-  return "";
-}
-
-Json finite(double x) { return std::isfinite(x) && x > 0 ? Json(x) : Json(); }
 
 }  // namespace
 
@@ -83,51 +60,11 @@ void Studio::wake_viewer() {
   viewer_changed_.notify_all();
 }
 
-Json Studio::progress_json() {
-  const std::shared_ptr<Render> render = document_.render();
-  return render ? progress_json(render->snapshot(), true) : progress_json({}, false);
-}
-
-Json Studio::progress_json(const RenderSnapshot& now, bool valid) {
-  const Runner::Status status = runner_.status();
-  Json json = {{"event", "progress"},
-               {"state", name(status.state)},
-               {"ended", status.ended ? Json(reason(*status.ended)) : Json()},
-               {"generation", generation.load()},
-               {"coarse", coarse_shown.load()}};
-  if (valid) {
-    const Progress& p = now.progress;
-    json["samples"] = p.samples;
-    json["samples_wanted"] = p.samples_wanted;
-    json["fraction"] = p.fraction;
-    json["seconds"] = p.seconds;
-    json["seconds_left"] = p.seconds_left >= 0 && std::isfinite(p.seconds_left) ? Json(p.seconds_left) : Json();
-    json["samples_per_second"] = p.samples_per_second;
-    json["error"] = finite(now.film.relative_error());
-    json["bad_samples"] = now.film.bad_samples();
-    const std::lock_guard lock(browsers_guard_);
-    if (shape_.generation != generation) note_shape(now.picture());
-    json["width"] = shape_.width;
-    json["height"] = shape_.height;
-    json["layers"] = shape_.layers;
-  }
-  json["errors"] = errors_json(status.errors, nullptr);
-  return json;
-}
-
-void Studio::note_shape(const Image& picture) {
-  shape_ = {generation, picture.width, picture.height, {}};
-  for (size_t i = 3; i < picture.channels.size(); ++i) {
-    const std::string layer = picture.channels[i].substr(0, picture.channels[i].find('.'));
-    if (std::find(shape_.layers.begin(), shape_.layers.end(), layer) == shape_.layers.end()) shape_.layers.push_back(layer);
-  }
-}
-
 // A look follows another when the rest of the program has worked so much longer that looking is a small part of it: by
 // processor time, which does not count what other programs do. What somebody did is shown at once.
 void Studio::look() {
   pthread_setname_np(pthread_self(), "viewer");
-  std::uint64_t seen_changes = 0, seen_generation = 0;
+  std::uint64_t seen_changes = 0, seen_generations = 0;
   Clock::time_point looked{}, begun{};
   double looked_at = 0, cost = 0;  // of the whole program, and of the last look [s of a processor]
   auto pause = shortest;
@@ -139,9 +76,18 @@ void Studio::look() {
       woken = std::exchange(viewer_woken_, false);
     }
     if (ending_) return;
-    const Runner::Status status = runner_.status();
-    const bool rendering = status.state == Runner::State::rendering;
-    const bool changed = woken || status.changes != seen_changes || generation.load() != seen_generation;
+    bool rendering = false;
+    std::uint64_t changes = 0, generations = generation;
+    const auto count = [&](const Runner::Status& status) {
+      rendering |= status.state == Runner::State::rendering;
+      changes += status.changes;
+    };
+    count(runner_.status());
+    for (const auto& side : sides_.all()) {
+      count(side->runner().status());
+      generations += side->generation();
+    }
+    const bool changed = woken || changes != seen_changes || generations != seen_generations;
     pause = rendering || changed ? shortest : longest / 4;
     if (!changed && !rendering) continue;
     const bool soon = coarse && Clock::now() - looked >= shortest;
@@ -156,9 +102,9 @@ void Studio::look() {
         continue;
       }
     }
-    if (seen_generation != generation.load()) begun = Clock::now();
-    seen_changes = status.changes;
-    seen_generation = generation.load();
+    if (seen_generations != generations) begun = Clock::now();
+    seen_changes = changes;
+    seen_generations = generations;
     const double before = processor_time(CLOCK_THREAD_CPUTIME_ID);
     try {
       look_once();
@@ -171,7 +117,27 @@ void Studio::look() {
   }
 }
 
-std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const Image& picture, const FrameInfo& info,
+namespace {
+
+/// Where a picture stands in the whole one, as it says itself.
+FrameInfo place_of(const Image& picture, FrameInfo info) {
+  const auto number_in = [&](const char* key, int otherwise) {
+    const auto found = picture.metadata.find(key);
+    int value = otherwise;
+    if (found != picture.metadata.end())
+      std::from_chars(found->second.data(), found->second.data() + found->second.size(), value);
+    return std::uint32_t(std::max(value, 0));
+  };
+  info.x0 = number_in("crop_x", 0);
+  info.y0 = number_in("crop_y", 0);
+  info.full_width = std::max(number_in("full_width", picture.width), info.x0 + std::uint32_t(picture.width));
+  info.full_height = std::max(number_in("full_height", picture.height), info.y0 + std::uint32_t(picture.height));
+  return info;
+}
+
+}  // namespace
+
+std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const Render& render, const Image& picture, FrameInfo info,
                                                 const Frame* before) {
   const std::uint64_t number = ++frame_number_;
   Image pinned;
@@ -182,6 +148,7 @@ std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const Image&
     if (found == pins_.end()) return nullptr;
     pinned = *found->second;
     image = &pinned;
+    if (pinned.width != picture.width || pinned.height != picture.height) info = place_of(pinned, info);
   } else if (!watch.layer.empty()) {
     for (size_t i = 3; i < picture.channels.size(); ++i)
       if (picture.channels[i] == watch.layer || picture.channels[i].starts_with(watch.layer + ".")) {
@@ -191,65 +158,59 @@ std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const Image&
     return nullptr;
   }
   if (watch.what == Watch::What::linear) return Frame::make(Frame::Kind::linear, *image, 0, true, info, number, before);
-  const std::shared_ptr<Render> render = document_.render();
-  Image shown;
-  if (watch.tone_map.empty()) {
-    shown = render->display(*image);
-  } else {
-    shown = tone_map_of(watch.tone_map)->apply(*image);
-  }
+  const Image shown = watch.tone_map.empty() ? render.display(*image) : tone_map_of(watch.tone_map)->apply(*image);
   return Frame::make(Frame::Kind::toned, shown, 0, false, info, number, before);
 }
 
 /// One frame for each kind of watching, and how far it is.
 void Studio::look_once() {
-  const std::shared_ptr<Render> render = document_.render();
-  if (!render) return broadcast(progress_json({}, false));
-  const RenderSnapshot snapshot = render->snapshot();
-  std::set<Watch> wanted;
-  std::map<Watch, std::shared_ptr<const Frame>> before;
+  std::map<int, std::set<Watch>> wanted;  // by render
+  Frames before, frames;
   {
     const std::lock_guard lock(browsers_guard_);
-    for (const auto& [number, watch] : watches_)
-      if (watch.what != Watch::What::none) wanted.insert(watch);
+    for (const auto& [number, slots] : watches_)
+      for (const auto& [slot, watch] : slots)
+        if (watch.what != Watch::What::none) wanted[watch.render].insert(watch);
     before = frames_;
   }
-  if (!wanted.empty()) show(snapshot, wanted, before);
-  broadcast(progress_json(snapshot, true));
+  const Shown own = shown();
+  if (own.render) show(own, wanted[0], before, frames);
+  Json list = Json::array();
+  for (const auto& side : sides_.all()) {
+    const Shown now = shown(*side);
+    if (now.render) show(now, wanted[side->number], before, frames);
+    list.push_back(side_json(*side, now));
+  }
+  {
+    const std::lock_guard lock(browsers_guard_);
+    frames_ = std::move(frames);
+    for (const auto& [number, weak] : browsers_)
+      if (const auto browser = weak.lock()) browser->frame_ready();
+  }
+  broadcast(progress_json(own));
+  if (!list.empty()) broadcast({{"event", "renders"}, {"renders", std::move(list)}});
 }
 
-void Studio::show(const RenderSnapshot& snapshot, const std::set<Watch>& wanted,
-                  const std::map<Watch, std::shared_ptr<const Frame>>& before) {
-  const Runner::Status status = runner_.status();
-  const Image picture = snapshot.picture();
+void Studio::show(const Shown& now, const std::set<Watch>& wanted, const Frames& before, Frames& made) {
+  if (wanted.empty()) return;
+  const Image picture = now.snapshot.picture();
   FrameInfo info;
-  info.generation = generation;
-  info.samples = snapshot.progress.samples;
-  info.coarse = coarse_shown;
-  info.finished = status.state == Runner::State::finished;
-  const auto number_in = [&](const char* key, std::uint32_t otherwise) {
-    const auto found = picture.metadata.find(key);
-    return found == picture.metadata.end() ? otherwise : std::uint32_t(std::stoul(found->second));
-  };
-  info.x0 = number_in("crop_x", 0);
-  info.y0 = number_in("crop_y", 0);
-  info.full_width = number_in("full_width", std::uint32_t(picture.width));
-  info.full_height = number_in("full_height", std::uint32_t(picture.height));
-  std::map<Watch, std::shared_ptr<const Frame>> frames;
+  info.generation = now.generation;
+  info.samples = now.snapshot.progress.samples;
+  info.coarse = now.coarse;
+  info.finished = now.status.state == Runner::State::finished;
+  info = place_of(picture, info);
   for (const Watch& watch : wanted) {
     const auto had = before.find(watch);
     try {
-      frames[watch] = make_frame(watch, picture, info, had == before.end() ? nullptr : had->second.get());
+      made[watch] = make_frame(watch, *now.render, picture, info, had == before.end() ? nullptr : had->second.get());
     } catch (const std::exception& error) {  // of a tone map; whoever watches keeps what is on the screen
       notice(error.what(), "error");
-      if (had != before.end()) frames[watch] = had->second;
+      if (had != before.end()) made[watch] = had->second;
     }
   }
   const std::lock_guard lock(browsers_guard_);
-  note_shape(picture);
-  frames_ = std::move(frames);
-  for (const auto& [number, weak] : browsers_)
-    if (const auto browser = weak.lock()) browser->frame_ready();
+  note_shape(now, picture);
 }
 
 }  // namespace etendue::studio

@@ -4,7 +4,7 @@ const count = (n: number, one: string, many: string): string => `${n.toLocaleStr
 
 export const texts = {
   common: { close: "Close", cancel: "Cancel", save: "Save", open: "Open", divider: "Width of the side" },
-  tabs: { label: "Views", picture: "Picture", text: "Text", paths: "Paths" },
+  tabs: { label: "Views", picture: "Picture", text: "Text", paths: "Space" },
   notices: { label: "Messages", offline: "The program cannot be reached just now; nothing was changed." },
   top: {
     document: "Document",
@@ -99,6 +99,8 @@ export const texts = {
     doesNotMatter: "Has no effect with the other members as they are",
     reset: (member: string, standard: string) => `Back to the default of ${member}: ${standard}`,
     required: "required",
+    waits: "This waits for other members: what is typed next is tried together with it.",
+    drop: "Drop it",
     default: (standard: string) => `default ${standard}`,
     effects: { none: "costs nothing", retone: "tones the picture anew", rerender: "renders anew", rebuild: "rebuilds and renders anew" },
     large: (rows: number, width: number) => `${rows.toLocaleString("en")} × ${width} numbers: edited in the text`,
@@ -242,6 +244,14 @@ export const texts = {
     sample: (n: number) => `sample ${n}`,
     noWebGl: "Three dimensions need WebGL 2.",
     share: (part: string) => `${part} of the light`,
+  },
+  space: {
+    gizmo: "Handles in the drawing",
+    move: "Move",
+    turn: "Turn",
+    scale: "Scale",
+    target: (what: string) => `${what}: drag its handles, or type numbers into its transform`,
+    noTarget: "Select an object to move it here.",
   },
   help: {
     title: "Help and keys",

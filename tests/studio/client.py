@@ -21,8 +21,10 @@ class Closed(Exception):
 class Studio:
     """The program, and where it listens."""
 
-    def __init__(self, file=None, *arguments, folder=None, threads=2, environment=None):
-        command = [os.path.abspath(PROGRAM), "studio", "--no-browser", "--threads", str(threads), *arguments]
+    def __init__(self, file=None, *arguments, folder=None, threads=2, environment=None, command="studio"):
+        command = [os.path.abspath(PROGRAM), command, "--no-browser", *arguments]
+        if threads:
+            command += ["--threads", str(threads)]
         if file:
             command.append(str(file))
         self.process = subprocess.Popen(
@@ -228,6 +230,7 @@ class Pixels:
         fields = struct.unpack_from("<8If3I", data)
         (self.kind, self.generation, self.width, self.height, self.x0, self.y0, self.full_width, self.full_height) = fields[:8]
         self.scale, self.samples, self.flags, count = fields[8:]
+        self.slot = self.flags >> 8 & 0xFF
         self.size = len(data)
         self.tiles = {}
         at = 48 + 4 * count

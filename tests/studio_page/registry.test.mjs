@@ -57,7 +57,9 @@ const isA = (name, wanted) => {
 };
 const fromInfinity = new Set(["EnvironmentEmission", "SkyEmission"]);
 const hostOf = (name) => (fromInfinity.has(name) ? ["sky", "emission"] : null) ?? Object.entries(hosts).find(([kind]) => isA(name, kind) && !(kind === "Scene" && name === "BvhScene"))?.[1];
-const concrete = classes.filter((c) => !c.abstract && c.name !== "Job");
+/** What members take: a class of no such kind (importers and exporters are the program's) has no place in a document. */
+const taken = [...new Set(classes.flatMap((c) => c.members.filter((m) => m.type === "component").map((m) => m.class)))];
+const concrete = classes.filter((c) => !c.abstract && taken.some((kind) => isA(c.name, kind)));
 
 /** All values, with components written out where they stand; without places and identifiers. */
 function values(components, root) {

@@ -10,6 +10,7 @@
 #include "app/progress_display.h"
 #include "app/render_options.h"
 #include "app/scene_warnings.h"
+#include "app/tev.h"
 #include "app/text.h"
 #include "check/replay/replay.h"
 #include "etendue/language/language.h"
@@ -123,6 +124,8 @@ void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, co
 }
 
 int render(const RenderOptions& options, Series& series) {
+  const std::optional<TevAddress> tev =
+      options.tev.empty() ? std::nullopt : std::optional(parse_tev_address(options.tev));
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
 
@@ -152,8 +155,11 @@ int render(const RenderOptions& options, Series& series) {
   {
     const Interruption interruption(render);
     if (const std::string resumed = options.resumed_file(); !resumed.empty()) render.load(resumed);
+    std::optional<TevDisplay> shown;
+    if (tev) shown.emplace(render, *tev, options.stem());
     ended = render.run();
     display.clear();
+    if (shown) shown->finish(ended != Ended::aborted);
     picture = render.picture();
     const bool unfinished = options.in_series && ended == Ended::interrupted;
     if (ended != Ended::aborted && !unfinished) written = write_each(outputs, *job, picture, options.stem(), errors);

@@ -1,19 +1,14 @@
 // etendue studio [FILE]: describe, watch and control a render in a browser.
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <thread>
 
 #include "app/commands.h"
 #include "app/text.h"
 #include "etendue/describe/registry.h"
-#include "studio/server/server.h"
+#include "studio_serving.h"
 
 namespace etendue {
 
@@ -27,15 +22,6 @@ struct StudioOptions {
   int port = 0, threads = 0;
   bool no_browser = false, read_only = false;
 };
-
-/// The page: beside the program as it is built, or as it is installed.
-std::string page_file() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const char* place : {"studio/index.html", "../share/etendue/studio/index.html"})
-    if (fs::is_regular_file(program / place, error)) return (program / place).lexically_normal().string();
-  return (program / "studio/index.html").string();
-}
 
 std::string password(const StudioOptions& options) {
   std::string text;
@@ -54,21 +40,6 @@ std::string password(const StudioOptions& options) {
   return text;
 }
 
-/// Has the system open an address; nothing is said when it cannot.
-void open_browser(const std::string& address) {
-  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
-  const pid_t child = fork();
-  if (child != 0) {
-    if (child > 0) waitpid(child, nullptr, 0);
-    return;
-  }
-  if (fork() != 0) _exit(0);  // the grandchild is nobody's to wait for
-  const int nowhere = ::open("/dev/null", O_RDWR);
-  for (int stream = 0; stream < 3; ++stream) dup2(nowhere, stream);
-  execlp("xdg-open", "xdg-open", address.c_str(), static_cast<char*>(nullptr));
-  _exit(0);
-}
-
 int run_studio(const StudioOptions& options) {
   for (const std::string& plugin : options.plugins) Registry::instance().load_plugin(plugin);
   studio::StudioSettings settings;
@@ -80,7 +51,7 @@ int run_studio(const StudioOptions& options) {
 
   studio::ServerSettings server_settings;
   server_settings.port = static_cast<unsigned short>(options.port);
-  server_settings.page = options.page.empty() ? page_file() : options.page;
+  server_settings.page = options.page;
   if (!options.listen.empty()) {
     server_settings.address = options.listen;
     server_settings.password = password(options);
@@ -91,31 +62,11 @@ int run_studio(const StudioOptions& options) {
         options.listen);
   }
 
-  // Ctrl-C ends it in order; a thread of its own waits for it, so that no handler has to be careful.
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-
-  studio::Studio studio(std::move(settings));
-  studio.begin(options.file);
-  studio::Server server(studio, std::move(server_settings));
-  studio.on_shutdown = [&] { kill(getpid(), SIGTERM); };
-  std::thread waiter([&] {
-    int signal = 0;
-    sigwait(&signals, &signal);
-    server.stop();
-  });
-  fmt::print("{}\n", server.address());
-  std::fflush(stdout);
-  if (!options.no_browser) open_browser(server.address());
-  server.run();
-  kill(getpid(), SIGTERM);  // in case it ended by itself
-  waiter.join();
-  if (const std::string aside = studio.end(); !aside.empty()) fmt::print(stderr, "What was not saved is in {}\n", aside);
-  return exit_status::done;
+  settings.plugins = options.plugins;
+  for (std::string& plugin : settings.plugins) plugin = fs::absolute(plugin).string();
+  const std::string file = options.file;
+  return serve(std::move(settings), std::move(server_settings), !options.no_browser,
+               [&](studio::Studio& studio) { studio.begin(file); });
 }
 
 }  // namespace
@@ -147,6 +98,7 @@ void add_studio_command(CLI::App& program, Run& run) {
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""));
   command.callback([options, &run] { run = [options] { return run_studio(*options); }; });
+  add_view_command(program, run);
 }
 
 }  // namespace etendue

@@ -30,6 +30,8 @@ void Document::take_text(std::unique_ptr<Outline> outline) {
 
 Ref<Job> Document::load(const Outline& outline, const std::map<std::string, std::string>& overrides) const {
   if (!trusts_all_) require_allowed(files_loaded_by(outline, folder_));
+  for (const auto& [path, expression] : overrides)
+    require_allowed(files_loaded_by(Outline("x = " + expression, intern("--set")), folder_));
   Ref<Job> job = load_job_text(outline.text(), name_, folder_);
   if (!trusts_all_) require_allowed(files_named_by(*job));
   for (const auto& [path, expression] : overrides) set_path(*job, path, expression);
@@ -265,6 +267,17 @@ Applied Document::set_overrides(const std::map<std::string, std::string>& overri
   revision_ = revision;  // the text is the same
   overrides_ = std::move(all);
   return applied;
+}
+
+bool Document::follow(const Document& leader, const std::string& text, const std::map<std::string, std::string>& overrides) {
+  name_ = leader.name_;
+  file_ = leader.file_;
+  folder_ = leader.folder_;
+  trusted_ = leader.trusted_;
+  if (valid() && text == this->text() && overrides == overrides_) return false;
+  static_cast<void>(follow(text, overrides));
+  overrides_ = overrides;
+  return true;
 }
 
 }  // namespace etendue::studio

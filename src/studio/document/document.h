@@ -106,6 +106,9 @@ class Document {
   /// Members that are set for this session only, by paths as of `--set`; an empty value takes one back. All or none.
   Applied set_overrides(const std::map<std::string, std::string>& overrides);
   const std::map<std::string, std::string>& overrides() const { return overrides_; }
+  /// Becomes another document with other text and overrides, without steps to undo. Throws as `apply`. Whether anything is
+  /// different now.
+  bool follow(const Document& leader, const std::string& text, const std::map<std::string, std::string>& overrides);
 
  private:
   struct Step {

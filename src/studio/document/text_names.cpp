@@ -128,6 +128,19 @@ std::string new_component_text(const ClassInfo& info) {
     }
     if (const std::string filled = component_text(info, more); can_be_prepared(filled)) return filled;
   }
+  // A list that takes some parts of a kind only, such as the operands of a solid: the first that will do.
+  for (const Member& list : info.members) {
+    if (list.kind != Kind::component || entries_text(list).empty()) continue;
+    for (const ClassInfo* entry : Registry::instance().subclasses(*Registry::instance().find(list.component_class))) {
+      if (entry->abstract() || entry == &info) continue;
+      const bool simple = std::none_of(entry->members.begin(), entry->members.end(), [](const Member& m) { return m.required; });
+      if (!simple) continue;
+      std::vector<std::string> more = members;
+      std::erase_if(more, [&](const std::string& m) { return m.starts_with(list.name + ":"); });
+      more.push_back(fmt::format("{}: [{} {{}}]", list.name, entry->name));
+      if (const std::string filled = component_text(info, more); can_be_prepared(filled)) return filled;
+    }
+  }
   return text;  // whoever adds it says what is missing
 }
 

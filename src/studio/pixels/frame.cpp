@@ -96,7 +96,7 @@ bool Frame::continues(const Frame& o) const {
          info_.coarse == o.info_.coarse;
 }
 
-std::vector<std::uint8_t> Frame::message(std::uint64_t after) const {
+std::vector<std::uint8_t> Frame::message(std::uint64_t after, int slot) const {
   std::vector<const Tile*> changed;
   size_t size = 64;
   for (const Tile& t : tiles_)
@@ -113,7 +113,7 @@ std::vector<std::uint8_t> Frame::message(std::uint64_t after) const {
   put(bytes, info_.full_height);
   put(bytes, std::bit_cast<std::uint32_t>(scale_));
   put(bytes, info_.samples);
-  put(bytes, std::uint32_t(info_.coarse) | std::uint32_t(info_.finished) << 1);
+  put(bytes, std::uint32_t(info_.coarse) | std::uint32_t(info_.finished) << 1 | std::uint32_t(slot) << 8);
   put(bytes, std::uint32_t(changed.size()));
   for (const Tile* t : changed) {
     put16(bytes, t->x / tile);

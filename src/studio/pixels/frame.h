@@ -33,9 +33,9 @@ class Frame {
   std::uint64_t number() const { return number_; }
   /// Whether tiles sent of the other frame may stay on a screen when this one follows.
   bool continues(const Frame& other) const;
-  /// A message with the tiles that changed after a frame of this number; all when it is 0. Empty when there are none and
-  /// nothing else is new.
-  std::vector<std::uint8_t> message(std::uint64_t after) const;
+  /// A message with the tiles that changed after a frame of this number; all when it is 0. `slot`: which of the pictures that
+  /// a page watches it is.
+  std::vector<std::uint8_t> message(std::uint64_t after, int slot) const;
   const FrameInfo& info() const { return info_; }
   int width() const { return width_; }
   int height() const { return height_; }

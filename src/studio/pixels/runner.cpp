@@ -2,7 +2,7 @@
 
 namespace etendue::studio {
 
-Runner::Runner() : thread_([this] { work(); }) {}
+Runner::Runner(Turns& turns) : turns_(turns), thread_([this] { work(); }) {}
 
 Runner::~Runner() {
   {
@@ -66,6 +66,38 @@ Runner::Status Runner::status() const {
   return status_;
 }
 
+void Runner::hurry() {
+  {
+    const std::lock_guard lock(guard_);
+    if (!wanted_) return;
+  }
+  turns_.hurry(seat_);
+}
+
+/// In turns with others, until it has come to its end or is not wanted any more.
+Ended Runner::run(const std::shared_ptr<Render>& render) {
+  const auto wanted = [&] {
+    const std::lock_guard lock(guard_);
+    return wanted_ && !ending_ && render_ == render;
+  };
+  seat_.stop = [render] { render->stop(); };
+  seat_.abort = [render] { render->abort(); };
+  bool away = true;
+  while (true) {
+    if (!turns_.take(seat_, std::exchange(away, false), wanted)) return Ended::interrupted;
+    struct Turn {
+      Turns& turns;
+      Turns::Seat& seat;
+      ~Turn() { turns.give_back(seat); }
+    };
+    std::optional<Turn> turn(std::in_place, turns_, seat_);
+    const Ended ended = render->run();
+    turn.reset();
+    const bool given_up = ended == Ended::interrupted || ended == Ended::aborted;
+    if (!given_up || !wanted()) return ended;
+  }
+}
+
 void Runner::work() {
   std::unique_lock lock(guard_);
   while (true) {
@@ -78,7 +110,7 @@ void Runner::work() {
     lock.unlock();
     Status next;
     try {
-      next.ended = render->run();
+      next.ended = run(render);
     } catch (const Errors& several) {
       next.errors = several.errors;
     } catch (const Error& error) {

@@ -1,5 +1,5 @@
 #pragma once
-// The thread in which a document's render goes on.
+// The thread in which a render goes on, taking turns with others.
 
 #include <condition_variable>
 #include <memory>
@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "etendue/render/render.h"
+#include "turns.h"
 
 namespace etendue::studio {
 
 class Runner {
  public:
-  Runner();
+  explicit Runner(Turns&);
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
@@ -28,6 +29,8 @@ class Runner {
   void stop();
   /// The render was edited, or replaced: what had come to its end may have to go on.
   void follow(const std::shared_ptr<Render>&);
+  /// Somebody waits for what it shows: other renders leave it their turns.
+  void hurry();
 
   enum class State : std::uint8_t { empty, rendering, paused, finished, failed };
   struct Status {
@@ -41,6 +44,10 @@ class Runner {
  private:
   void work();
 
+  Ended run(const std::shared_ptr<Render>&);
+
+  Turns& turns_;
+  Turns::Seat seat_;
   mutable std::mutex guard_;
   std::condition_variable changed_;
   std::shared_ptr<Render> render_;

@@ -26,7 +26,7 @@ struct Server::Members {
 
   Studio& studio;
   const ServerSettings settings;
-  const std::string token = random_token(), session = random_token();
+  const std::string token = settings.token.empty() ? random_token() : settings.token, session = random_token();
   asio::io_context context{1};
   tcp::acceptor acceptor{context};
   unsigned short port = 0;
@@ -87,7 +87,8 @@ class Page : public Browser, public std::enable_shared_from_this<Page> {
   std::deque<std::shared_ptr<const std::string>> words_;
   size_t unsent_ = 0;
   std::vector<std::uint8_t> pixels_;
-  std::shared_ptr<const Frame> shown_;  // the frame that was sent last
+  std::map<int, std::shared_ptr<const Frame>> shown_;  // the frames that were sent last, by slots
+  int last_slot_ = 0;
   int unanswered_ = 0;
   bool writing_ = false, reading_ = false, lost_ = false;
 };

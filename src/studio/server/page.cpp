@@ -84,11 +84,21 @@ void Page::write() {
     socket_.text(true);
     next = asio::buffer(*words_.front());
   } else {
-    const std::shared_ptr<const Frame> frame = server_.studio.frame(*this);
-    if (!frame || frame == shown_) return;
-    const bool continues = shown_ && frame->continues(*shown_);
-    pixels_ = frame->message(continues ? shown_->number() : 0);
-    shown_ = frame;
+    // Slots in turns, so that one which always has something new does not hold up the others.
+    const auto frames = server_.studio.frames(*this);
+    auto next_slot = frames.upper_bound(last_slot_);
+    size_t tried = 0;
+    for (; tried < frames.size(); ++tried, ++next_slot) {
+      if (next_slot == frames.end()) next_slot = frames.begin();
+      if (next_slot->second && next_slot->second != shown_[next_slot->first]) break;
+    }
+    if (tried == frames.size()) return;
+    const auto& [slot, frame] = *next_slot;
+    std::shared_ptr<const Frame>& shown = shown_[slot];
+    const bool continues = shown && frame->continues(*shown);
+    pixels_ = frame->message(continues ? shown->number() : 0, slot);
+    shown = frame;
+    last_slot_ = slot;
     socket_.binary(true);
     next = asio::buffer(pixels_);
   }

@@ -202,6 +202,8 @@ std::string Server::address() const {
   return fmt::format("http://{}:{}/?token={}", host, m->port, m->token);
 }
 
+std::string Server::port_and_token() const { return fmt::format("{} {}", m->port, m->token); }
+
 void Server::run() {
   m->accept();
   while (true) {

@@ -13,6 +13,7 @@ struct ServerSettings {
   unsigned short port = 0;  ///< 0: any that is free
   std::string password;     ///< empty: none, and only the token lets in
   std::string page;         ///< the file of the page
+  std::string token;        ///< that lets in; empty: a new one
 };
 
 class Server {
@@ -25,6 +26,8 @@ class Server {
 
   /// "http://127.0.0.1:7007/?token=…"
   std::string address() const;
+  /// "7007 TOKEN": what a server needs to be found where this one was.
+  std::string port_and_token() const;
   /// Serves until `stop`.
   void run();
   /// From any thread, or a signal handler's thread.

@@ -50,8 +50,8 @@ export const placeOfSelected = computed<Use | null>(() => {
   const component = selectedComponent.value;
   const wanted = selectedUse.value;
   if (!component) return null;
-  const same = (u: Use): boolean => u.id === wanted?.id && u.member === wanted.member && u.index === wanted.index;
-  return component.uses.find(same) ?? component.uses[0] ?? null;
+  const member = (u: Use): boolean => u.id === wanted?.id && u.member === wanted.member;
+  return component.uses.find((u) => member(u) && u.index === wanted?.index) ?? component.uses.findLast(member) ?? component.uses[0] ?? null;
 });
 
 export function select(id: number | null, use: Use | null = null): void {

@@ -17,23 +17,66 @@ function setWrong(at: string, message: string | null): void {
   wrong.value = next;
 }
 
-export function forgetWrong(): void {
-  if (wrong.value.size) wrong.value = new Map();
+interface Kept {
+  component: number;
+  member: string;
+  index?: number;
+  text: string;
 }
 
+/** What was refused stays in its field, by `key`: values that are valid only together are typed one after another. */
+export const kept = signal<ReadonlyMap<string, Kept>>(new Map());
+
+function keep(at: string, what: Kept | null): void {
+  if (what === null && !kept.value.has(at)) return;
+  const next = new Map(kept.value);
+  if (what === null) next.delete(at);
+  else next.set(at, what);
+  kept.value = next;
+}
+
+export function forgetWrong(): void {
+  if (wrong.value.size) wrong.value = new Map();
+  if (kept.value.size) kept.value = new Map();
+}
+
+/** Drops what was refused of a member: its field shows what holds. */
+export function dropKept(component: number, member: string, index?: number): void {
+  keep(key(component, member, index), null);
+  setWrong(key(component, member, index), null);
+}
+
+/** Sets a member; with what was refused before if both together are valid, in one step of undo. */
 export async function setMember(component: number, member: string, text: string, more: { index?: number; merge?: string } = {}): Promise<boolean> {
   const at = key(component, member, more.index);
+  const before = [...kept.value].filter(([k, e]) => k !== at && e.component === component);
+  const one = { component, member, text, ...(more.index === undefined ? {} : { index: more.index }) };
+  if (before.length && !more.merge) {
+    try {
+      await demand("edits", { edits: [...before.map(([, edit]) => edit), one] });
+      for (const done of [at, ...before.map(([k]) => k)]) {
+        keep(done, null);
+        setWrong(done, null);
+      }
+      return true;
+    } catch {
+      // then it is tried alone
+    }
+  }
   try {
-    await demand("edit", { component, member, text, ...more });
+    await demand("edit", { ...one, ...more });
+    keep(at, null);
     setWrong(at, null);
     return true;
   } catch (error) {
+    if (error instanceof Refused && !more.merge) keep(at, one);
     setWrong(at, error instanceof Refused ? error.message : texts.notices.offline);
     return false;
   }
 }
 
 export async function resetMember(component: number, member: string): Promise<void> {
+  keep(key(component, member), null);
   try {
     await demand("reset", { component, member });
     setWrong(key(component, member), null);

@@ -9,7 +9,7 @@ import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
 import { ColorField } from "./color.tsx";
 import { ComponentField, ComponentList } from "./component.tsx";
-import { resetMember, wrong, key } from "./edit.ts";
+import { dropKept, kept, key, resetMember, wrong } from "./edit.ts";
 import { FileField, FileList } from "./file.tsx";
 import { NumberField } from "./number.tsx";
 import { BooleanField, ChoiceField, ChoicesField, ExpressionField, TextField } from "./simple.tsx";
@@ -51,14 +51,17 @@ export interface FieldProps {
 }
 
 export function Field({ component, member }: { component: Component; member: Member }): JSX.Element | null {
-  const state = component.members[member.name];
-  if (!state) return null;
+  const told = component.members[member.name];
+  if (!told) return null;
+  const waiting = kept.value.get(key(component.id, member.name));
+  const state = waiting ? { ...told, text: waiting.text } : told;
   const id = `field-${component.id}-${member.name}`;
   const problems = [...wrong.value].filter(([k]) => k === key(component.id, member.name) || k.startsWith(`${key(component.id, member.name)}.`));
   const props = { component, member, state, id };
   return (
     <div class={`field type-${member.type}${state.written ? " written" : ""}${state.matters ? "" : " idle"}${problems.length ? " has-wrong" : ""}`}
-      title={state.matters ? undefined : t.doesNotMatter} onFocusIn={() => explain(member)} onMouseEnter={() => explain(member)}>
+      title={state.matters ? undefined : t.doesNotMatter} onFocusIn={() => explain(member)} onMouseEnter={() => explain(member)}
+      onKeyDown={(e) => e.key === "Escape" && dropKept(component.id, member.name)}>
       <label for={id} title={member.text}>
         {member.name.replace(/_/g, " ")}
       </label>
@@ -71,6 +74,11 @@ export function Field({ component, member }: { component: Component; member: Mem
       {problems.map(([, message]) => (
         <p class="wrong" role="alert" id={`${id}-wrong`}>{message}</p>
       ))}
+      {waiting && (
+        <p class="waiting">
+          {t.waits} <Button label={t.drop} onClick={() => dropKept(component.id, member.name)} />
+        </p>
+      )}
       <p class="help" id={`${id}-help`}>{member.text}</p>
     </div>
   );

@@ -1,17 +1,17 @@
 // The path debugger: what light took which way to a pixel.
-import { signal, useSignal } from "@preact/signals";
+import { signal } from "@preact/signals";
 import type { JSX } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect } from "preact/hooks";
 import { brief, percent } from "../model/numbers.ts";
 import { Refused } from "../model/protocol.ts";
 import { progress, tab } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { Button } from "../parts/parts.tsx";
 import { mode, pathPixel } from "../picture/picture.tsx";
-import { isDark } from "../theme.ts";
 import { texts } from "../texts.ts";
-import type { Replay, ReplayedPath, Vertex, Wireframe } from "./model.ts";
-import { pathColors, Space, type Chosen } from "./space.ts";
+import type { Replay, ReplayedPath, Vertex } from "./model.ts";
+import { pathColors, type Chosen } from "./space.ts";
+import { SpaceView } from "./space_view.tsx";
 
 const t = texts.paths;
 
@@ -63,7 +63,7 @@ export function Paths(): JSX.Element {
   const paths = replay.value?.paths ?? [];
   return (
     <div class="paths">
-      <SpaceView paths={paths} />
+      <SpaceView paths={paths} chosen={chosen} />
       <div class="paths-side" tabIndex={0} role="region" aria-label={t.list}>
         <h2 class="small">{pixel ? t.of(pixel.x, pixel.y) : t.list}</h2>
         {!pixel && <p class="dim">{t.choose}</p>}
@@ -159,43 +159,5 @@ function VertexFacts({ vertex }: { vertex: Vertex }): JSX.Element {
         </div>
       ))}
     </dl>
-  );
-}
-
-function SpaceView({ paths }: { paths: ReplayedPath[] }): JSX.Element {
-  const box = useRef<HTMLDivElement>(null);
-  const space = useSignal<Space | null>(null);
-  const failed = useSignal("");
-  useEffect(() => {
-    let ended = false;
-    const begin = async (): Promise<void> => {
-      const three = await import("./three_parts.ts");
-      if (ended || !box.current) return;
-      try {
-        space.value = new Space(three, box.current, (what) => (chosen.value = what));
-      } catch {
-        failed.value = t.noWebGl;
-        return;
-      }
-      try {
-        const wires = await demand<Wireframe>("wireframe", { most: 50000 });
-        space.value?.show(wires, isDark.value);
-      } catch {
-        space.value?.show({ lines: [] }, isDark.value);
-      }
-      space.value?.drawPaths(replay.value?.paths ?? [], chosen.value);
-    };
-    void begin();
-    return () => {
-      ended = true;
-      space.value?.dispose();
-    };
-  }, [progress.value?.generation]);
-  useEffect(() => space.value?.background(isDark.value ? "#14171a" : "#eef0f2"), [isDark.value, space.value]);
-  useEffect(() => space.value?.drawPaths(paths, chosen.value), [paths, chosen.value, space.value]);
-  return (
-    <div class="space" ref={box} role="img" aria-label={t.scene}>
-      {failed.value && <p class="empty-note">{failed.value}</p>}
-    </div>
   );
 }

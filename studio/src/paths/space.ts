@@ -1,5 +1,7 @@
 // The drawing in three dimensions: the scene as wires, paths as lines, vertices as points that can be clicked.
 import type * as Three from "./three_parts.ts";
+import { Gizmo } from "./gizmo.ts";
+import type { Change } from "../model/placing.ts";
 import { places, triple, type ReplayedPath, type Triple, type Wireframe } from "./model.ts";
 
 export interface Chosen {
@@ -20,11 +22,13 @@ export class Space {
   private size = 1;
   private frame = 0;
   private readonly resize: ResizeObserver;
+  readonly gizmo: Gizmo;
 
   constructor(
     private readonly three: typeof Three,
     private readonly box: HTMLElement,
     private readonly choose: (what: Chosen) => void,
+    moved: (change: Change | null, step: "begin" | "drag" | "end") => void,
   ) {
     this.renderer = new three.WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(window.devicePixelRatio);
@@ -36,6 +40,8 @@ export class Space {
     this.renderer.domElement.setAttribute("aria-hidden", "true"); // the list beside it tells the same
     this.controls = new three.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
+    const stage = { scene: this.scene, camera: this.camera, element: this.renderer.domElement, orbit: this.controls, draw: () => this.draw() };
+    this.gizmo = new Gizmo(three, stage, moved);
     this.resize = new ResizeObserver(() => this.fit());
     this.resize.observe(box);
     this.renderer.domElement.addEventListener("click", (e) => this.click(e));
@@ -47,9 +53,11 @@ export class Space {
     this.draw();
   }
 
-  show(wireframe: Wireframe, dark: boolean): void {
+  /** Shows wires; `look`: from where all of them are seen. */
+  show(wireframe: Wireframe, dark: boolean, look: boolean): void {
     const { BufferGeometry, Float32BufferAttribute, LineBasicMaterial, LineSegments, Vector3 } = this.three;
     if (this.wires) this.scene.remove(this.wires);
+    this.wires?.geometry.dispose();
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(wireframe.lines, 3));
     geometry.computeBoundingSphere();
@@ -57,6 +65,7 @@ export class Space {
     this.scene.add(this.wires);
     const sphere = geometry.boundingSphere;
     this.size = Math.max(1e-6, sphere && Number.isFinite(sphere.radius) && wireframe.lines.length ? sphere.radius : 1);
+    if (!look) return this.draw();
     const centre = sphere && wireframe.lines.length ? sphere.center : new Vector3();
     const from = wireframe.camera?.from;
     this.camera.near = this.size / 1000;
@@ -110,6 +119,7 @@ export class Space {
   dispose(): void {
     cancelAnimationFrame(this.frame);
     this.resize.disconnect();
+    this.gizmo.dispose();
     this.controls.dispose();
     this.renderer.dispose();
     this.renderer.domElement.remove();

@@ -21,7 +21,7 @@ const place = (use: Use): Record<string, unknown> => ({ component: use.id, membe
 export async function add(component: number, member: string, what: { class: string } | { text: string }, index?: number): Promise<void> {
   const where = { component, member, ...(index === undefined ? {} : { index }) };
   const made = await orWithFile("class" in what ? what.class : "", () => demand<Made>("add", { ...where, ...what }), (text) => ask<Made>("add", { ...where, text }));
-  if (made?.component) select(made.component);
+  if (made?.component) select(made.component, { id: component, member, ...(index === undefined ? {} : { index }) });
 }
 
 export async function replace(component: Component, className: string, use: Use | null): Promise<void> {

@@ -38,7 +38,12 @@ function ChooserFor({ what, id, use, member }: { what: "add" | "replace"; id: nu
   const list = (wanted ? offered.value.offered(wanted) : [])
     .filter((c) => words.every((w) => `${c.name} ${c.summary}`.toLowerCase().includes(w)))
     .sort((a, b) => rank(b.name, words[0]) - rank(a.name, words[0]));
-  const named = what === "add" && slot ? names.value.filter((n) => matchesName(n.component, wanted ?? "")) : [];
+  const named = names.value.filter((n) => n.component !== id && matchesName(n.component, wanted ?? ""));
+  const takeNamed = (name: string, shared: number | null): void => {
+    close();
+    if (what === "add" && slot) void actions.add(slot.component.id, slot.member.name, { text: name }, slot.index);
+    else if (use && shared !== null) void actions.share(use, shared);
+  };
   const info = list.find((c) => c.name === chosen.value) ?? list[0];
   if (!component) return null;
 
@@ -101,11 +106,11 @@ function ChooserFor({ what, id, use, member }: { what: "add" | "replace"; id: nu
           </div>
         </div>
       )}
-      {named.length > 0 && slot && (
+      {named.length > 0 && (slot || use) && (
         <div class="cluster wrap">
           <span class="dim">{t.orShared}</span>
           {named.slice(0, 12).map((n) => (
-            <Button key={n.name} icon="link" text label={n.name} onClick={() => (close(), void actions.add(slot.component.id, slot.member.name, { text: n.name }, slot.index))} />
+            <Button key={n.name} icon="link" text label={n.name} onClick={() => takeNamed(n.name, n.component)} />
           ))}
         </div>
       )}

@@ -1,0 +1,139 @@
+// The studio's server in this process: signals, the browser, the end, and a new beginning.
+
+#include "studio_serving.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "app/advice.h"
+#include "app/commands.h"
+#include "app/scene_warnings.h"
+
+namespace etendue {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a program that begins again finds the port and the token that its pages know.
+constexpr const char* again_variable = "ETENDUE_STUDIO_AGAIN";
+
+/// The page: beside the program as it is built, or as it is installed.
+std::string page_file() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const char* place : {"studio/index.html", "../share/etendue/studio/index.html"})
+    if (fs::is_regular_file(program / place, error)) return (program / place).lexically_normal().string();
+  return (program / "studio/index.html").string();
+}
+
+/// Has the system open an address; nothing is said when it cannot.
+void open_browser(const std::string& address) {
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
+  const pid_t child = fork();
+  if (child != 0) {
+    if (child > 0) waitpid(child, nullptr, 0);
+    return;
+  }
+  if (fork() != 0) _exit(0);  // the grandchild is nobody's to wait for
+  const int nowhere = ::open("/dev/null", O_RDWR);
+  for (int stream = 0; stream < 3; ++stream) dup2(nowhere, stream);
+  execlp("xdg-open", "xdg-open", address.c_str(), static_cast<char*>(nullptr));
+  _exit(0);
+}
+
+std::vector<std::string> own_arguments() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> list;
+  for (std::string one; std::getline(file, one, '\0');) list.push_back(one);
+  return list;
+}
+
+/// This program once more, in this process, at the same address and with the same file: plugins are read as they are now.
+[[noreturn]] void begin_again(const std::string& port_and_token, const std::string& file) {
+  setenv(again_variable, (port_and_token + " " + file).c_str(), 1);
+  close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);  // what listens at the address now, among others
+  std::vector<std::string> arguments = own_arguments();
+  std::vector<char*> list;
+  for (std::string& a : arguments) list.push_back(a.data());
+  list.push_back(nullptr);
+  // A word to end that nobody has heard yet was for this program, not the next one.
+  sigset_t ends, none;
+  sigemptyset(&none);
+  sigemptyset(&ends);
+  sigaddset(&ends, SIGINT);
+  sigaddset(&ends, SIGTERM);
+  const timespec at_once{};
+  while (sigtimedwait(&ends, nullptr, &at_once) > 0) continue;
+  pthread_sigmask(SIG_SETMASK, &none, nullptr);
+  execv("/proc/self/exe", list.data());
+  throw Error("the program could not begin again");
+}
+
+/// "PORT TOKEN FILE" of the program that began again as this one, which is nobody else's to know. The file; empty: none.
+std::string take_over(studio::ServerSettings& settings) {
+  const char* text = std::getenv(again_variable);
+  if (!text) return {};
+  std::istringstream again(text);
+  unsetenv(again_variable);
+  std::string file;
+  again >> settings.port >> settings.token;
+  std::getline(again >> std::ws, file);
+  return file;
+}
+
+}  // namespace
+
+int serve(studio::StudioSettings settings, studio::ServerSettings server_settings, bool browser,
+          const std::function<void(studio::Studio&)>& begin) {
+  if (server_settings.page.empty()) server_settings.page = page_file();
+  const std::string file = take_over(server_settings);
+  const bool again = !server_settings.token.empty();
+  settings.warnings = [](const Job& job) {
+    std::vector<std::pair<std::string, Error>> list;
+    for (const SceneWarning& w : scene_warnings(job)) list.emplace_back(w.kind, Error(w.text, w.at));
+    return list;
+  };
+  settings.advice = [](const Job& job) { return advice_lines(job); };
+
+  // Ctrl-C ends it in order; a thread of its own waits for it, so that no handler has to be careful.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+
+  studio::Studio studio(std::move(settings));
+  if (file.empty())
+    begin(studio);
+  else
+    studio.begin(file);
+  studio::Server server(studio, std::move(server_settings));
+  studio.on_shutdown = [&] { kill(getpid(), SIGTERM); };
+  std::thread waiter([&] {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    server.stop();
+  });
+  fmt::print("{}\n", server.address());
+  std::fflush(stdout);
+  if (browser && !again) open_browser(server.address());
+  server.run();
+  kill(getpid(), SIGTERM);  // in case it ended by itself
+  waiter.join();
+  if (const std::string aside = studio.end(); !aside.empty()) fmt::print(stderr, "What was not saved is in {}\n", aside);
+  if (studio.begin_again) begin_again(server.port_and_token(), studio.document().file());
+  return exit_status::done;
+}
+
+}  // namespace etendue

@@ -1,0 +1,102 @@
+// etendue view IMAGE...: pictures in files, in the studio's viewer.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+
+#include "app/commands.h"
+#include "etendue/film/image_tools.h"
+#include "render/checkpoint.h"
+#include "studio_serving.h"
+
+namespace etendue {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ViewOptions {
+  std::vector<std::string> files;
+  std::string page;
+  int port = 0;
+  bool no_browser = false;
+};
+
+/// A picture of any format that is read here, or the one in a checkpoint. Throws Error saying why it is neither.
+Image any_picture(const std::string& file) {
+  std::string reason;
+  try {
+    return read_image(file);
+  } catch (const Error& error) {
+    reason = error.what();
+  }
+  try {
+    return picture_of(read_checkpoint(file)).picture;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{} (nor is it a checkpoint: {})", reason, error.what()));
+  }
+}
+
+/// As X Y Z; a grey one has three equal channels first.
+std::shared_ptr<const Image> picture_in(const std::string& file) {
+  Image picture = any_picture(file);
+  if (picture.channels.size() < 3) {  // grey: luminance, perhaps with an alpha
+    Image grey(picture.width, picture.height, {"R", "G", "B"});
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x)
+        for (size_t c = 0; c < 3; ++c) grey.at(x, y, c) = picture.at(x, y, 0);
+    grey.metadata = picture.metadata;
+    picture = std::move(grey);
+  }
+  return std::make_shared<const Image>(convert_color_space(picture, "xyz"));
+}
+
+/// Each by its file's name; those that share one by their paths.
+std::vector<std::string> names_of(const std::vector<std::string>& files) {
+  std::map<std::string, int> count;
+  for (const std::string& file : files) ++count[fs::path(file).filename().string()];
+  std::vector<std::string> names;
+  for (const std::string& file : files) {
+    const std::string name = fs::path(file).filename().string();
+    names.push_back(count[name] == 1 ? name : file);
+  }
+  return names;
+}
+
+int view(const ViewOptions& options) {
+  std::vector<std::pair<std::string, std::shared_ptr<const Image>>> pictures;
+  std::vector<Error> errors;
+  const std::vector<std::string> names = names_of(options.files);
+  for (size_t i = 0; i < names.size(); ++i) try {
+      pictures.emplace_back(names[i], picture_in(options.files[i]));
+    } catch (const Error& error) {
+      errors.push_back(error);
+    }
+  if (!errors.empty()) throw Errors(std::move(errors));
+  studio::StudioSettings settings;
+  settings.read_only = true;
+  settings.viewing = true;
+  settings.folders.allow(fs::current_path().string());
+  studio::ServerSettings server_settings;
+  server_settings.port = static_cast<unsigned short>(options.port);
+  server_settings.page = options.page;
+  return serve(std::move(settings), std::move(server_settings), !options.no_browser,
+               [&](studio::Studio& studio) { studio.show_pictures(std::move(pictures)); });
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& program, Run& run) {
+  auto options = std::make_shared<ViewOptions>();
+  CLI::App& command = *program.add_subcommand("view", "Show pictures in the browser: EXR, PNG, NPY and others, checkpoints");
+  command.add_option("IMAGE", options->files, "The pictures")->type_name("")->required();
+  command.add_flag("--no-browser", options->no_browser, "Only print the address");
+  command.add_option("--port", options->port, "Port; 0: any that is free")
+      ->type_name("N")
+      ->check(CLI::Range(0, 65535).description(""));
+  command.add_option("--page", options->page, "Another page")->type_name("FILE")->group("");
+  command.callback([options, &run] { run = [options] { return view(*options); }; });
+}
+
+}  // namespace etendue

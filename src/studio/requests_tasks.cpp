@@ -1,0 +1,183 @@
+// Requests that take a while, and what is known of the description beside its errors.
+
+#include <fmt/format.h>
+
+#include "check/replay/strategies.h"
+#include "etendue/describe/color.h"
+#include "etendue/language/language.h"
+#include "requests.h"
+#include "studio/pixels/half.h"
+
+namespace etendue::studio {
+
+namespace {
+
+std::vector<std::string> with_plugins(std::vector<std::string> arguments, const Studio& studio) {
+  for (const std::string& plugin : studio.settings().plugins) arguments.insert(arguments.end(), {"--plugin", plugin});
+  return arguments;
+}
+
+const ClassInfo& known_class(const std::string& name) {
+  const ClassInfo* info = Registry::instance().find(name);
+  if (!info) static_cast<void>(Registry::instance().create(name));  // says what was meant
+  return *info;
+}
+
+Json conform(const Call& call) {
+  const std::string name = known_class(call.text("class")).name;
+  return {{"task", call.studio.tasks().run("conform " + name, with_plugins({"conform", name, "--quick"}, call.studio))}};
+}
+
+/// The file as it is on the disk: by another process.
+Json verify(const Call& call) {
+  const Document& document = call.studio.document();
+  if (document.file().empty() || document.changed()) throw RequestError("busy", "what is verified is the file: save it first");
+  std::vector<std::string> arguments = {"verify", document.file()};
+  if (call.has("renderers")) {
+    const std::string renderers = call.text("renderers");
+    size_t begin = 0;
+    while (begin <= renderers.size()) {  // classes alone: expressions might name files
+      const size_t end = std::min(renderers.find(',', begin), renderers.size());
+      static_cast<void>(known_class(renderers.substr(begin, end - begin)));
+      begin = end + 1;
+    }
+    arguments.insert(arguments.end(), {"--renderers", renderers});
+  }
+  if (call.has("samples"))
+    arguments.insert(arguments.end(), {"--samples", std::to_string(call.integer("samples", 8, 1'000'000))});
+  if (call.has("size")) {
+    const Json& size = call.request["size"];
+    if (!size.is_array() || size.size() != 2 || !size[0].is_number_integer() || !size[1].is_number_integer())
+      throw RequestError("bad_request", "'size' must be [width, height]");
+    arguments.insert(arguments.end(), {"--size", fmt::format("{}x{}", size[0].get<int>(), size[1].get<int>())});
+  }
+  return {{"task", call.studio.tasks().run("verify " + document.file(), with_plugins(arguments, call.studio))}};
+}
+
+Json end_task(const Call& call) {
+  call.studio.tasks().end(int(call.integer("task", 1, 2'000'000'000)));
+  return {};
+}
+
+// ---- strategies -------------------------------------------------------------------------------------------------------------
+
+std::string base64(const std::vector<std::uint8_t>& bytes) {
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const size_t count = std::min<size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0u);
+    for (size_t k = 0; k < 4; ++k) text += k <= count ? digits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+/// Linear sRGB as halves, the largest value near 1000.
+Json picture_json(const Image& picture) {
+  const auto& m = rgb_space("srgb").from_xyz;
+  double largest = 0;
+  for (const double v : picture.values) largest = std::max(largest, std::abs(v));
+  const double scale = largest > 0 ? std::exp2(std::ceil(std::log2(largest / 1000))) : 1;
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(picture.values.size() * 2);
+  for (size_t p = 0; p + 2 < picture.values.size(); p += 3)
+    for (size_t k = 0; k < 3; ++k) {
+      double v = 0;
+      for (size_t c = 0; c < 3; ++c) v += m[3 * k + c] * picture.values[p + c];
+      const std::uint16_t half = to_half(float(v / scale));
+      bytes.push_back(std::uint8_t(half));
+      bytes.push_back(std::uint8_t(half >> 8));
+    }
+  return {{"scale", scale}, {"halfs", base64(bytes)}};
+}
+
+double mean_luminance(const Image& picture) {
+  double sum = 0;
+  for (size_t p = 1; p < picture.values.size(); p += 3) sum += picture.values[p];
+  return sum / (double(picture.width) * double(picture.height));
+}
+
+/// A small render of its own, so that nothing waits for it.
+Json strategies(const Call& call) {
+  Studio& studio = call.studio;
+  const auto render = studio.valid_render();
+  const auto samples = std::uint32_t(call.integer_or("samples", 16, 1, 4096));
+  const auto wanted = int(call.integer_or("width", 160, 8, 512));
+  const ImageBuffer& image = *render->job().image;
+  const int width = std::min(wanted, image.width);
+  const int height = std::max(1, int(std::lround(double(image.height) * width / image.width)));
+  const Document& document = studio.document();
+  const Ref<Job> job = load_job_text(document.text(), document.name(), document.folder());
+  for (const auto& [path, expression] : document.overrides())
+    if (!path.starts_with("image.")) set_path(*job, path, expression);
+  set_path(*job, "image.width", std::to_string(width));
+  set_path(*job, "image.height", std::to_string(height));
+  set_path(*job, "image.crop", "[]");
+  if (job->renderer->samples < std::int64_t(samples)) set_path(*job, "renderer.samples", std::to_string(samples));
+  RenderSettings settings = studio.settings().render;
+  settings.threads = 1;
+  return {{"task", studio.tasks().work("strategies", [job, settings, samples, width, height](const Tasks::Work& work) -> Json {
+             const Render small(job, settings);
+             auto told = std::chrono::steady_clock::now();
+             const auto pictures = strategy_pictures(small, samples, [&](double fraction) {
+               const auto now = std::chrono::steady_clock::now();
+               if (now - told > std::chrono::milliseconds(200)) {
+                 told = now;
+                 work.done(fraction);
+               }
+               return !work.ended.load();
+             });
+             constexpr size_t most = 200;
+             Json list = Json::array();
+             for (const StrategyPicture& p : pictures) {
+               if (list.size() >= most) break;
+               list.push_back({{"strategy", p.strategy},
+                               {"length", p.length},
+                               {"mean", mean_luminance(p.weighted)},
+                               {"weighted", picture_json(p.weighted)},
+                               {"unweighted", picture_json(p.unweighted)}});
+             }
+             return {{"width", width}, {"height", height}, {"whole", list.size() == pictures.size()}, {"strategies", list}};
+           })}};
+}
+
+// ---- the program and the description
+// ------------------------------------------------------------------------------------------
+
+/// What `etendue render` would warn of.
+Json warnings(const Call& call) {
+  const auto render = call.studio.valid_render();
+  const StudioSettings& settings = call.studio.settings();
+  Json list = Json::array(), advice = Json::array();
+  if (settings.warnings)
+    for (const auto& [kind, error] : settings.warnings(render->job())) {
+      Json one = error_json(error, &call.studio.document());
+      one["kind"] = kind;
+      list.push_back(std::move(one));
+    }
+  if (settings.advice)
+    for (const std::string& line : settings.advice(render->job())) advice.push_back(line);
+  return {{"warnings", std::move(list)}, {"advice", std::move(advice)}};
+}
+
+/// Starts the program anew with its plugins as they are on the disk: what is loaded is never unloaded.
+Json begin_again(const Call& call) {
+  if (call.studio.document().changed())
+    throw RequestError("busy", "there are changes that are not saved, and the program begins anew with what is on the disk");
+  call.studio.begin_again = true;
+  call.studio.shutdown(false);
+  return {};
+}
+
+}  // namespace
+
+std::span<const Request> task_requests() {
+  static constexpr Request all[] = {{"conform", false, conform},   {"verify", false, verify},
+                                    {"end_task", false, end_task}, {"strategies", false, strategies},
+                                    {"warnings", true, warnings},  {"begin_again", false, begin_again}};
+  return all;
+}
+
+}  // namespace etendue::studio

@@ -1,0 +1,144 @@
+"""What pages ask beside editing and rendering: warnings, saved views, strategies apart, checks, a new beginning."""
+
+import array
+import base64
+import pathlib
+import struct
+import subprocess
+import tempfile
+import time
+import unittest
+
+from client import PROGRAM, Closed, Studio
+from render_test import SCENE
+
+
+def values_of(npy):
+    """All numbers of an array of floats or doubles, and its shape."""
+    (size,) = struct.unpack_from("<H", npy, 8)
+    head = npy[10 : 10 + size].decode()
+    kind = "f" if "<f4" in head else "d"
+    shape = tuple(int(n) for n in head[head.index("(") + 1 : head.index(")")].split(",") if n.strip())
+    return array.array(kind, npy[10 + size :]), shape
+
+
+class Requests(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.file = pathlib.Path(self.folder.name) / "scene.etd"
+
+    def open(self, text=SCENE, *arguments):
+        self.file.write_text(text, encoding="utf-8")
+        studio = Studio(self.file, *arguments, folder=self.folder.name)
+        self.addCleanup(studio.__exit__)
+        return studio
+
+    def test_warnings_and_advice(self):
+        dark = SCENE.replace("emission: DiffuseEmission { radiance: 3 } ", "").replace("PathTracer", "LightTracer")
+        with self.open(dark).page() as page:
+            found = page.good("warnings")
+            self.assertIn("nothing emits light", found["warnings"][0]["message"])
+            at = found["warnings"][0]["begin"]
+            self.assertTrue(dark[at:].startswith(("objects", "[")), dark[at : at + 20])
+        mirrored = SCENE.replace("PathTracer", "LightTracer").replace("Sphere { radius: 1 m, shader: Lambertian { color: 0.5 } }", "Sphere { radius: 1 m, shader: PerfectSpecular {} }")
+        with self.open(mirrored).page() as page:
+            self.assertTrue(any("LightTracer cannot find" in line for line in page.good("warnings")["advice"]))
+        with self.open().page() as page:
+            self.assertEqual([w["message"] for w in page.good("warnings")["warnings"]], [])
+
+    def test_views(self):
+        studio = self.open()
+        with studio.page() as page:
+            page.good("stop")
+            page.good("save_view", name="front")
+            self.assertEqual(page.ask("save_view", name="front")["errors"][0]["code"], "busy")
+            for name in ("white", "9", "a b", ""):
+                self.assertFalse(page.ask("save_view", name=name)["ok"], name)
+            page.good("orbit", x=0.5, y=0.1, final=True)
+            page.good("save_view", name="side")
+            moved = page.ask("hello", protocol=1)["text"]["text"]
+            page.good("use_view", name="front")
+            text = page.ask("hello", protocol=1)["text"]["text"]
+            self.assertIn("camera: PerspectiveCamera { from: [0, 1, -5], to: [0, 0.5, 0] }", text)
+            self.assertEqual([v["name"] for v in page.good("views")["views"]], ["front", "side"])
+            page.good("undo")
+            self.assertEqual(page.ask("hello", protocol=1)["text"]["text"], moved, "one step brings back where it was")
+            page.good("save")
+            # A view is no mistake: whoever renders the file is told nothing.
+            done = subprocess.run(
+                [PROGRAM, "render", str(self.file), "-o", f"{self.folder.name}/x.npy", "--quiet", "--samples", "1"], capture_output=True, text=True, check=True
+            )
+            self.assertEqual(done.stderr, "")
+            page.good("orbit", x=0.1, final=True)
+            page.good("save_view", name="side", over=True)
+            page.good("remove_view", name="side")
+            page.good("remove_view", name="front")
+            page.good("undo", count=7)
+            self.assertEqual(page.ask("hello", protocol=1)["text"]["text"], SCENE)
+            self.assertFalse(page.ask("use_view", name="white")["ok"])
+
+    def task(self, page, number):
+        return page.wait(lambda e: e.get("event") == "task" and e["task"] == number and e["state"] != "running", 200)
+
+    def test_strategies_add_up_to_the_picture(self):
+        text = SCENE.replace("PathTracer { samples: 64 }", "BidirectionalPathTracer { samples: 4 }")
+        with self.open(text).page() as page:
+            done = self.task(page, page.good("strategies", samples=4, width=30)["task"])
+            self.assertEqual(done["state"], "done", done["text"])
+            self.assertEqual((done["width"], done["height"]), (30, 21))
+            names = {(s["strategy"], s["length"]) for s in done["strategies"]}
+            self.assertIn(("0 from the luminaire, 3 from the camera", 2), names)
+            self.assertIn(("1 from the luminaire, 2 from the camera", 2), names)
+            self.assertGreater(len({n for n, _ in names}), 6)
+            subprocess.run(
+                [PROGRAM, "render", str(self.file), "--size", "30x21", "-o", f"{self.folder.name}/x.npy", "--quiet"], check=True
+            )
+            numbers, shape = values_of(pathlib.Path(self.folder.name, "x.npy").read_bytes())
+            true = sum(numbers[1 :: shape[2]]) / (shape[0] * shape[1])
+            self.assertAlmostEqual(sum(s["mean"] for s in done["strategies"]) / true, 1, delta=1e-4)
+            # A picture is as large as it says, and its light is that of its mean.
+            one = max(done["strategies"], key=lambda s: s["mean"])
+            halfs = struct.unpack(f"<{3 * 30 * 21}e", base64.b64decode(one["weighted"]["halfs"]))
+            y = sum(0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in zip(halfs[::3], halfs[1::3], halfs[2::3]))
+            self.assertAlmostEqual(y * one["weighted"]["scale"] / (30 * 21) / one["mean"], 1, delta=5e-3)
+
+    def test_checks_in_processes_of_their_own(self):
+        with self.open().page() as page:
+            page.good("stop")
+            done = self.task(page, page.good("conform", **{"class": "BoxFilter"})["task"])
+            self.assertEqual((done["state"], done["passed"]), ("done", True), done["text"])
+            self.assertFalse(page.ask("conform", **{"class": "Boxfilter"})["ok"])
+            self.assertFalse(page.ask("conform", **{"class": "--help"})["ok"])
+            number = page.good("verify", renderers="PathTracer,BidirectionalPathTracer", samples=100000)["task"]
+            page.good("end_task", task=number)
+            self.assertEqual(self.task(page, number)["state"], "ended")
+            self.assertFalse(page.ask("end_task", task=number)["ok"])
+            self.assertFalse(page.ask("verify", renderers="PathTracer{},--report=/tmp/x")["ok"])
+
+    def test_a_new_beginning(self):
+        studio = self.open()
+        with studio.page() as page:
+            ball = next(int(i) for i, c in page.greeting["tree"]["components"].items() if c["class"] == "Sphere")
+            page.good("edit", component=ball, member="radius", text="30 cm")
+            self.assertEqual(page.ask("begin_again")["errors"][0]["code"], "busy")
+            page.good("save")
+            self.assertTrue(page.ask("begin_again")["ok"])
+            page.wait(lambda e: e.get("event") == "goodbye")
+            with self.assertRaises((Closed, ConnectionResetError)):
+                page.drain(20)
+        end = time.monotonic() + 30
+        while True:  # at the same address, with the same token
+            try:
+                with studio.page() as page:
+                    self.assertEqual(page.status, 101)
+                    self.assertIn("radius: 30 cm", page.greeting["text"]["text"])
+                    break
+            except (ConnectionError, Closed):
+                self.assertLess(time.monotonic(), end)
+                time.sleep(0.1)
+        self.assertTrue(studio.alive())
+
+
+if __name__ == "__main__":
+    unittest.main()
