@@ -24,14 +24,13 @@ import math
 import os
 import pathlib
 import re
-import resource
-import subprocess
 import sys
 import tempfile
 
 import numpy as np
 
 import peer_scenes
+import processes
 
 MITSUBA = """
 import sys, numpy as np
@@ -46,37 +45,26 @@ VARIANTS = ("llvm_ad_spectral", "llvm_ad_rgb", "scalar_spectral")
 LUMINANCE = np.array([0.212671, 0.715160, 0.072169])  # of linear sRGB
 
 
-def processor_time(command):
-    """Runs a command; its seconds of the processor, of all its threads."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    result = subprocess.run(command, capture_output=True, text=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if result.returncode:
-        raise RuntimeError(f"{' '.join(map(str, command))}\n{result.stdout[-2000:]}{result.stderr[-2000:]}")
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
 def ours(program, renderer, scene, samples, seed, folder):
     out = folder / "ours.npy"
     command = [program, "render", str(scene.file), "--allow-path", str(scene.folder), "--samples", str(samples), "--seed", str(seed),
                "--threads", "1", "--set", f"renderer={renderer}", "--set", f"renderer.max_depth={scene.depth}", "--set",
                "image.filter=BoxFilter", "-o", str(out), "--quiet"]
-    seconds = processor_time(command)
-    return seconds, np.load(out)[:, :, 1]  # X Y Z
+    return processes.run(command), np.load(out)[:, :, 1]  # X Y Z
 
 
 def theirs(variant, scene, samples, seed, folder):
     out = folder / "theirs.npy"
-    seconds = processor_time([sys.executable, "-c", MITSUBA, variant, str(scene.file), str(samples), str(out), str(seed)])
-    return seconds, np.load(out) @ LUMINANCE
+    used = processes.run([sys.executable, "-c", MITSUBA, variant, scene.file, samples, out, seed])
+    return used, np.load(out) @ LUMINANCE
 
 
 def measure(render, scene, runs, samples):
-    """What one program does on one scene: seconds to start and of a sample, relMSE of one sample, the mean picture."""
+    """What one program does on one scene: seconds to start and of a sample, relMSE of one sample, memory, the mean picture."""
     few, many = samples
-    start = [render(scene, few, 1000 + i)[0] for i in range(2)]
-    times, pictures = zip(*(render(scene, many, i) for i in range(runs)))
-    per_sample = (float(np.median(times)) - min(start)) / (many - few)
+    start = [render(scene, few, 1000 + i)[0].seconds for i in range(2)]
+    used, pictures = zip(*(render(scene, many, i) for i in range(runs)))
+    per_sample = (float(np.median([u.seconds for u in used])) - min(start)) / (many - few)
     stack = np.array(pictures)
     mean = stack.mean(axis=0)
     floor = 1e-2 * float(mean.mean()) ** 2
@@ -88,6 +76,7 @@ def measure(render, scene, runs, samples):
     whole, trimmed = error(stack)
     halves = [error(stack[i::2])[1] for i in (0, 1)]
     return {"start": min(start) - few * per_sample, "sample": per_sample, "error": trimmed, "whole_error": whole,
+            "megabytes": float(np.median([u.megabytes for u in used])),
             "spread": abs(math.log(max(halves[0], 1e-30) / max(halves[1], 1e-30))) / 2, "picture": mean}
 
 
@@ -103,7 +92,7 @@ def compare_scene(scene, programs, options):
         r["mean_ratio"] = float(r.pop("picture").mean() / mean)
         r["efficiency"] = 1 / (r["error"] * r["sample"])
         print(f"{scene.name:18} {name:18} start {r['start']:6.2f} s, sample {r['sample'] * 1e3:8.2f} ms, relMSE {r['error']:8.3f} "
-              f"({r['whole_error']:.3f} in all), mean {r['mean_ratio']:.4f}", flush=True)
+              f"({r['whole_error']:.3f} in all), mean {r['mean_ratio']:.4f}, {r['megabytes']:.0f} MB", flush=True)
     return results
 
 
@@ -134,6 +123,13 @@ def table(all_results, options):
         lines.append(f"| {name} | {mine['sample'] * 1e3:.1f} | {mine['error']:.3g} | " + " | ".join(cells) + f" | {least:.2f} |")
     if logs:
         lines += ["", f"Geometric mean over the best peer of each scene: **{math.exp(sum(logs) / len(logs)):.2f}**."]
+    lines += ["", "## Memory", "", "Of whole processes at the peak (resident), libraries, interpreters and compiled kernels included; the median of the",
+              "runs. In brackets: ours over the peer's.", "", "| scene | Étendue | " + " | ".join(peers) + " |", "|---|---|" + "---|" * len(peers)]
+    for name, results in all_results.items():
+        mine = results.get("etendue")
+        if mine:
+            cells = [f"{r['megabytes']:.0f} MB ({mine['megabytes'] / r['megabytes']:.2f})" if (r := results.get(p)) else "-" for p in peers]
+            lines.append(f"| {name} | {mine['megabytes']:.0f} MB | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
