@@ -129,8 +129,11 @@ class TestTrap final : public SceneObject {
   bool closed() const override { return true; }
 };
 
+/// Only where it is asked for: whoever draws objects at random must not get one.
+void register_trap() { static const Register<TestTrap> registered; }
+
 TEST(Robustness, PathsThatAreHeldInPlaceEnd) {
-  static const Register<TestTrap> registered;  // only here: whoever draws objects at random must not get one
+  register_trap();
   for (const char* renderer :
        {"PathTracer", "BidirectionalPathTracer", "LightTracer", "DistributionRenderer", "WhittedRenderer", "DirectRenderer"}) {
     SCOPED_TRACE(renderer);
@@ -145,6 +148,21 @@ TEST(Robustness, PathsThatAreHeldInPlaceEnd) {
     EXPECT_EQ(m.bad, 0u);
     EXPECT_EQ(m.mean.y, 0);
   }
+}
+
+// A solid asks its operands for one crossing after the other, and has its area from rays through it: neither may go on for
+// ever.
+TEST(Robustness, SolidsOfWhatHoldsRaysInPlaceComeToAnEnd) {
+  register_trap();
+  const Ref<SceneObject> solid =
+      ref_cast<SceneObject>(parse_component("Union { operands: [ TestTrap {}, Sphere { centre: [3, 0, 0] m } ] }", "test"));
+  const auto begin = std::chrono::steady_clock::now();
+  prepare_tree(*solid);
+  HitList list;
+  solid->all_hits(ray({0, 0, -5}, {0, 0, 1}), list);
+  EXPECT_LE(list.size, HitList::capacity);
+  EXPECT_GE(solid->area(0), 0);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 60);
 }
 
 // Fewer sheets in a row than the limit take nothing away.

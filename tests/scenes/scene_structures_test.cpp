@@ -222,6 +222,21 @@ TEST(SceneStructures, DegenerateScenes) {
   }
 }
 
+// Embree's assertions end the program for rays like these, which a camera 1e20 m away sends (tests/hostile, seed 1, number
+// 16980).
+TEST(SceneStructures, RaysBeyondWhatFloatsCanSquareMeetNothing) {
+  for (const char* structure : all_structures) {
+    SCOPED_TRACE(structure);
+    const Ref<Scene> one = scene(structure, {object("Sphere", {}), object("Rectangle", {})});
+    Hit hit;
+    for (const float far : {2e18f, 1e20f, 1e38f, infinity, std::nanf("")})
+      for (const Ray& r : {ray({0, 0, far}, {0, 0, 1}), ray({far, 0, 0}, {0, 1, 0}), ray({0, 3, 0}, {0, far, 0})}) {
+        EXPECT_FALSE(one->nearest(r, hit));
+        EXPECT_FALSE(one->any(r));
+      }
+  }
+}
+
 // Each surface once, however many cells it goes through.
 TEST(SceneStructures, AllHitsOfAShortRay) {
   for (const char* structure : all_structures) {

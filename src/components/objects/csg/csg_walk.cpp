@@ -124,8 +124,8 @@ CsgCrossing* CsgWalk::nearest() const {
 }
 
 const CsgCrossing* CsgWalk::next() {
-  // Each turn goes on by more than an error of a surface; the limit is for objects that do not keep to that.
-  for (int turn = 0; turn < 1 << 16; ++turn) {
+  // Each turn goes on by more than an error of a surface; the limit, of a whole walk, is for objects that do not keep to that.
+  while (turns_++ < 1 << 13) {
     for (CsgCrossing& c : crossings_)
       if (c.passed) advance(c);
     CsgCrossing* const first = nearest();

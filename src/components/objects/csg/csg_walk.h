@@ -54,6 +54,7 @@ class CsgWalk {
 
   const Ray& ray_;
   const int least_weight_;
+  int turns_ = 0;                        // of next()
   std::vector<CsgCrossing>& crossings_;  // of the operands whose bounds the ray meets, in their order
 };
 
