@@ -138,5 +138,11 @@ TEST(DeepFiles, APlyFileWithAttributesOfFacesAndWithoutTriangles) {
   }
 }
 
+/// Its list of five shapes would begin four bytes before the file.
+TEST(DeepFiles, ASerializedFileThatIsItsListOfShapes) {
+  const std::string file("\x1c\x04\x03\0\x78\x9c\x13\x12!\xff\xff\xff\xff\xff\xff\xff\x05\0\0\0", 20);
+  for (std::uint32_t number = 0; number < 6; ++number) EXPECT_THROW(read_serialized(file, number), Error) << number;
+}
+
 }  // namespace
 }  // namespace etendue
