@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,9 @@ int run(const std::string& path, std::vector<std::string> folders) {
                                                      aiProcess_GenUVCoords | aiProcess_TransformUVCoords |
                                                      aiProcess_JoinIdenticalVertices | aiProcess_ValidateDataStructure);
   if (!scene || !scene->mRootNode) {
-    std::fprintf(stderr, "%s\n", clean(importer.GetErrorString()).c_str());
+    const std::string said = clean(importer.GetErrorString());
+    if (said.find("bad_alloc") != std::string::npos) throw std::bad_alloc();  // the library catches it
+    std::fprintf(stderr, "%s\n", said.c_str());
     return 1;
   }
   Glb glb;

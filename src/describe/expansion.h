@@ -33,6 +33,7 @@ class Expansion {
   [[noreturn]] void fail(const Component&, double parts, size_t written) const;
 
   std::unordered_map<const Component*, double> parts_;  // each in all its places, the component itself among them
+  std::unordered_map<const Component*, double> right_;  // of large ones, how many were found right, in it or below it
 };
 
 }  // namespace etendue

@@ -10,7 +10,8 @@ namespace {
 /// As the user knows it: the name it has in the file, or what it is and where.
 std::string label(const SceneObject& object) {
   if (object.origin && !object.origin->name.empty()) return "'" + object.origin->name + "'";
-  return "the " + object.class_info().name + (object.origin ? " of line " + std::to_string(object.origin->location.line) : "");
+  const int line = object.location_of().line;  // 0: of a file without lines, such as a model's
+  return "the " + object.class_info().name + (line > 0 ? " of line " + std::to_string(line) : "");
 }
 
 /// Looks into each scene once with each shader that instances replace all of its own by, and notes each object once in a list.

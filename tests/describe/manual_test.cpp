@@ -55,6 +55,18 @@ TEST(Manual, EveryClassThatCanBeSeenHasAPicture) {
     EXPECT_NE(texts.at(std::string(name) + ".md").find("](pictures/"), std::string::npos) << name;
   }
   EXPECT_NE(texts.at("Pictures.md").find("[Torus]"), std::string::npos);
+  // Those that are kept are of the same classes.
+  for (const auto& [name, text] : texts)
+    if (name.starts_with("pictures/"))
+      EXPECT_TRUE(fs::exists(fs::path(ETENDUE_SOURCE_DIR "/docs/manual") / name))
+          << name << " is missing; run: ./etendue manual -o docs/manual --missing";
+  // What is there is not rendered again.
+  fs::remove(generated / "pictures/Torus.png");
+  const auto sphere = fs::last_write_time(generated / "pictures/Sphere.png");
+  Process again(ETENDUE_BINARY_DIR "/etendue", {"manual", "-o", generated.string(), "--missing", "--samples", "1"}, folder);
+  ASSERT_EQ(again.wait(), 0) << again.err();
+  EXPECT_TRUE(fs::exists(generated / "pictures/Torus.png"));
+  EXPECT_EQ(fs::last_write_time(generated / "pictures/Sphere.png"), sphere);
 }
 
 }  // namespace

@@ -64,9 +64,10 @@ def fuzz(arguments, reader, right, beside, work):
         (folder / name).mkdir(parents=True, exist_ok=True)
         for file, data in files.items():
             (folder / name / file).write_bytes(data)
-    (folder / "words").write_text(dictionary(reader))
+    words = dictionary(reader)
+    (folder / "words").write_text(words)
     command = [arguments.program, f"--reader={reader}", f"--beside={folder / 'beside'}", "-timeout=10", f"-rss_limit_mb={arguments.memory}",
-               "-max_len=16384", f"-dict={folder / 'words'}", f"-artifact_prefix={folder / 'found'}/", f"-seed={arguments.seed}",
+               "-max_len=16384", *([f"-dict={folder / 'words'}"] if words else []), f"-artifact_prefix={folder / 'found'}/", f"-seed={arguments.seed}",
                "-print_final_stats=1", "-close_fd_mask=1"]
     command += [f"-runs={arguments.runs}"] if arguments.runs else [f"-max_total_time={arguments.seconds}"]
     environment = dict(os.environ, UBSAN_OPTIONS="print_stacktrace=1", ASAN_OPTIONS="allocator_may_return_null=0")

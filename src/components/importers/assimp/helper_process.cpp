@@ -90,8 +90,8 @@ std::string one_line(std::string words) {
   while (!words.empty() && (words.back() == '\n' || words.back() == ' ')) words.pop_back();
   for (char& c : words)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
-  constexpr size_t longest = 400;
-  if (words.size() > longest) words = words.substr(words.size() - longest);
+  constexpr size_t half = 200;  // what is wrong may stand first, or behind what led to it
+  if (words.size() > 2 * half) words = words.substr(0, half) + " … " + words.substr(words.size() - half);
   return words;
 }
 

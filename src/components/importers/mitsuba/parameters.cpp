@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "scene_reader.h"
 
@@ -63,6 +64,35 @@ std::string SceneReader::with_parameters(const std::string& text, Location at) {
   return result;
 }
 
+namespace {
+
+/// How deep plugins nest by what they hold and refer to; those that hold themselves are told where they are converted. Bounded,
+/// as what is made of them is built, and taken down, from one to the next.
+class Depths {
+ public:
+  static constexpr size_t most = 100;
+
+  size_t of(const Element& e, size_t above = 0) {
+    if (const auto [known, is_new] = depths_.emplace(&e, 0); !is_new) return check(e, above, known->second);
+    size_t deepest = 0;
+    for (const Property& p : e.properties)
+      if (const auto* nested = std::get_if<Nested>(&p.value)) {
+        check(*nested->element, above, 1);
+        deepest = std::max(deepest, of(*nested->element, above + 1));
+      }
+    return depths_[&e] = deepest + 1;
+  }
+
+ private:
+  static size_t check(const Element& e, size_t above, size_t depth) {
+    if (above + depth >= most) throw Error(fmt::format("plugins that refer to plugins nest more than {} deep", most), e.at);
+    return depth;
+  }
+  std::map<const Element*, size_t> depths_;  // 0: being found
+};
+
+}  // namespace
+
 void SceneReader::resolve() {
   std::vector<std::string> ids;
   for (const auto& [id, element] : by_id_) ids.push_back(id);
@@ -76,6 +106,8 @@ void SceneReader::resolve() {
                     p.at);
       nested->element = found->second;
     }
+  Depths depths;
+  for (const auto& element : elements_) depths.of(*element);
 }
 
 }  // namespace etendue::mitsuba

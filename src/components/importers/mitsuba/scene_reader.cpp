@@ -228,10 +228,16 @@ void SceneReader::name_element(const std::string& id, Element* element, Location
 }
 
 void SceneReader::add(Element& into, Property property) {
-  if (!property.name.empty() && !std::holds_alternative<Nested>(property.value))
-    for (const Property& p : into.properties)
+  if (!property.name.empty() && !std::holds_alternative<Nested>(property.value)) {
+    size_t values = 0;
+    for (const Property& p : into.properties) {
       if (p.name == property.name)
         throw Error(fmt::format("'{}' is given twice; the first is in line {}", p.name, p.at.line), property.at);
+      values += !std::holds_alternative<Nested>(p.value);
+    }
+    constexpr size_t most = 1000;  // of which the largest have some 30
+    if (values >= most) throw Error(fmt::format("a {} has more than {} values", into.tag, most), property.at);
+  }
   into.properties.push_back(std::move(property));
 }
 

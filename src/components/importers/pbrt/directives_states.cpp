@@ -1,5 +1,7 @@
 // What is kept and given back: attributes, objects, and other files.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -63,8 +65,16 @@ void Directives::attribute() {
     throw Error(fmt::format("Attribute is of shape, light, material, medium or texture, not '{}'", target), at_);
   Parameters p = parameters(target);
   auto& list = r.state.defaults[size_t(found - attribute_targets.begin())];
-  // The newest first: it is what is found.
-  if (list) p.own.insert(p.own.end(), list->begin(), list->end());
+  // The newest first: it is what is found, and stands for older ones of its name.
+  if (list) {
+    const size_t fresh = p.own.size();
+    for (const Parameter& old : *list)
+      if (std::ranges::none_of(p.own.begin(), p.own.begin() + std::ptrdiff_t(fresh),
+                               [&](const Parameter& q) { return q.name == old.name && q.type == old.type; }))
+        p.own.push_back(old);
+  }
+  constexpr size_t most = 200;  // every shape, light, … that follows looks at them
+  if (p.own.size() > most) throw Error(fmt::format("more than {} attributes are given to every {}", most, target), at_);
   list = std::make_shared<const std::vector<Parameter>>(std::move(p.own));
 }
 

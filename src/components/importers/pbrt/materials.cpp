@@ -69,6 +69,18 @@ Ref<Component> with_relief(Reader& reader, const Parameters& p, Ref<Component> s
   return shader;
 }
 
+/// One level more, as long as it lives.
+class Deeper {
+ public:
+  explicit Deeper(int& level) : level_(level) { ++level_; }
+  ~Deeper() { --level_; }
+  Deeper(const Deeper&) = delete;
+  Deeper& operator=(const Deeper&) = delete;
+
+ private:
+  int& level_;
+};
+
 }  // namespace
 
 double v3_alpha(double roughness) {
@@ -103,7 +115,10 @@ Ref<Component> shader_of(Reader& reader, size_t index, Location used_at) {
   Material& m = reader.materials[index];
   if (m.shader) return m.shader;
   if (m.making) throw Error(fmt::format("the material '{}' is a mixture of itself", m.name), used_at);
+  if (reader.mixing >= Reader::most_nested)
+    throw Error(fmt::format("mixtures of mixtures nest more than {} deep", Reader::most_nested), m.parameters.at);
   m.making = true;
+  const Deeper deeper(reader.mixing);
   Ref<Component> shader = m.type == "mix" ? mix(reader, m) : make_v4_shader(reader, m);
   if (!shader) shader = make_v3_shader(reader, m);
   if (!shader)

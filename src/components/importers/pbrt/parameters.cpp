@@ -89,6 +89,8 @@ Parameters Parameters::read(Lexer& lexer, std::string of, Location at) {
     } else {
       read_value(lexer, p, holds);
     }
+    constexpr size_t most = 1000;  // of which the largest have some 30
+    if (all.own.size() >= most) throw Error(fmt::format("{} has more than {} parameters", all.of, most), p.at);
     for (const Parameter& other : all.own)
       if (other.name == p.name) throw Error(fmt::format("the parameter '{}' is given twice", p.name), p.at);
     all.own.push_back(std::move(p));

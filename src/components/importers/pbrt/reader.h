@@ -85,6 +85,11 @@ class Reader {
   std::vector<Material> materials{1};
   std::map<std::string, size_t, std::less<>> named_materials;
   std::map<std::string, Ref<Component>, std::less<>> float_textures, spectrum_textures, media;
+  /// What textures and mixtures are made of nests no deeper: it is built, and taken down, from one to the next.
+  static constexpr int most_nested = 100;
+  std::map<const Component*, int> texture_depths;       ///< 1: it names no other
+  int named_depth = 0;                                  ///< of the deepest texture that was looked up for the one being made
+  int mixing = 0;                                       ///< materials being made, each for the one before
   std::map<std::string, Transform, std::less<>> grids;  ///< of media that are grids: from the unit cube to the world
 
   AnimatedTransform to_world() const { return to_world(Transform()); }

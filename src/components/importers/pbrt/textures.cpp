@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "reader.h"
@@ -216,7 +217,10 @@ Value texture(Reader& reader, const Parameter& p, bool spectrum) {
   if (p.strings.size() != 1) throw Error(fmt::format("'{}' must name one texture", p.name), p.at);
   const auto& textures = spectrum ? reader.spectrum_textures : reader.float_textures;
   const auto& others = spectrum ? reader.float_textures : reader.spectrum_textures;
-  if (const auto found = textures.find(p.strings[0]); found != textures.end()) return Value(found->second, p.at);
+  if (const auto found = textures.find(p.strings[0]); found != textures.end()) {
+    reader.named_depth = std::max(reader.named_depth, reader.texture_depths[found->second.get()]);
+    return Value(found->second, p.at);
+  }
   std::vector<std::string> known;
   for (const auto& [name, map] : textures) known.push_back(name);
   throw Error(fmt::format("there is no {} texture '{}'{}", spectrum ? "spectrum" : "float", p.strings[0],
@@ -273,7 +277,11 @@ Value color_map(Reader& reader, const Parameters& p, std::initializer_list<std::
 void make_texture(Reader& reader, const std::string& name, const std::string& kind, const std::string& type, Parameters&& p) {
   const bool spectrum = kind == "spectrum" || kind == "color";
   if (!spectrum && kind != "float") throw Error(fmt::format("a texture is of float or spectrum, not of '{}'", kind), p.at);
+  reader.named_depth = 0;
   Ref<Component> map = make_map(reader, type, spectrum, p);
+  if (reader.named_depth >= Reader::most_nested)
+    throw Error(fmt::format("textures that name textures nest more than {} deep", Reader::most_nested), p.at);
+  reader.texture_depths[map.get()] = reader.named_depth + 1;
   if (map->origin && map->origin->name.empty()) map->origin->name = name;
   p.tell_unused(reader.importing);
   (spectrum ? reader.spectrum_textures : reader.float_textures)[name] = std::move(map);

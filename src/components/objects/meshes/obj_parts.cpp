@@ -1,8 +1,10 @@
 // The faces of an OBJ file by their materials, each as a mesh of its own.
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <span>
 
 #include "files/regular_file.h"
 #include "files/text_encoding.h"
@@ -13,14 +15,14 @@ namespace {
 
 constexpr const char* prefix = "usemtl ";
 
-/// The triangles of one material, with the vertices they use.
-MeshData taken_out(const MeshData& mesh, std::uint32_t material, std::vector<std::uint32_t>& now) {
+/// Some triangles, with the vertices they use. `now` holds for each vertex of the whole its number in the part, and is as it
+/// was afterwards: `unknown`.
+constexpr std::uint32_t unknown = 0xffffffffu;
+MeshData taken_out(const MeshData& mesh, std::span<const std::uint32_t> triangles, std::vector<std::uint32_t>& now) {
   MeshData part;
   part.centre = mesh.centre;
-  constexpr std::uint32_t unknown = 0xffffffffu;
-  now.assign(mesh.positions.size(), unknown);
-  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (mesh.triangle_materials[i] != material) continue;
+  part.triangles.reserve(triangles.size());
+  for (const std::uint32_t i : triangles) {
     std::array<std::uint32_t, 3> t{};
     for (size_t k = 0; k < 3; ++k) {
       const std::uint32_t vertex = mesh.triangles[i][k];
@@ -34,6 +36,8 @@ MeshData taken_out(const MeshData& mesh, std::uint32_t material, std::vector<std
     }
     part.triangles.push_back(t);
   }
+  for (const std::uint32_t i : triangles)
+    for (const std::uint32_t vertex : mesh.triangles[i]) now[vertex] = unknown;
   return part;
 }
 
@@ -63,16 +67,22 @@ ReadFile read_parts(const std::string& path) {
     file.parts[""] = std::move(mesh);
     return file;
   }
-  std::vector<size_t> triangles(mesh.materials.size() + 1);
-  for (const std::uint32_t m : mesh.triangle_materials) ++triangles[m == MeshData::no_material ? mesh.materials.size() : m];
-  std::vector<std::uint32_t> now;
-  for (size_t m = 0; m < triangles.size(); ++m) {
-    if (triangles[m] == 0) continue;
+  // The numbers of the triangles, by their materials: those of material m stand from begin[m] to begin[m + 1].
+  const auto place = [&](std::uint32_t m) { return m == MeshData::no_material ? mesh.materials.size() : size_t(m); };
+  std::vector<std::uint32_t> begin(mesh.materials.size() + 2), sorted(mesh.triangles.size());
+  for (const std::uint32_t m : mesh.triangle_materials) ++begin[place(m) + 1];
+  for (size_t m = 1; m < begin.size(); ++m) begin[m] += begin[m - 1];
+  std::vector<std::uint32_t> next = begin;
+  for (size_t i = 0; i < sorted.size(); ++i) sorted[next[place(mesh.triangle_materials[i])]++] = std::uint32_t(i);
+  std::vector<std::uint32_t> now(mesh.positions.size(), unknown);
+  for (size_t m = 0; m + 1 < begin.size(); ++m) {
+    const std::span<const std::uint32_t> own(sorted.data() + begin[m], begin[m + 1] - begin[m]);
+    if (own.empty()) continue;
     const bool named = m < mesh.materials.size();
     const std::string& name = file.names.emplace_back(named ? mesh.materials[m] : "");
     MeshData& part = file.parts[name];
-    if (triangles[m] < mesh.triangles.size()) {
-      part = taken_out(mesh, named ? std::uint32_t(m) : MeshData::no_material, now);
+    if (own.size() < mesh.triangles.size()) {
+      part = taken_out(mesh, own, now);
     } else {
       part = std::move(mesh);
       break;
@@ -103,10 +113,10 @@ MeshData read_obj_part(const std::string& path, const std::string& part) {
   const std::string name = part.substr(std::string_view(prefix).size());
   const std::lock_guard lock(mutex);
   ReadFile* file = &known(path);
-  if (!std::ranges::count(file->names, name))
-    throw Error("no face has a material '" + name + "'" + suggestion(name, file->names));
-  if (!file->parts.contains(name)) {  // it was taken before
-    known_files().erase(path);
+  if (!file->parts.contains(name)) {
+    if (!std::ranges::count(file->names, name))
+      throw Error("no face has a material '" + name + "'" + suggestion(name, file->names));
+    known_files().erase(path);  // it was taken before
     file = &known(path);
   }
   MeshData mesh = std::move(file->parts.extract(name).mapped());

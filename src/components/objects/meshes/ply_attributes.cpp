@@ -63,6 +63,7 @@ void FaceAttributes::add(const std::vector<float>& row) {
 }
 
 void FaceAttributes::finish() {
+  if (triangles_ == 0) return;
   Element triangles = element_;
   triangles.count = triangles_;
   if (!triangles_) return;  // empty lists are nowhere

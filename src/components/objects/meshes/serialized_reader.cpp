@@ -97,7 +97,7 @@ std::string_view part_of(std::string_view file, std::uint32_t number) {
   if (number >= count)
     throw Error("the file holds " + std::to_string(count) + " shapes, so there is none of the number " +
                 std::to_string(number) + " (they count from 0)");
-  if (count > file.size() / width) throw Error("the list of shapes at the file's end is damaged");
+  if (count > (file.size() - 4) / width) throw Error("the list of shapes at the file's end is damaged");
   const size_t directory = file.size() - 4 - width * count;
   const auto offset_of = [&](size_t i) {
     return width == 4 ? at<std::uint32_t>(file, directory + 4 * i) : at<std::uint64_t>(file, directory + 8 * i);

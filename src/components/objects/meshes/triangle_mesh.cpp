@@ -159,7 +159,11 @@ class TriangleMesh final : public TriangleObject {
     const auto written = std::filesystem::last_write_time(name, none);
     const auto size = std::filesystem::file_size(name, none);
     const std::lock_guard lock(mutex);
-    std::erase_if(*all, [](const auto& entry) { return entry.second.mesh.expired(); });
+    static size_t many = 64;  // when there are twice as many as were kept, some may be nobody's
+    if (all->size() > many) {
+      std::erase_if(*all, [](const auto& entry) { return entry.second.mesh.expired(); });
+      many = 2 * all->size() + 64;
+    }
     if (const auto known = all->find(key);
         known != all->end() && known->second.written == written && known->second.size == size)
       if (auto mesh = known->second.mesh.lock()) return mesh;
