@@ -28,8 +28,8 @@ TevAddress parse_tev_address(const std::string& text) {
     address.host = text.substr(0, end);
     address.port = end == std::string::npos ? usual_port : text.substr(end + 1);
   }
-  const bool digits = !address.port.empty() && address.port.size() <= 5 &&
-                      address.port.find_first_not_of("0123456789") == std::string::npos;
+  const bool digits =
+      !address.port.empty() && address.port.size() <= 5 && address.port.find_first_not_of("0123456789") == std::string::npos;
   constexpr int largest_port = 65535;
   if (address.host.empty() || !digits || std::stoi(address.port) > largest_port || std::stoi(address.port) == 0)
     throw Error(fmt::format("'{}' is no address of a tev: HOST or HOST:PORT, such as 127.0.0.1:{}", text, usual_port),

@@ -20,7 +20,8 @@ struct TevAddress {
 TevAddress parse_tev_address(const std::string&);
 
 // Packets: a length that counts itself, an operation, and what belongs to that, all little endian.
-std::vector<std::byte> tev_create_image(const std::string& name, int width, int height, const std::vector<std::string>& channels);
+std::vector<std::byte> tev_create_image(const std::string& name, int width, int height,
+                                        const std::vector<std::string>& channels);
 /// Rows [first, last) of a picture; `planes` are its channels, one after the other.
 std::vector<std::byte> tev_update_image(const std::string& name, const std::vector<std::string>& channels,
                                         const std::vector<std::vector<float>>& planes, int width, int first, int last);

@@ -39,6 +39,8 @@ Studio::Shown Studio::shown() {
   now.status = runner_.status();
   now.generation = generation;
   now.coarse = coarse_shown;
+  // It is not over: the fine picture is still to come.
+  if (now.coarse && now.status.state == Runner::State::finished) now.status = {Runner::State::rendering, {}, {}, {}};
   return now;
 }
 

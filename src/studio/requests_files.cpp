@@ -29,6 +29,21 @@ void require_free(const Call& call, const std::string& path) {
     throw RequestError("changed_on_disk", fmt::format("'{}' exists already", path));
 }
 
+namespace {
+
+/// The classes change with plugins alone, which are never unloaded: what is said of them is put together anew when there are
+/// more.
+const Json& known_classes() {
+  static std::mutex guard;
+  static std::map<size_t, Json> by_count;
+  const std::lock_guard lock(guard);
+  const auto [place, is_new] = by_count.try_emplace(Registry::instance().all().size());
+  if (is_new) place->second = Json::parse(classes_json());
+  return place->second;
+}
+
+}  // namespace
+
 Json vocabulary_json() {
   Json all_units = Json::array(), functions = Json::array();
   for (const Unit& unit : units())
@@ -36,7 +51,7 @@ Json vocabulary_json() {
   for (const auto list : {language::color_functions(), language::transform_functions(), language::math_functions()})
     for (const language::Function& f : list) functions.push_back({{"name", f.name}, {"usage", f.usage}});
   return {{"version", ETENDUE_VERSION},
-          {"classes", Json::parse(classes_json())},
+          {"classes", known_classes()},
           {"units", all_units},
           {"functions", functions},
           {"names",

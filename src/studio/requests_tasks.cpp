@@ -129,10 +129,12 @@ Json strategies(const Call& call) {
                }
                return !work.ended.load();
              });
-             constexpr size_t most = 200;
+             // No more than a page that reads slowly may be behind by.
+             constexpr size_t most = 24 << 20;  // [bytes]
+             const size_t each = size_t(width) * size_t(height) * 16;
              Json list = Json::array();
              for (const StrategyPicture& p : pictures) {
-               if (list.size() >= most) break;
+               if ((list.size() + 1) * each > most) break;
                list.push_back({{"strategy", p.strategy},
                                {"length", p.length},
                                {"mean", mean_luminance(p.weighted)},
@@ -143,8 +145,7 @@ Json strategies(const Call& call) {
            })}};
 }
 
-// ---- the program and the description
-// ------------------------------------------------------------------------------------------
+// ---- the program and the description ----------------------------------------------------------------------------------------
 
 /// What `etendue render` would warn of.
 Json warnings(const Call& call) {

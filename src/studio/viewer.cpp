@@ -198,7 +198,7 @@ void Studio::show(const Shown& now, const std::set<Watch>& wanted, const Frames&
   info.generation = now.generation;
   info.samples = now.snapshot.progress.samples;
   info.coarse = now.coarse;
-  info.finished = now.status.state == Runner::State::finished;
+  info.finished = now.status.state == Runner::State::finished && !now.coarse;
   info = place_of(picture, info);
   for (const Watch& watch : wanted) {
     const auto had = before.find(watch);

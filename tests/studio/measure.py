@@ -42,11 +42,12 @@ def orbit_steps(file, folder, steps=40):
 
 
 def samples_in(page, seconds):
-    """Samples per pixel in a time of the render's own clock."""
+    """Samples per pixel that are made in a time."""
     before = page.good("hello", protocol=1)["progress"]
-    time.sleep(0) if seconds <= 0 else page.drain(seconds)
+    page.drain(seconds)
     after = page.good("hello", protocol=1)["progress"]
-    return (after["samples"] - before["samples"]) / max(after["seconds"] - before["seconds"], 1e-9)
+    done = [p["fraction"] * p["samples_wanted"] for p in (before, after)]  # with the part of the step at hand
+    return done[1] - done[0]
 
 
 def watched_loss(file, folder, seconds, turns):

@@ -87,6 +87,7 @@ class Rendering(unittest.TestCase):
                 page.good("orbit", x=0.1, y=0.02)
                 page.drain(0.1)
                 self.assertIn(1, [m.flags & 1 for m in page.pixels], "a moving camera is shown at once, if coarse")
+                self.assertLessEqual(max(m.samples for m in page.pixels if m.flags & 1), 4, "by a few paths")
                 page.good("orbit", x=0.1, y=0.02, final=True)
                 if round == 2:
                     page.good("undo", count=2)

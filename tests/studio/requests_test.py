@@ -72,6 +72,11 @@ class Requests(unittest.TestCase):
             self.assertEqual(done.stderr, "")
             page.good("orbit", x=0.1, final=True)
             page.good("save_view", name="side", over=True)
+            before = page.ask("hello", protocol=1)["text"]["text"]
+            page.good("save_view", name="third")
+            page.good("remove_view", name="third")
+            self.assertEqual(page.ask("hello", protocol=1)["text"]["text"], before, "its line is gone as it came")
+            page.good("undo", count=2)
             page.good("remove_view", name="side")
             page.good("remove_view", name="front")
             page.good("undo", count=7)
@@ -115,6 +120,43 @@ class Requests(unittest.TestCase):
             self.assertEqual(self.task(page, number)["state"], "ended")
             self.assertFalse(page.ask("end_task", task=number)["ok"])
             self.assertFalse(page.ask("verify", renderers="PathTracer{},--report=/tmp/x")["ok"])
+
+    def finished(self, page, samples):
+        end = time.monotonic() + 120
+        while time.monotonic() < end:
+            now = page.ask("hello", protocol=1)["progress"]
+            if now["state"] == "finished" and now["samples"] == samples:
+                return
+            page.drain(0.1)
+        raise AssertionError(f"it did not end: {now}")
+
+    def saved_picture(self, page):
+        page.good("save_picture", file="now.npy", over=True)
+        return pathlib.Path(self.folder.name, "now.npy").read_bytes()
+
+    def test_going_on_from_a_state(self):
+        with self.open().page() as page:
+            self.finished(page, 64)
+            page.good("save_state", file="kept.state")
+            first = self.saved_picture(page)
+            self.assertFalse(page.ask("save_state", file="kept.state")["ok"], "nothing is written over in silence")
+        # Another program goes on from it, to the bits of a render in one go.
+        more = SCENE.replace("samples: 64", "samples: 96")
+        with self.open(more).page() as page:
+            page.good("stop")
+            page.good("goals", samples=64)
+            page.good("load_state", file="kept.state")
+            self.assertEqual(page.ask("hello", protocol=1)["progress"]["samples"], 64)
+            self.assertEqual(self.saved_picture(page), first)
+            page.good("goals", samples=96)
+            page.good("start")
+            self.finished(page, 96)
+            subprocess.run([PROGRAM, "render", str(self.file), "-o", f"{self.folder.name}/whole.npy", "--quiet"], check=True)
+            self.assertEqual(self.saved_picture(page), pathlib.Path(self.folder.name, "whole.npy").read_bytes())
+            ball = next(int(i) for i, c in page.greeting["tree"]["components"].items() if c["class"] == "Sphere")
+            page.good("edit", component=ball, member="radius", text="30 cm")
+            self.assertFalse(page.ask("load_state", file="kept.state")["ok"], "it is of another scene")
+            self.assertFalse(page.ask("load_state", file="scene.etd")["ok"])
 
     def test_a_new_beginning(self):
         studio = self.open()

@@ -124,8 +124,7 @@ void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, co
 }
 
 int render(const RenderOptions& options, Series& series) {
-  const std::optional<TevAddress> tev =
-      options.tev.empty() ? std::nullopt : std::optional(parse_tev_address(options.tev));
+  const std::optional<TevAddress> tev = options.tev.empty() ? std::nullopt : std::optional(parse_tev_address(options.tev));
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
 

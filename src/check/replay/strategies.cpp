@@ -17,7 +17,11 @@ using Key = std::pair<int, std::string>;  // length, strategy
 /// Collects what is contributed, by strategy.
 class Shares {
  public:
-  explicit Shares(const ImageBuffer& image) : image_(image), area_(image.area()) {}
+  explicit Shares(const ImageBuffer& image) : image_(image), area_(image.area()) {
+    constexpr size_t memory = size_t(256) << 20;  // of all pictures [bytes]
+    const size_t one = size_t(area_.width()) * size_t(area_.height()) * 6 * sizeof(double);
+    most_ = std::max<size_t>(8, memory / one);
+  }
 
   void add(const PathRecord::Contribution& c, const Wavelengths& wavelengths, int x, int y) {
     if (c.splat) {
@@ -30,10 +34,11 @@ class Shares {
     const Xyz light = to_xyz(max(c.value, 0), wavelengths);
     if (!std::isfinite(light.x + light.y + light.z)) return;
     // A last note may stand for several that were left out: "…, others before it left out".
-    const std::string name = c.strategy.substr(0, c.strategy.find(", others"));
-    const auto [place, is_new] = all_.try_emplace(Key(c.length, name));
+    Key key(c.length, c.strategy.substr(0, c.strategy.find(", others")));
+    if (all_.size() >= most_ && !all_.contains(key)) key = Key(0, "all others");
+    const auto [place, is_new] = all_.try_emplace(key);
     if (is_new) {
-      place->second = {name, c.length, Image(area_.width(), area_.height(), {"X", "Y", "Z"}),
+      place->second = {key.second, key.first, Image(area_.width(), area_.height(), {"X", "Y", "Z"}),
                        Image(area_.width(), area_.height(), {"X", "Y", "Z"})};
     }
     const double v[3] = {light.x, light.y, light.z};
@@ -56,6 +61,7 @@ class Shares {
  private:
   const ImageBuffer& image_;
   const PixelArea area_;
+  size_t most_ = 0;
   std::map<Key, StrategyPicture> all_;
 };
 

@@ -133,7 +133,8 @@ std::string new_component_text(const ClassInfo& info) {
     if (list.kind != Kind::component || entries_text(list).empty()) continue;
     for (const ClassInfo* entry : Registry::instance().subclasses(*Registry::instance().find(list.component_class))) {
       if (entry->abstract() || entry == &info) continue;
-      const bool simple = std::none_of(entry->members.begin(), entry->members.end(), [](const Member& m) { return m.required; });
+      const bool simple =
+          std::none_of(entry->members.begin(), entry->members.end(), [](const Member& m) { return m.required; });
       if (!simple) continue;
       std::vector<std::string> more = members;
       std::erase_if(more, [&](const std::string& m) { return m.starts_with(list.name + ":"); });
