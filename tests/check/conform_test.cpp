@@ -181,7 +181,7 @@ TEST(Conform, EveryInterfaceHasAWayToBeTried) {
   const auto has = [&](const std::string& name) { return std::ranges::find(checked, name) != checked.end(); };
   for (const char* name :
        {"Shader", "VolumeShader", "Camera", "Filter", "Sampler", "EmissionShader", "ObjectMap", "SceneObject", "LightSampler",
-        "Renderer", "ToneMap", "Output", "WavelengthSampler", "Importer", "Exporter", "Knob"})
+        "Renderer", "ToneMap", "Output", "WavelengthSampler", "Importer", "Exporter", "Knob", "Denoiser"})
     EXPECT_TRUE(has(name)) << name;
 }
 
