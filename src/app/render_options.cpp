@@ -8,8 +8,10 @@
 #include <filesystem>
 
 #include "describe/guard.h"
+#include "etendue/denoised_output.h"
 #include "etendue/language/language.h"
 #include "render/checkpoint.h"
+#include "render/denoising.h"
 #include "text.h"
 
 namespace etendue {
@@ -40,6 +42,9 @@ void RenderOptions::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "Choose other random numbers")->type_name("N");
   command.add_option("--size", size, "Size of the picture in pixels")->type_name("WxH");
   command.add_option("--crop", crop, "Render these pixels only, ends not included")->type_name("X0,Y0,X1,Y1");
+  command.add_flag("--denoise", denoise,
+                   "Write a second, denoised picture beside each, NAME.denoised.ENDING, by Open Image Denoise (pip install "
+                   "pyoidn) where the file says nothing else");
   command.add_option("--threads", threads, "Threads to use; 0: all cores. The picture does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""));
@@ -188,6 +193,7 @@ std::string RenderOptions::picture_command() const {
                                                              {"--seed", &seed},       {"--size", &size}, {"--crop", &crop}};
   for (const auto& [name, value] : rest)
     if (!value->empty()) text += fmt::format(" {} {}", name, shell_quoted(*value));
+  if (denoise) text += " --denoise";
   return text;
 }
 
@@ -228,12 +234,19 @@ Ref<Output> output_for(const std::string& file) {
   std::vector<std::string> known;
   for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Output"))) {
     const Ref<Output> output = ref_cast<Output>(create(*info));
+    if (dynamic_cast<const DenoisedOutput*>(output.get())) continue;  // it has another's ending
     if (output->extension() == ending) return output;
     known.push_back(output->extension());
   }
   throw Error(fmt::format("'{}': no format has the ending '{}'{}; known are {}", file, ending, suggestion(ending, known),
                           fmt::join(known, " ")),
               {intern("--output"), 0, 0});
+}
+
+/// The class of what a denoised output writes by; null for others.
+const ClassInfo* format_of(const Output& output) {
+  const auto* denoised = dynamic_cast<const DenoisedOutput*>(&output);
+  return denoised && denoised->output ? &denoised->output->class_info() : nullptr;
 }
 
 }  // namespace
@@ -243,7 +256,7 @@ std::vector<Ref<Output>> chosen_outputs(const std::vector<Ref<Output>>& describe
   for (const std::string& file : files) {
     Ref<Output> output = output_for(file);
     for (const Ref<Output>& had : described)
-      if (had && &had->class_info() == &output->class_info()) {
+      if (had && (&had->class_info() == &output->class_info() || format_of(*had) == &output->class_info())) {
         output = ref_cast<Output>(copy(*had));
         break;
       }
@@ -273,6 +286,7 @@ void add_outputs(const std::vector<Ref<Output>>& outputs, const std::string& ste
     const Location at = output->location_of("file");
     files.add(output->path(stem), at.known() ? at : Location{intern("--output"), 0, 0});
   }
+  for (const std::string& path : denoised_paths(outputs, stem)) files.add(path, {intern("--denoise"), 0, 0});
 }
 
 }  // namespace etendue

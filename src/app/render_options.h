@@ -18,6 +18,7 @@ struct RenderOptions : SceneOptions {
   bool in_series = false;  ///< several frames are rendered: a picture that is not finished is not written
   std::vector<std::string> outputs;
   std::string samples, time, error, seed, size, crop;  ///< as written; empty: as the file says
+  bool denoise = false;
   int threads = 0;
   bool quiet = false;
   std::string progress = "auto";

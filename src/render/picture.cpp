@@ -1,5 +1,6 @@
 // What comes out of a render: pictures with their texts, and files of them.
 
+#include "denoising.h"
 #include "etendue/render/render.h"
 
 namespace etendue {
@@ -22,8 +23,12 @@ Image RenderSnapshot::picture() const {
   return picture;
 }
 
+const ToneMap* tone_map_of(const Job& job, const Output& output) {
+  return (output.tone_map || !output.for_display() ? output.tone_map : job.tone_map).get();
+}
+
 std::string write_output(const Job& job, const Output& output, const Image& picture, const std::string& default_stem) {
-  const Ref<ToneMap>& tone = output.tone_map ? output.tone_map : (output.for_display() ? job.tone_map : output.tone_map);
+  const ToneMap* tone = tone_map_of(job, output);
   const std::string path = output.path(default_stem);
   output.write_image(tone ? tone->apply(picture) : picture, path);
   return path;

@@ -2,6 +2,7 @@
 
 #include "etendue/render/render.h"
 
+#include "denoising.h"
 #include "render_members.h"
 
 namespace etendue {
@@ -66,6 +67,10 @@ std::vector<std::string> Render::write_outputs(const std::string& default_stem) 
   const std::shared_lock sharing(m->look);
   std::vector<std::string> written;
   for (const Ref<Output>& output : m->job->outputs) written.push_back(write_output(*m->job, *output, picture, default_stem));
+  std::vector<Error> errors;
+  for (std::string& path : write_denoised(*m->job, m->job->outputs, picture, default_stem, m->settings.threads, errors))
+    written.push_back(std::move(path));
+  if (!errors.empty()) throw Errors(std::move(errors));
   return written;
 }
 

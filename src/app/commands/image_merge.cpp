@@ -11,6 +11,7 @@
 #include "etendue/language/language.h"
 #include "files/input_files.h"
 #include "render/checkpoint.h"
+#include "render/denoising.h"
 
 namespace etendue {
 
@@ -51,6 +52,11 @@ int merge(const MergeOptions& options) {
   if (!options.checkpoint.empty()) files.add(options.checkpoint, {intern("--checkpoint"), 0, 0});
   files.raise();
   report_gaps(merged);
+  for (const std::string& path : denoised_paths(outputs, stem))
+    fmt::print(stderr,
+               "note: '{}' is not written: parts hold no scene to denoise by; 'etendue render FILE --resume' of the "
+               "merged --checkpoint writes it\n",
+               path);
 
   std::vector<Error> errors;
   const std::vector<std::string> written = write_each(outputs, *job, picture, stem, errors);

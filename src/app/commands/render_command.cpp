@@ -17,6 +17,7 @@
 #include "files/input_files.h"
 #include "files/whole_file.h"
 #include "render/checkpoint.h"
+#include "render/denoising.h"
 #include "render_series.h"
 
 namespace etendue {
@@ -86,22 +87,30 @@ std::string passes_text(const Render& render) {
                      (render.job().renderer->samples + step - 1) / step, step);
 }
 
-void report_result(const Progress& progress, Ended ended, const std::vector<std::string>& written, ProgressDisplay::Kind kind,
+/// The files that were written.
+struct Written {
+  std::vector<std::string> pictures, denoised;
+  std::vector<Error> errors;  ///< what could not be
+};
+
+void report_result(const Progress& progress, Ended ended, const Written& written, ProgressDisplay::Kind kind,
                    const Render& render, const RenderOptions& options) {
   const std::string& checkpoint = render.settings().checkpoint_file;
   if (kind == ProgressDisplay::Kind::json) {
     nlohmann::ordered_json json = {{"event", "done"},
-                                   {"outputs", written},
+                                   {"outputs", written.pictures},
                                    {"seconds", progress.seconds},
                                    {"samples", progress.samples},
                                    {"samples_per_second", progress.samples_per_second},
                                    {"bad_samples", render.film().bad_samples()},
                                    {"ended", name(ended)}};
+    if (!written.denoised.empty()) json["denoised"] = written.denoised;  // biased, all of them
     if (!checkpoint.empty()) json["checkpoint"] = checkpoint;
     if (render.settings().steps) json["samples_per_pass"] = render.samples_per_step();
     fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   } else if (!options.quiet) {
-    for (const std::string& path : written) fmt::print("{}\n", path);
+    for (const std::string& path : written.pictures) fmt::print("{}\n", path);
+    for (const std::string& path : written.denoised) fmt::print("{}\n", path);
     fmt::print("{} samples per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, duration_text(progress.seconds),
                progress.samples_per_second * 1e-6, reason_text(ended), passes_text(render));
     if (ended == Ended::interrupted && !checkpoint.empty()) fmt::print("to go on: {}\n", options.resume_command());
@@ -133,7 +142,9 @@ int render(const RenderOptions& options, Series& series) {
   std::vector<Ref<Output>> outputs;
   if (!settings.steps || !options.outputs.empty()) outputs = chosen_outputs(job->outputs, options.outputs);
   number_outputs(outputs, options);
+  if (options.denoise) outputs = with_denoising(outputs);
   require_outputs(*job, outputs, options, series);
+  require_denoisers(outputs);
   // Behind that: pictures that are looked at count as files that are read.
   if (options.skip_existing && are_whole(outputs, *job, options)) return exit_status::done;
   const ProgressDisplay::Kind kind = ProgressDisplay::kind_for(options.progress, options.quiet);
@@ -144,12 +155,12 @@ int render(const RenderOptions& options, Series& series) {
   Render render(job, settings);
   job->outputs = std::move(described);
   show_warnings(scene_warnings(*job));
+  warn_of_wide_filter(*job, outputs);
   advise(*job);
   if (options.fireflies > 0) render.film().keep_largest(size_t(options.fireflies));
 
   Ended ended;
-  std::vector<Error> errors;
-  std::vector<std::string> written;
+  Written written;
   Image picture;
   {
     const Interruption interruption(render);
@@ -161,17 +172,20 @@ int render(const RenderOptions& options, Series& series) {
     if (shown) shown->finish(ended != Ended::aborted);
     picture = render.picture();
     const bool unfinished = options.in_series && ended == Ended::interrupted;
-    if (ended != Ended::aborted && !unfinished) written = write_each(outputs, *job, picture, options.stem(), errors);
+    if (ended != Ended::aborted && !unfinished) {
+      written.pictures = write_each(outputs, *job, picture, options.stem(), written.errors);
+      written.denoised = write_denoised(*job, outputs, picture, options.stem(), settings.threads, written.errors);
+    }
   }
 
-  if (const std::string failure = render.checkpoint_failure(); !failure.empty()) errors.emplace_back(failure);
-  if (!written.empty()) show_warnings(picture_warnings(*job, outputs, picture));
+  if (const std::string failure = render.checkpoint_failure(); !failure.empty()) written.errors.emplace_back(failure);
+  if (!written.pictures.empty()) show_warnings(picture_warnings(*job, outputs, picture));
   report_bad_samples(render.film(), options);
   report_result(display.last(), ended, written, kind, render, options);
   if (options.fireflies > 0 && ended != Ended::aborted)
     report_fireflies(render, options.picture_command(), kind == ProgressDisplay::Kind::json ? stderr : stdout);
-  for (const Error& error : errors) fmt::print(stderr, "{}\n", show(error));
-  if (!errors.empty()) return exit_status::failed;
+  for (const Error& error : written.errors) fmt::print(stderr, "{}\n", show(error));
+  if (!written.errors.empty()) return exit_status::failed;
   return ended == Ended::interrupted || ended == Ended::aborted ? exit_status::interrupted : exit_status::done;
 }
 
@@ -188,6 +202,7 @@ void add_render_command(CLI::App& program, Run& run) {
       "  etendue render box.etd -D samples=16 --size 160x120      with a param replaced, small\n"
       "  etendue render box.etd --set renderer.max_depth=2        direct light only\n"
       "  etendue render box.etd --time 5m                         five minutes' worth of samples\n"
+      "  etendue render box.etd --denoise                         and box.denoised.png beside box.png\n"
       "  etendue render box.etd --pixel 17,40 --sample 3          the path of one sample, vertex by vertex\n"
       "  etendue render box.etd --pixel 17,40                     the brightest paths of a pixel\n"
       "  etendue render box.etd --fireflies 10                    and where the brightest samples are\n"

@@ -12,6 +12,7 @@
 #include "app/text.h"
 #include "etendue/film/image_tools.h"
 #include "files/input_files.h"
+#include "render/denoising.h"
 
 namespace etendue {
 
@@ -154,10 +155,13 @@ void Series::claim(const std::vector<Ref<Output>>& outputs, const RenderOptions&
 
 bool are_whole(const std::vector<Ref<Output>>& outputs, const Job& job, const RenderOptions& options) {
   if (outputs.empty()) return false;
-  std::string all;
+  std::vector<std::string> paths = denoised_paths(outputs, options.stem());
   for (const Ref<Output>& output : outputs) {
     if (!output) return false;
-    const std::string path = output->path(options.stem());
+    paths.push_back(output->path(options.stem()));
+  }
+  std::string all;
+  for (const std::string& path : paths) {
     std::error_code failed;
     if (!std::filesystem::exists(path, failed)) return false;
     std::string lacks;

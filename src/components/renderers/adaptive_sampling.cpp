@@ -1,0 +1,263 @@
+// Adaptive sampling without bias, around any renderer whose samples stay in their pixels.
+//
+// Pixel i has the mean Y_i of its samples, of variance V_i. Of N samples in all, n_i of them there make the sum of squared
+// relative errors sum_i V_i / (n_i (Y_i + e)^2) least when
+//     n_i ~ sqrt(V_i) / (Y_i + e)
+// (Lagrange's multiplier). V and Y are unknown, and are estimated from the samples so far, over the pixels around.
+//
+// To stop where few samples say that all is well is a bias: those that happened to lack a rare bright path are kept, the others
+// are averaged away (Kirk & Arvo 1991, "Unbiased sampling techniques for image synthesis"). Here, therefore,
+//   - every pixel gets one sample at least in every step, and
+//   - each step has the same weight in every pixel, however many samples it has there:
+//         I_i = 1/K sum_k m_ik,    m_ik the mean of the n_ik samples of step k.
+// How many those are follows from the steps before an epoch. What an epoch draws is independent of them (its own random seed),
+// so given the past E[m_ik] = I_i whatever n_ik, and the expectation of the sum is I_i: exactly, not only in the limit. The
+// price is that steps with few samples in a pixel weigh as much there as those with many. Epochs are of 1, 1, 2, 4, 8, ...
+// steps: within one a pixel's numbers are well spread, and the film's error, from the spread of whole steps, knows nothing of
+// how many samples they had.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "etendue/core/math.h"
+#include "etendue/describe/registry.h"
+#include "etendue/render/renderer.h"
+#include "film/pixel_area.h"
+
+namespace etendue {
+namespace {
+
+class AdaptiveSampling final : public Renderer {
+ public:
+  Ref<Renderer> inner = ref_cast<Renderer>(Registry::instance().create("PathTracer"));
+  int most = 8;
+  float dark = 0.05f;
+
+  static void describe(Description<AdaptiveSampling>& d) {
+    d.summary(
+         "Takes more samples of another renderer where the picture is noisy, and fewer where it is not; `samples` are the mean "
+         "over all pixels. Without bias, since steps count alike in every pixel however many samples they have there. Steps "
+         "are "
+         "of eight samples in the mean, and the error is known after eight of them. They depend on those before, so parts "
+         "cannot be rendered apart, samples cannot be replayed, and a crop has other samples than the whole picture.",
+         "Kirk & Arvo 1991, Unbiased sampling techniques for image synthesis")
+        .member<&AdaptiveSampling::inner>(
+            "inner", "",
+            "the renderer, whose samples must stay in their own pixels; how many there are, their sampler and map_filter are "
+            "said here, not there")
+        .member<&AdaptiveSampling::most>("most", "1", "samples of a pixel, in relation to the mean; 1: as many everywhere",
+                                         range(1, 1024), soft(1, 64), logarithmic)
+        .member<&AdaptiveSampling::dark>(
+            "dark", "1",
+            "errors count in relation to a pixel's luminance plus this much of the mean luminance: "
+            "what is darker is not looked at closely",
+            range(1e-4, 1), logarithmic);
+  }
+
+  std::uint32_t samples_per_step(std::uint32_t) const override { return mean_samples; }
+  bool steps_depend() const override { return true; }
+  Estimator estimator() const override { return Estimator::correlated; }
+  Expectation expectation() const override { return inner ? inner->expectation() : Expectation::unbiased; }
+  PathClasses finds() const override { return inner ? inner->finds() : no_paths; }
+
+  /// Of a whole step, per pixel: enough that some can have fewer.
+  static constexpr std::uint32_t mean_samples = 8;
+
+ private:
+  std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
+};
+
+/// What is known of a pixel's samples: their number and the sums of their luminances and squares.
+struct Luminances {
+  double count = 0, sum = 0, squares = 0;
+  void add(const Luminances& more) {
+    count += more.count;
+    sum += more.sum;
+    squares += more.squares;
+  }
+};
+
+class AdaptiveProcess final : public RenderProcess {
+ public:
+  AdaptiveProcess(const AdaptiveSampling& r, const RenderContext& c)
+      : RenderProcess(r, c),
+        settings_(r),
+        inner_(r.inner->start(c)),
+        area_(c.image.sampled_area()),
+        known_(size_t(area_.width()) * size_t(area_.height())),
+        planned_(known_.size()) {}
+
+  void prepare_step(Schedule& schedule, const Step& step) override {
+    inner_->prepare_step(schedule, step);
+    // An epoch begins with steps 0, 1, 2, 4, 8, ...
+    if (step.number == 0 || std::has_single_bit(step.number)) plan();
+  }
+
+  void step(Schedule& schedule, const Step& step) override;
+
+  Spectrum radiance(const Ray& ray, SampleContext& sample) const override { return inner_->radiance(ray, sample); }
+  Wavelengths wavelengths(SampleKey key, float u) const override { return inner_->wavelengths(key, u); }
+  float time(float u) const override { return inner_->time(u); }
+  CameraSample sample(int, int, std::uint32_t, Arena&, const PathRequest&) const override {
+    renderer.fail({}, "how many samples a pixel has follows from all steps before, so that none can be replayed by itself");
+  }
+
+  // What is planned follows from steps before the epoch, so it is kept, too.
+  std::vector<std::byte> save_state() const override {
+    std::vector<std::byte> bytes(known_.size() * (sizeof(Luminances) + sizeof(std::uint32_t)));
+    std::memcpy(bytes.data(), known_.data(), known_.size() * sizeof(Luminances));
+    std::memcpy(bytes.data() + known_.size() * sizeof(Luminances), planned_.data(), planned_.size() * sizeof(std::uint32_t));
+    return bytes;
+  }
+  void load_state(std::span<const std::byte> bytes) override {
+    if (bytes.size() != known_.size() * (sizeof(Luminances) + sizeof(std::uint32_t)))
+      throw Error("the state of adaptive sampling is not of this picture");
+    std::memcpy(known_.data(), bytes.data(), known_.size() * sizeof(Luminances));
+    std::memcpy(planned_.data(), bytes.data() + known_.size() * sizeof(Luminances), planned_.size() * sizeof(std::uint32_t));
+    const std::uint32_t highest = std::uint32_t(settings_.most + 1) * AdaptiveSampling::mean_samples;
+    for (const std::uint32_t n : planned_)
+      if (n < 1 || n > highest) throw Error("the state of adaptive sampling plans an impossible number of samples");
+  }
+
+ private:
+  static constexpr int tile = 8;
+
+  size_t place(int x, int y) const { return size_t(y - area_.y0) * size_t(area_.width()) + size_t(x - area_.x0); }
+  // Tiles lie as those of the whole picture, so that a crop's sums are of the same parts.
+  int first_column() const { return area_.x0 / tile; }
+  int first_row() const { return area_.y0 / tile; }
+  std::uint64_t columns() const { return std::uint64_t((area_.x1 + tile - 1) / tile - first_column()); }
+  std::uint64_t rows() const { return std::uint64_t((area_.y1 + tile - 1) / tile - first_row()); }
+  PixelArea item_area(std::uint64_t item) const {
+    const int x = (first_column() + int(item % columns())) * tile, y = (first_row() + int(item / columns())) * tile;
+    return intersection({x, y, x + tile, y + tile}, area_);
+  }
+  void plan();
+  std::vector<float> wishes() const;
+
+  const AdaptiveSampling& settings_;
+  const std::unique_ptr<RenderProcess> inner_;
+  const PixelArea area_;
+  std::vector<Luminances> known_;       // of each pixel, from all steps so far
+  std::vector<std::uint32_t> planned_;  // samples of each pixel in a step of this epoch
+};
+
+/// sqrt(V) / (Y + e) of each pixel, with variances within pixels and means from 5 x 5 pixels around it; the same for all when
+/// nothing is known.
+std::vector<float> AdaptiveProcess::wishes() const {
+  constexpr int reach = 2;
+  double total = 0, count = 0;
+  for (const Luminances& l : known_) total += l.sum, count += l.count;
+  std::vector<float> wishes(known_.size(), 1.0f);
+  if (!(count > 0 && total > 0)) return wishes;
+  const double dark = double(settings_.dark) * total / count;
+  for (int y = area_.y0; y < area_.y1; ++y)
+    for (int x = area_.x0; x < area_.x1; ++x) {
+      double spread = 0, freedom = 0, luminance = 0, pixels = 0;
+      for (int j = std::max(y - reach, area_.y0); j <= std::min(y + reach, area_.y1 - 1); ++j)
+        for (int i = std::max(x - reach, area_.x0); i <= std::min(x + reach, area_.x1 - 1); ++i) {
+          const Luminances& l = known_[place(i, j)];
+          if (!(l.count > 1)) continue;
+          spread += std::max(l.squares - l.sum * l.sum / l.count, 0.0);
+          freedom += l.count - 1;
+          luminance += l.sum / l.count;
+          pixels += 1;
+        }
+      if (freedom > 0) wishes[place(x, y)] = float(std::sqrt(spread / freedom) / (luminance / pixels + dark));
+    }
+  return wishes;
+}
+
+/// One sample for each pixel, and of the others, (mean - 1) for each, shares in proportion to the wishes, up to `most` times
+/// the mean. What is cut off there goes to the others, in a few rounds, and what nobody wishes to all alike: the film takes
+/// steps to be of as many samples. Rounded so that running sums are exact to one sample.
+void AdaptiveProcess::plan() {
+  const std::vector<float> wished = wishes();
+  constexpr double mean = AdaptiveSampling::mean_samples;
+  const double rest = (mean - 1) * double(wished.size()), highest = double(settings_.most) * mean - 1;
+  const auto share = [&](float wish, double factor) { return std::min(factor * double(wish), highest); };
+  double factor = 0, left = rest;
+  for (int round = 0; round < 16; ++round) {
+    double open = 0, given = 0;
+    for (const float w : wished) {
+      given += share(w, factor);
+      if (factor * double(w) < highest) open += double(w);
+    }
+    left = std::max(rest - given, 0.0);
+    if (!(open > 0) || left < 1) break;
+    factor += left / open;
+  }
+  double sum = 0, given = 0;
+  for (const float w : wished) given += share(w, factor);
+  const double even = std::max(rest - given, 0.0) / double(wished.size());
+  std::uint64_t planned = 0;
+  for (size_t i = 0; i < wished.size(); ++i) {
+    sum += share(wished[i], factor) + even;
+    const auto up_to = std::uint64_t(sum + 0.5);
+    planned_[i] = 1 + std::uint32_t(up_to - planned);
+    planned = up_to;
+  }
+}
+
+void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
+  const std::uint32_t epoch = std::uint32_t(std::bit_width(step.number)),
+                      first_step = step.number == 0 ? 0 : std::bit_floor(step.number),
+                      count = step.samples.end - step.samples.begin;
+  // A part of a step, where a render was to end within one, is sampled evenly with numbers of its own.
+  const bool whole = count == AdaptiveSampling::mean_samples && step.samples.begin % count == 0;
+  const std::uint64_t seed = mix_bits(context.seed + mix_bits(whole ? epoch : std::uint64_t(step.samples.begin) + 64));
+  const bool wants_features = context.image.wants_features();
+  const std::uint64_t items = columns() * rows();
+  const std::vector<Luminances> found = schedule.film_and_collect<Luminances>(
+      items, [&](std::uint64_t item, ImageTile& film, std::vector<Luminances>& results, Arena& arena) {
+        const PixelArea area = item_area(item);
+        film.begin(context.image, area);
+        std::vector<Spectrum> lengths(size_t(context.image.path_lengths));
+        Features features;
+        const PathRequest request{{wants_features ? &features : nullptr, nullptr, lengths}, nullptr, schedule.abort};
+        for (int y = area.y0; y < area.y1; ++y)
+          for (int x = area.x0; x < area.x1; ++x) {
+            const std::uint32_t n = whole ? planned_[place(x, y)] : count, first = whole ? (step.number - first_step) * n : 0;
+            Luminances of_pixel;
+            for (SampleKey key(seed, x, y, first); key.sample < first + n; ++key.sample) {
+              if (schedule.aborted()) return;
+              features = {};
+              for (Spectrum& light : lengths) light = {};
+              const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, request);
+              film.count_path();
+              film.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, float(count) / float(n), lengths);
+              if (wants_features) film.features(x, y, key.sample, features);
+              const double luminance = to_xyz(s.value, s.wavelengths).y;
+              if (std::isfinite(luminance)) of_pixel.add({1, luminance, luminance * luminance});
+            }
+            results.push_back(of_pixel);
+          }
+      });
+  if (schedule.aborted()) return;  // what was found is thrown away
+  size_t next = 0;
+  for (std::uint64_t item = 0; item < items; ++item) {
+    const PixelArea area = item_area(item);
+    for (int y = area.y0; y < area.y1; ++y)
+      for (int x = area.x0; x < area.x1; ++x) known_[place(x, y)].add(found[next++]);
+  }
+}
+
+std::unique_ptr<RenderProcess> AdaptiveSampling::begin(const RenderContext& context) const {
+  if (!inner) fail("inner", "needs a renderer whose samples it takes");
+  if (inner->splats())
+    fail("inner",
+         inner->class_info().name +
+             " brings light to other places of the film than a sample's own pixel: there is no more or less of it in a pixel");
+  if (inner->estimator() == Estimator::correlated || inner->steps_depend())
+    fail("inner", inner->class_info().name + " does not take its samples one by one, independent of each other");
+  if (inner->map_filter != map_filter && inner->map_filter != 0)
+    fail("inner", "its map_filter is not looked at: AdaptiveSampling has one");
+  return std::make_unique<AdaptiveProcess>(*this, context);
+}
+
+const Register<AdaptiveSampling> registered;
+
+}  // namespace
+}  // namespace etendue
