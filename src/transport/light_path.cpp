@@ -122,7 +122,8 @@ bool PathSpace::complete(LightPath& path) const {
       const Vector3 before = -at(i - 2).out;
       p = double(scattering_density(from, before, from.out, Transport::importance)) * lobe_share(from, before, smooth_lobes);
     }
-    at(i).from_light = path.specular(i) ? p : p * path.light_angle(i);
+    // Along a surface no light leaves, but light_angle is without bound there.
+    at(i).from_light = path.specular(i) || !(p > 0) ? p : p * path.light_angle(i);
   }
   // From the camera.
   Ray ray;

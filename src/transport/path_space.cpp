@@ -70,20 +70,27 @@ bool PathSpace::follow(const PathVertex& from, const Vector3& direction, LightPa
   return false;
 }
 
-bool PathSpace::follow_chain(Walk& walk, const Vector3& direction, std::span<const Lobe> lobes, Transport transport,
-                             LightPath& y, bool to_luminaire) const {
+std::optional<Vector3> PathSpace::follow_lobes(Walk& walk, const Vector3& direction, std::span<const Lobe> lobes,
+                                               Transport transport, LightPath& y) const {
   Vector3 way = direction;
   PathVertex to;
   for (const Lobe lobe : lobes) {
-    if (!follow(walk.back(), way, y, to)) return false;
+    if (!follow(walk.back(), way, y, to)) return {};
     const auto s = follow_specular(to, to.out, transport, lobe);
-    if (!s) return false;
+    if (!s) return {};
     to.specular = true;
     to.lobe = lobe;
     way = s->direction;
     walk.push_back(to);
   }
-  if (!follow(walk.back(), way, y, to)) return false;
+  return way;
+}
+
+bool PathSpace::follow_chain(Walk& walk, const Vector3& direction, std::span<const Lobe> lobes, Transport transport,
+                             LightPath& y, bool to_luminaire) const {
+  const std::optional<Vector3> way = follow_lobes(walk, direction, lobes, transport, y);
+  PathVertex to;
+  if (!way || !follow(walk.back(), *way, y, to)) return false;
   if (to_luminaire) {
     if (!is_luminaire(to)) return false;
     to.kind = Vertex::Kind::luminaire;
@@ -143,13 +150,10 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
       way = s->direction;
     }
     if (!follow(from, way, y, to)) return false;
-    if (to_luminaire && count == 1) {
-      if (!is_luminaire(to)) return false;
-      to.kind = Vertex::Kind::luminaire;
-    } else if (!to.scatter || !to.scatter->has(vertex_lobes)) {
-      return false;
-    }
+    const bool ends = to_luminaire && count == 1;
+    if (ends && is_luminaire(to)) to.kind = Vertex::Kind::luminaire;
     walk.push_back(to);
+    if (ends ? !is_luminaire(to) : !to.scatter || !to.scatter->has(vertex_lobes)) return false;
   }
   return true;
 }
@@ -172,6 +176,24 @@ bool PathSpace::visible(const LightPath& path, int i) const {
   return !visible_fraction(context.scene, ray, media_towards(from, ray.direction, scratch), path.wavelengths, numbers,
                            *path.arena)
               .black();
+}
+
+bool PathSpace::joined(LightPath& y, const Walk& light, int b, const Walk& camera, int c) const {
+  y.x.assign(light.begin(), light.begin() + b);
+  y.x.insert(y.x.end(), camera.rend() - c, camera.rend());
+  // Where a walk ends it has not gone on by a mirror.
+  if (b == 0) {
+    if (!is_luminaire(y.x.front())) return false;
+    y.x.front().specular = false;
+    y.x.front().kind = Vertex::Kind::luminaire;
+    return complete(y);
+  }
+  for (const int end : {b - 1, b}) {
+    PathVertex& v = y.x[size_t(end)];
+    v.specular = false;
+    if (v.on_surface() && !v.scatters_smoothly()) return false;
+  }
+  return complete(y) && visible(y, b - 1);
 }
 
 bool PathSpace::join(LightPath& y, const std::vector<PathVertex>& rest, int r, ChoiceNumbers& choices) const {

@@ -69,7 +69,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"no_expected_values", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
                       Case{"large_steps_twice", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
                       Case{"direct_light_twice", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
-                      Case{"guide_density", "cornell_box", "FaultyGuidedTracer", "PathTracer", 256}),
+                      Case{"dark_paths_left_out", "cornell_box", "FaultyMetropolis", "PathTracer", 256},
+                      Case{"guide_density", "cornell_box", "FaultyGuidedTracer", "PathTracer", 256},
+                      Case{"merging_unweighted", "cornell_box", "FaultyMerger", "PathTracer", 256},
+                      Case{"kernel_not_shrunk", "cornell_box", "FaultyMerger", "PathTracer", 256}),
     [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace

@@ -22,6 +22,9 @@ enum class Fault : std::uint8_t {
   large_steps_twice,      ///< large steps count as independent samples, beside all that chains find
   direct_light_twice,     ///< chains carry what is sampled apart
   guide_density,          ///< directions that a guide chooses are weighted as if scattering had chosen them
+  merging_unweighted,     ///< photons count in full beside connections
+  kernel_not_shrunk,      ///< photons are looked for within the shrunk radius, and divided by the first one's area
+  dark_paths_left_out,    ///< of chains: brightness is the mean over the paths that bring any light
 };
 
 template <auto member, class R>
@@ -30,7 +33,8 @@ void describe_fault(Description<R>& d) {
       "fault", "", "what is wrong",
       choices("none", "wrong_mis_weight", "no_squared_index", "lost_cosine", "wrong_measure", "roulette_undivided",
               "luminaire_twice", "lens_importance", "phase_density", "transmittance_squared", "skipped_length",
-              "acceptance_inverted", "no_expected_values", "large_steps_twice", "direct_light_twice", "guide_density"));
+              "acceptance_inverted", "no_expected_values", "large_steps_twice", "direct_light_twice", "guide_density",
+              "merging_unweighted", "kernel_not_shrunk", "dark_paths_left_out"));
 }
 
 }  // namespace etendue

@@ -46,6 +46,7 @@ class Process final : public RenderProcess {
     std::vector<ChainStarts::Path> paths;
     for (std::uint64_t i = 0; i < pool_size; ++i) {
       evaluate(MutatedNumbers(seed + i), f, arena, direct);
+      if (fault_ == Fault::dark_paths_left_out && !(f.brightness({}) > 0)) continue;
       paths.push_back({i, f.brightness({}), 0});
     }
     return ChainStarts(paths);

@@ -85,6 +85,10 @@ class PathSpace {
   bool follow(const PathVertex& from, const Vector3& direction, LightPath& y, PathVertex& to) const;
   /// The direction of the camera ray through a film point.
   Vector3 camera_direction(Point2 film, const LightPath& y) const;
+  /// Follows a ray that leaves the last vertex of `walk` in a direction by these specular lobes, adds what it meets, and
+  /// returns in which direction it leaves the last of that. Empty: it does not come so far.
+  std::optional<Vector3> follow_lobes(Walk& walk, const Vector3& direction, std::span<const Lobe>, Transport,
+                                      LightPath& y) const;
   /// Follows a ray that leaves the last vertex of `walk` in a direction by these specular lobes, and adds all that it meets, to
   /// a vertex that scatters smoothly, or, against light, to a luminaire that the path begins at.
   bool follow_chain(Walk& walk, const Vector3& direction, std::span<const Lobe>, Transport, LightPath& y,
@@ -94,6 +98,7 @@ class PathSpace {
   /// Lets a walk go on by so many vertices, from the last of `walk`: along with light or against it. Before it stands the
   /// vertex that it came from, if any; a walk that is empty begins at a luminaire, one that holds the lens alone with a camera
   /// ray. `to_luminaire`: the last vertex must lie on one, and is the path's beginning.
+  /// False: it came to its end before, at the last of what `walk` then holds, which may scatter nothing.
   bool walk(Walk& walk, int count, Transport, ChoiceNumbers&, LightPath& y, bool to_luminaire = false) const;
   /// Whether nothing lies between x_i and x_{i+1}, both of which scatter smoothly.
   bool visible(const LightPath&, int i) const;
@@ -106,8 +111,28 @@ class PathSpace {
   static double density(const LightPath&, int l, int r);
   /// Such vertices between the last of y and the first of `rest`, and the rest. False: there are none, or f is 0.
   bool join(LightPath& y, const std::vector<PathVertex>& rest, int r, ChoiceNumbers&) const;
+  /// A walk from a luminaire and one from the lens, both as long as they go, and the paths that they make in all ways, of
+  /// `shortest` to `longest` segments: `visit(path, likely)` hears of each that brings light. With D the density of a path that
+  /// one way makes, all being alike likely, the expectation of the sum of h(path) / (likely D(path)) is the integral of h, for
+  /// any h: many paths for the price of two walks (the balance heuristic of Veach & Guibas 1995). The longer paths are, the
+  /// smaller the part of them that is looked at. y is begun, and is the path that is visited.
+  template <class Visit>
+  void all_ways(LightPath& y, int shortest, int longest, ChoiceNumbers& choices, const Visit& visit) const {
+    const auto longer = int(6 / std::max(choices.next(), 1e-3));  // at least k with the probability min(1, 6 / k)
+    Walk light, camera{lens(y)};
+    walk(light, std::min(longest, longer), Transport::importance, choices, y);
+    walk(camera, std::min(longest, longer), Transport::radiance, choices, y);
+    for (int k = shortest; k <= std::min(longest, longer); ++k)
+      for (int b = std::max(0, k + 1 - int(camera.size())); b <= std::min(k, int(light.size())); ++b) {
+        const double looked_at = std::min(1.0, 4.0 / (k + 1));
+        if (choices.next() < looked_at && joined(y, light, b, camera, k + 1 - b))
+          visit(y, std::min(1.0, 6.0 / k) * looked_at * (k + 1));
+      }
+  }
 
  private:
+  /// The first b of one walk and the first c of the other as a path. False: there is none, or f is 0.
+  bool joined(LightPath& y, const Walk& light, int b, const Walk& camera, int c) const;
   bool fill_specular(LightPath&, int i) const;
   bool weigh_camera(LightPath&, const Ray&) const;
 };

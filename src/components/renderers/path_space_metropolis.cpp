@@ -7,9 +7,12 @@
 // 1 / k, and how many of its vertices come from either end is, too; with D the mean of the densities of all such ways its
 // density is
 //     T(y) = P(k) D(y),
-// and F = f / T an estimate of the picture by itself. The pool that brightness is measured by, and that chains begin with, is
-// of such paths; states count as in all Metropolis renderers here (StateWeights), in terms of F. Mirrors and clear surfaces
-// are vertices of paths like others (transport/light_path.h).
+// and F = f / T an estimate of the picture by itself. States count as in all Metropolis renderers here (StateWeights), in terms
+// of F. Mirrors and clear surfaces are vertices of paths like others (transport/light_path.h).
+//
+// Brightness is measured by two walks at a time and all paths y_j that they make, as in bidirectional path tracing
+// (PathSpace::all_ways), of the weights w_j: sum w_j I(y_j) is on average the integral of I T. One of them, taken in proportion
+// to its own part of the sum and standing for all of it, is what a chain may begin with (Veach 1997, section 11.3.1).
 //
 // What paths of one or two segments bring is found sample by sample, by a bidirectional path tracer.
 
@@ -104,11 +107,10 @@ class PathSpaceProcess final : public RenderProcess, Chains {
   static size_t chosen(const std::vector<double>& sums, double u) {
     return std::min(size_t(std::ranges::upper_bound(sums, u * sums.back()) - sums.begin()), sums.size() - 1);
   }
+  /// P(k)
+  double length_share(int k) const { return 1.0 / k / lengths_.back(); }
   /// T of an independent path.
-  double density(const LightPath& y) const {
-    const double P = 1.0 / y.length() / lengths_.back();
-    return P * PathSpace::density(y, 0, y.length());
-  }
+  double density(const LightPath& y) const { return length_share(y.length()) * PathSpace::density(y, 0, y.length()); }
   /// F
   void contribution(const LightPath& y, bool found, Contribution& F) const {
     F.clear();
@@ -118,22 +120,46 @@ class PathSpaceProcess final : public RenderProcess, Chains {
     const Spectrum light = map(y.f, [of_f](float f) { return float(double(f) * of_f); });
     F.add({y.film, light, y.seen, y.length()}, {0, 0, context.image.width, context.image.height});
   }
-  bool independent(const PathSpace& space, Arena& arena, ChoiceNumbers& choices, LightPath& y) const {
+  /// A path without vertices, of new wavelengths and a new place on the lens.
+  void begin_anew(const PathSpace& space, Arena& arena, ChoiceNumbers& choices, LightPath& y) const {
     LightPath none;
     none.wavelengths = wavelengths({}, std::min(float(choices.next()), one_minus_epsilon));
     none.lens = {float(choices.next()), float(choices.next())};
     none.arena = &arena;
     space.begin(y, none, 0);
+  }
+  bool independent(const PathSpace& space, Arena& arena, ChoiceNumbers& choices, LightPath& y) const {
+    begin_anew(space, arena, choices, y);
     const int k = direct_length + 1 + int(chosen(lengths_, choices.next()));
     return space.join(y, {space.lens(y)}, k, choices);
   }
 
+  /// The one path that stands for all that two walks make: y, and its F. The sum of their brightness, 0: there is none.
+  double begun(const PathSpace& space, Arena& arena, ChoiceNumbers& choices, LightPath& y, Contribution& F) const {
+    LightPath each;
+    begin_anew(space, arena, choices, each);
+    double sum = 0;
+    Contribution own;
+    F.clear();
+    space.all_ways(each, direct_length + 1, settings_.max_depth, choices, [&](const LightPath& path, double likely) {
+      contribution(path, true, own);
+      if (own.parts.empty()) return;
+      const double light = double(own.luminances[0].luminance) * length_share(path.length()) / likely;
+      sum += light;
+      if (choices.next() * sum < light) {
+        y = path;
+        std::swap(F, own);
+      }
+    });
+    return sum;
+  }
   void draw(std::uint64_t seed, Arena& arena, const std::atomic<bool>*, Contribution& F) const override {
     const PathSpace space(context, *settings_.light_sampler);
     static thread_local LightPath y;
     ChoiceNumbers choices(seed);
     const ArenaScope memory(arena);
-    contribution(y, independent(space, arena, choices, y), F);
+    const double all = begun(space, arena, choices, y, F);
+    for (Contribution::Brightness& part : F.luminances) part.luminance = float(all);
   }
 
   void run(std::uint64_t first, std::uint64_t own_seed, std::uint64_t states, const StateWeights& weights, const FilmWeights& v,
@@ -145,7 +171,7 @@ class PathSpaceProcess final : public RenderProcess, Chains {
     auto x = std::make_unique<LightPath>(), y = std::make_unique<LightPath>();
     Contribution current, proposed;  // F
     ChoiceNumbers start(first), choices(own_seed);
-    contribution(*x, independent(space, *arena, start, *x), current);
+    begun(space, *arena, start, *x, current);
     double I = current.brightness(v), waiting = 0;  // what x counts for that is not added yet
     for (std::uint64_t i = 0; i < states && !(abort && abort->load(std::memory_order_relaxed)); ++i) {
       const Arena::Mark before = arena->mark();

@@ -1,0 +1,184 @@
+// The manifold mutation (Jakob & Marschner 2012, "Manifold exploration: a Markov chain Monte Carlo technique for rendering
+// scenes with difficult specular transport"): the film point moves a little, which leads to a place b that scatters smoothly;
+// the place a behind the mirrors and clear surfaces that light comes to b through stays where it is, and the way between them
+// is found anew. The caustic and multi-chain perturbations turn a direction there instead, and miss a if it is small or far
+// away.
+//
+// The way is a root: with w the direction at b and e(w) where the chain that begins so meets the plane that touches the surface
+// at a, e(w) = a (the specular manifold, with w as its coordinates). It is found by Newton's method from the direction to where
+// the chain began before. Derivatives of e are differences of rays that are followed a little to either side: so they are there
+// for all shapes, bumps and media, whether or not a shape knows how its normals change. Where both sides tell different ones,
+// at edges and borders of shadows, nothing is proposed.
+//
+// A path's chain is measured by the place s where it begins, seen from b (transport/light_path.h), and the mutation leaves a as
+// it is. With c / d^2 the solid angle of s at b over its area and D = |de/dw| [m^2/sr], what is seen per area of s is
+//     dA_s / dA_a = 1 / (D c / d^2)
+// times as much per area of a, in which T is the density of b alone, so that
+//     T(y -> x) / T(x -> y) = E_{k-1}(x) D(x) (c / d^2)(x) / (E_{k-1}(y) D(y) (c / d^2)(y)).
+// From y the same steps must lead back to x: a curved mirror may throw light to a place in several ways, and Newton's method
+// chooses among them.
+
+#include "etendue/transport/mutation.h"
+
+namespace etendue {
+namespace {
+
+/// The way from b to a by specular lobes.
+class Chain {
+ public:
+  Chain(const PathSpace& space, LightPath& y, const PathVertex& b, const PathVertex& a, std::span<const Lobe> lobes)
+      : space_(space), y_(y), a_(a), lobes_(lobes), plane_(a.point.normal), walk_{b} {}
+
+  /// Where a chain comes to: its distance from a, along two axes of the plane there [m].
+  struct End {
+    double x = 0, y = 0;
+    double off() const { return std::hypot(x, y); }
+  };
+  /// Its change with the direction at b along two axes across it [m].
+  struct Derivatives {
+    End u, v;
+    double determinant() const { return u.x * v.y - u.y * v.x; }
+  };
+
+  /// Empty: it does not come there by these lobes.
+  std::optional<End> end(const Vector3& direction) {
+    walk_.resize(1);
+    const std::optional<Vector3> way = space_.follow_lobes(walk_, direction, lobes_, Transport::radiance, y_);
+    if (!way) return {};
+    const Point3 from = walk_.back().point.position;
+    const float along = dot(plane_.n, *way), t = dot(plane_.n, a_.point.position - from) / along;
+    if (!(t > 0) || !std::isfinite(t)) return {};
+    // Differences first: a may be far from the origin.
+    const Vector3 off = (from - a_.point.position) + t * *way;
+    return End{double(dot(plane_.s, off)), double(dot(plane_.t, off))};
+  }
+
+  /// By central differences. Empty: the two sides tell different things.
+  std::optional<Derivatives> derivatives(const Vector3& direction) {
+    const ArenaScope memory(*y_.arena);
+    const Frame across{Normal3(direction)};
+    const std::optional<End> here = end(direction);
+    if (!here) return {};
+    std::array<End, 2> d;
+    for (int axis = 0; axis < 2; ++axis) {
+      const Vector3 side = axis == 0 ? Vector3(across.s) : Vector3(across.t);
+      const auto more = end(normalize(direction + step * side)), less = end(normalize(direction - step * side));
+      if (!more || !less) return {};
+      const End up{more->x - here->x, more->y - here->y}, down{here->x - less->x, here->y - less->y};
+      const double differ = std::hypot(up.x - down.x, up.y - down.y);
+      if (differ > 0.2 * (up.off() + down.off())) return {};
+      d[size_t(axis)] = {(up.x + down.x) / (2 * double(step)), (up.y + down.y) / (2 * double(step))};
+    }
+    return Derivatives{d[0], d[1]};
+  }
+
+  /// From `guess` to the direction that leads to a. Empty: none was found.
+  std::optional<Vector3> solve(const Vector3& guess) {
+    Vector3 direction = guess;
+    double largest = 0.1;  // a step [rad]: a shape may look different behind
+    std::optional<End> e = end_of_trial(direction);
+    for (int i = 0; i < most_steps && e; ++i) {
+      if (e->off() < tolerance * reach_) return direction;
+      const std::optional<Derivatives> d = derivatives(direction);
+      if (!d || d->determinant() == 0) return {};
+      double u = -(e->x * d->v.y - e->y * d->v.x) / d->determinant(), v = -(d->u.x * e->y - d->u.y * e->x) / d->determinant();
+      const double length = std::hypot(u, v);
+      if (length > largest) {
+        u *= largest / length;
+        v *= largest / length;
+      }
+      const Frame across{Normal3(direction)};
+      const Vector3 next = normalize(direction + float(u) * Vector3(across.s) + float(v) * Vector3(across.t));
+      const std::optional<End> there = end_of_trial(next);
+      if (there && there->off() < e->off()) {
+        direction = next;
+        e = there;
+      } else {
+        largest = std::min(largest, length) / 4;
+      }
+    }
+    return {};
+  }
+
+ private:
+  std::optional<End> end_of_trial(const Vector3& direction) {
+    const ArenaScope memory(*y_.arena);
+    const std::optional<End> e = end(direction);
+    if (e) reach_ = double(length(a_.point.position - walk_.back().point.position));
+    return e;
+  }
+
+  /// [rad]: rays part by more than their rounding, and by less than what shapes show.
+  static constexpr float step = 5e-4f;
+  static constexpr double tolerance = 3e-5;  ///< over the distance from which light comes [rad]
+  static constexpr int most_steps = 12;
+
+  const PathSpace& space_;
+  LightPath& y_;
+  const PathVertex& a_;
+  const std::span<const Lobe> lobes_;
+  const Frame plane_;
+  PathSpace::Walk walk_;
+  double reach_ = 0;  // from the last vertex before a to a [m]
+};
+
+}  // namespace
+
+class ManifoldMutation final : public Mutation {
+  float smallest = 0.3f, largest = 0.1f;
+
+ public:
+  static void describe(Description<ManifoldMutation>& d) {
+    d.summary(
+         "Moves a path's place on the film, and finds the way through mirrors and glass anew by which light comes there "
+         "from the same place as before.",
+         "Jakob & Marschner 2012, Manifold exploration")
+        .member<&ManifoldMutation::smallest>("smallest", "1", "least distance on the film [pixels]", more_than(0),
+                                             soft(0.01, 10), logarithmic)
+        .member<&ManifoldMutation::largest>("largest", "1", "greatest distance, over the width of the film", range(1e-4, 1));
+  }
+
+  std::optional<double> propose(const PathSpace& space, const LightPath& x, LightPath& y,
+                                ChoiceNumbers& choices) const override {
+    const int k = x.length(), b = x.smooth_before(k);
+    if (b == 0 || !x.specular(b - 1)) return {};  // no mirror behind what is seen: see LensMutation
+    const int a = x.smooth_before(b);
+    const std::optional<Point2> film = moved_on_film(space, x.film, smallest, largest, choices);
+    if (!film) return {};
+    space.begin(y, x, a + 1);
+    const std::vector<Lobe> lobes = x.lobes(b - 1, a + 1);
+    const auto at = [](const LightPath& path, int i) -> const PathVertex& { return path.x[size_t(i)]; };
+
+    PathSpace::Walk walk{x.x.back()};
+    if (!space.follow_from_camera(walk, *film, x, y)) return {};
+    const PathVertex there = walk.back();
+    Chain proposed(space, y, there, at(x, a), lobes), back(space, y, at(x, b), at(x, a), lobes);
+    const auto way = proposed.solve(normalize(at(x, b - 1).point.position - there.point.position));
+    if (!way || !space.follow_lobes(walk, *way, lobes, Transport::radiance, y) || !arrives(space, walk, at(x, a), y)) return {};
+
+    const Vector3 began = -at(x, b - 1).out;
+    const auto again = back.solve(normalize(walk[walk.size() - lobes.size()].point.position - at(x, b).point.position));
+    if (!again || !(length(*again - began) < same_way)) return {};
+    const auto before = back.derivatives(began), after = proposed.derivatives(*way);
+    if (!before || !after) return {};
+    y.x.insert(y.x.end(), walk.rbegin(), walk.rend());
+    if (!space.complete(y)) return {};
+    return at(x, k - 1).from_camera / at(y, k - 1).from_camera * std::abs(before->determinant() / after->determinant()) *
+           x.camera_angle(b - 1) / y.camera_angle(b - 1);
+  }
+
+ private:
+  /// Whether nothing stands between the last vertex of a walk and a.
+  static bool arrives(const PathSpace& space, const PathSpace::Walk& walk, const PathVertex& a, LightPath& y) {
+    const Vector3 way = a.point.position - walk.back().point.position;
+    PathVertex met;
+    return space.follow(walk.back(), normalize(way), y, met) && met.point.object == a.point.object &&
+           length(met.point.position - a.point.position) < 1e-3f * length(way);
+  }
+
+  static constexpr float same_way = 1e-3f;  ///< directions that are one solution [rad]
+};
+
+static const Register<ManifoldMutation> registered;
+
+}  // namespace etendue
