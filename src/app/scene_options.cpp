@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "components/importers/permissions.h"
 #include "etendue/language/language.h"
 #include "etendue/render/job.h"
 
@@ -72,6 +73,7 @@ LoadOptions SceneOptions::load_options() const {
   for (const std::string& define : defines) options.defines.push_back(split("-D", define, "name=value"));
   options.import = import;
   options.import.time = options.time;
+  set_import_permissions(options.import);
   return options;
 }
 

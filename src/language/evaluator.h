@@ -79,6 +79,13 @@ class Evaluator {
   /// For the names of a file that stand behind a name and a point; null (and reported) when that name is taken.
   Space* make_space(Space& outer, const Label& name);
   void define(Definition, Space&);
+  /// Gives a name to a value that there is already; where it is, at which place of what file, is the label's. Null (and
+  /// reported) when the name is taken; else whether anything asked for it, once all is evaluated.
+  const bool* define_part(const Label&, Value, Space&);
+  /// Whether a name is known where all names are.
+  bool knows(const std::string& name) { return find(name, *root_) != nullptr; }
+  /// "small." before the names of a file that was included as small; "" of the outermost.
+  static std::string prefix(const Space&);
   /// Gives a param of `space` the value of a definition that stands in `written_in`; `file` is what messages call the file.
   void replace(Definition, Space& space, Space& written_in, const std::string& file);
   /// Replaces the value of a param.

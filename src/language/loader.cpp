@@ -13,12 +13,6 @@ namespace {
 
 constexpr size_t include_limit = 64;
 
-std::string canonical(const std::string& path) {
-  std::error_code error;
-  const auto found = std::filesystem::weakly_canonical(path, error);
-  return error ? path : found.string();
-}
-
 /// Where a carriage return stands without the line feed that it belongs to: the rest of the line, or of the whole file, would
 /// count as part of a comment.
 std::optional<size_t> lone_carriage_return(const std::string& text) {
@@ -30,6 +24,12 @@ std::optional<size_t> lone_carriage_return(const std::string& text) {
 Location start_of(const std::string& path) { return {intern(path), 0, 0}; }
 
 }  // namespace
+
+std::string canonical_path(const std::string& path) {
+  std::error_code error;
+  const auto found = std::filesystem::weakly_canonical(path, error);
+  return error ? path : found.string();
+}
 
 void Loader::add_file(const std::string& path) {
   main_ = intern(path);
@@ -53,7 +53,7 @@ void Loader::add_text(const std::string& text, const std::string& name, const st
 // A file that is included under a name is read for that name, whoever has read it before; another only once, here or further
 // out.
 bool Loader::load(const std::string& path, Location named_at, Space& space, bool again) {
-  const std::string spelling = canonical(path);
+  const std::string spelling = canonical_path(path);
   const auto active = std::find_if(active_.begin(), active_.end(), [&](const auto& a) { return a.first == spelling; });
   if (active != active_.end()) {
     std::string chain;
@@ -108,13 +108,18 @@ void Loader::include(Inclusion& inclusion, const std::string& folder, Space& spa
   Space* made = named ? evaluator_.make_space(space, inclusion.name) : &space;
   if (!made) return;
   Space& target = *made;
-  const Location* before = named ? nullptr : included_at(canonical(path), space);
+  const Location* before = named ? nullptr : included_at(canonical_path(path), space);
   if (before && !inclusion.replaced.empty()) {
     diagnostics_.add(
         Error(fmt::format("'{}' is included already, at {}: include it as a name of its own to give it other params: "
                           "… }} as name",
                           file.text, place(*before, file.at)),
               file.at));
+    return;
+  }
+  if (other_files_ && other_files_->are_read(path)) {
+    if (before || include_other(inclusion, path, target, space)) return;
+    whole_ = false;
     return;
   }
   const bool whole_before = std::exchange(whole_, true);
@@ -181,9 +186,16 @@ void Loader::replace_params() {
     const auto same = [&](const auto& d) { return d.first == name; };
     if (std::any_of(options_.defines.begin(), options_.defines.begin() + long(i), same))
       diagnostics_.add(Error(fmt::format("'{}' is given a value twice", name), {intern("-D " + name), 0, 0}));
-    else
+    else if (evaluator_.knows(name) || others_.empty())
       evaluator_.redefine(name, text);
+    else
+      left_defines_.emplace_back(name, text);
   }
+}
+
+void Loader::refuse_unknown_params() {
+  for (const auto& [name, text] : left_defines_)
+    if (!used_defines_.contains(name)) evaluator_.redefine(name, text);  // tells that there is none
 }
 
 Node* Loader::root(bool job) {
@@ -210,8 +222,12 @@ Node* Loader::root(bool job) {
 Ref<Component> Loader::result(bool job) {
   std::optional<Value> value;
   try {
-    if (whole_) replace_params();
-    Node* node = root(job);
+    if (whole_) {
+      replace_params();
+      read_others(job);
+      if (diagnostics_.empty()) refuse_unknown_params();
+    }
+    Node* node = job_ ? nullptr : root(job);
     if (!whole_) evaluator_.set_incomplete();
     for (auto& [other, space] : components_)
       if (&other == node) value = evaluator_.evaluate_in(*space, other);
@@ -221,7 +237,9 @@ Ref<Component> Loader::result(bool job) {
   } catch (const TooManyErrors&) {
   }
   diagnostics_.raise();
-  if (options_.animated && !evaluator_.moment_used())
+  warn_of_unused_others();
+  if (job_) return job_;
+  if (options_.animated && !evaluator_.moment_used() && others_.empty())
     warn("nothing in it depends on frame or time: all its frames show the same", {main_, 0, 0});
   return value && value->as<Ref<Component>>() ? *value->as<Ref<Component>>() : nullptr;
 }

@@ -65,6 +65,46 @@ void Evaluator::define(Definition definition, Space& space) {
   known = &entry;
 }
 
+namespace {
+
+/// How deep a part's parts go, itself counted.
+int height_of(const Value& value, std::unordered_map<const Component*, int>& known) {
+  int height = 0;
+  if (const auto* list = value.as<Value::List>()) {
+    for (const Value& item : *list) height = std::max(height, height_of(item, known));
+  } else if (const auto* part = value.as<Ref<Component>>(); part && *part) {
+    if (const auto found = known.find(part->get()); found != known.end()) return found->second;
+    for (const Member& member : (*part)->class_info().members)
+      if (member.kind == Kind::component) height = std::max(height, height_of(member.get(**part, member), known));
+    known[part->get()] = ++height;
+  }
+  return height;
+}
+
+}  // namespace
+
+std::string Evaluator::prefix(const Space& space) { return space.prefix(); }
+
+const bool* Evaluator::define_part(const Label& label, Value value, Space& space) {
+  Entry*& known = space.names[label.text];
+  if (known) {
+    const Location& at = known->definition.name.at;
+    diagnostics_.add(Error(fmt::format("'{}' is already defined at {}: include the file as a name of its own (… as name)",
+                                       label.text, place(at, label.at)),
+                           label.at));
+    return nullptr;
+  }
+  Entry& entry = entries_.emplace_back();
+  entry.definition.name = label;
+  entry.home = entry.space = &space;
+  entry.state = State::done;
+  std::unordered_map<const Component*, int> heights;
+  entry.height = height_of(value, heights);
+  entry.value = std::move(value);
+  known = &entry;
+  return &entry.used;
+}
+
 void Evaluator::replace(Definition definition, Space& space, Space& written_in, const std::string& file) {
   const Label& label = definition.name;
   const auto found = space.names.find(label.text);

@@ -48,6 +48,20 @@ bool usable_name(const std::string& name) {
 
 }  // namespace
 
+std::string plain_name(const std::string& name) {
+  std::string plain;
+  for (const char c : name) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'), digit = c >= '0' && c <= '9';
+    if (letter || (digit && !plain.empty()))
+      plain += c;
+    else if (!plain.empty() && plain.back() != '_')
+      plain += '_';
+  }
+  while (!plain.empty() && plain.back() == '_') plain.pop_back();
+  constexpr size_t longest = 64;
+  return plain.substr(0, longest);
+}
+
 bool Writer::written(const Value& value, const Member& member) const {
   return all_ || member.required || !equal(value, member.default_value);
 }
@@ -79,11 +93,21 @@ void Writer::choose_names() {
   }
   for (const Component* c : nameless) {
     const std::string given = c->origin ? c->origin->name : std::string();
-    const std::string stem = usable_name(given) ? given : snake_case(c->class_info().name);
+    const std::string plain = plain_name(given);
+    const std::string stem = usable_name(given) ? given : (usable_name(plain) ? plain : snake_case(c->class_info().name));
     std::string name = stem;
     for (int i = 2; !usable_name(name) || !taken.insert(name).second; ++i) name = fmt::format("{}_{}", stem, i);
     parts_[c].name = name;
   }
+}
+
+std::vector<std::pair<std::string, const Component*>> Writer::named_parts(const Component& root) {
+  collect(root);
+  choose_names();
+  std::vector<std::pair<std::string, const Component*>> named;
+  for (const Component* c : order_)
+    if (c->origin && !c->origin->name.empty() && !parts_[c].name.empty()) named.emplace_back(parts_[c].name, c);
+  return named;
 }
 
 std::string Writer::description(const Component& root) {

@@ -20,11 +20,16 @@ std::string path_text(const FilePath&, const std::string& folder);
 /// A colour's expression with the paths in it relative to a folder where that is shorter.
 std::string color_text(const SpectralFunction&, const std::string& folder);
 
+/// A name as a description can have it: letters and digits, everything else becomes an underscore. "": nothing is left.
+std::string plain_name(const std::string&);
+
 class Writer {
  public:
   Writer(bool all, std::string folder) : all_(all), folder_(std::move(folder)) {}
 
   std::string description(const Component& root);
+  /// The parts of a component that were given names, and what they are called in its description.
+  std::vector<std::pair<std::string, const Component*>> named_parts(const Component& root);
   /// A value as it is written behind `column` characters in a line; further lines are indented by `indent` at least.
   std::string value(const Value&, const Member*, int indent, int column);
 

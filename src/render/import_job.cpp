@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
+
+#include "language/writer.h"
 
 namespace etendue {
 
@@ -92,20 +96,101 @@ Ref<Job> job_around(const Ref<Scene>& scene, Importing& importing) {
   return ref_cast<Job>(job);
 }
 
+/// What an importer read as a job that can be rendered.
+Ref<Job> whole_job(const Ref<Component>& read, Importing& importing) {
+  if (const Ref<Job> job = ref_cast<Job>(read)) {
+    if (importing.is_lit) light_if_dark(*job->scene, importing, *importing.is_lit);
+    return job;
+  }
+  const Ref<Scene> scene = ref_cast<Scene>(read);
+  if (!scene) throw Error("the importer gave neither a Job nor a Scene", importing.at());
+  return job_around(scene, importing);
+}
+
+/// What an include sees.
+class ImportedFile final : public language::OtherFile {
+ public:
+  ImportedFile(const Importer& importer, const std::string& path, const ImportOptions& options,
+               const std::vector<std::pair<std::string, std::string>>& parameters)
+      : importing_(path, options, parameters), read_(importer.import(importing_)) {
+    for (const auto& [name, value] : parameters) parameters_.push_back(name);
+  }
+
+  Ref<Component> job() override { return whole_job(read_, importing_); }
+  // Notes about parameters that the file does not have stand where the command line has them.
+  std::vector<Error> notes() override {
+    std::vector<Error> all = importing_.notes();
+    std::erase_if(all, [&](const Error& note) {
+      return std::ranges::any_of(parameters_, [&](const std::string& name) { return is_about(name, note); });
+    });
+    return all;
+  }
+  std::vector<std::string> unused_parameters() override {
+    std::vector<std::string> unused = parameters_;
+    const std::vector<Error> all = importing_.notes();
+    std::erase_if(unused, [&](const std::string& name) {
+      return std::ranges::none_of(all, [&](const Error& note) { return is_about(name, note); });
+    });
+    return unused;
+  }
+  std::vector<std::pair<std::string, Value>> names(bool with_main_parts) override {
+    std::vector<std::pair<std::string, Value>> all;
+    std::set<std::string> taken;
+    if (with_main_parts) all = main_parts();
+    for (const auto& [name, value] : all) taken.insert(name);
+    for (const auto& [given, part] : language::Writer(false, {}).named_parts(*read_)) {
+      std::string name = given;
+      for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", given, i);
+      all.emplace_back(name, Value(Ref<Component>(const_cast<Component*>(part))));  // it is a part of read_
+    }
+    return all;
+  }
+
+ private:
+  std::vector<std::pair<std::string, Value>> main_parts() const {
+    const Ref<Job> job = ref_cast<Job>(read_);
+    const Ref<Scene> scene = job ? job->scene : ref_cast<Scene>(read_);
+    std::vector<std::pair<std::string, Value>> all;
+    const auto add = [&](const char* name, const Ref<Component>& part) {
+      if (part) all.emplace_back(name, Value(part));
+    };
+    add("scene", scene);
+    Value::List objects;
+    if (scene)
+      for (const Ref<SceneObject>& object : scene->objects) objects.emplace_back(Ref<Component>(object));
+    all.emplace_back("objects", Value(std::move(objects)));
+    if (!job) return all;
+    add("camera", job->camera);
+    add("renderer", job->renderer);
+    add("image", job->image);
+    return all;
+  }
+
+  static bool is_about(const std::string& parameter, const Error& note) {
+    return note.location.file == intern("-D " + parameter);
+  }
+
+  Importing importing_;
+  Ref<Component> read_;
+  std::vector<std::string> parameters_;
+};
+
 }  // namespace
+
+const language::OtherFiles& imported_files() {
+  static const language::OtherFiles files{
+      [](const std::string& path) { return bool(importer_of(path)); },
+      [](const std::string& path, const ImportOptions& options,
+         const std::vector<std::pair<std::string, std::string>>& parameters) -> std::unique_ptr<language::OtherFile> {
+        return std::make_unique<ImportedFile>(*importer_of(path), path, options, parameters);
+      }};
+  return files;
+}
 
 ImportedJob import_job(const Importer& importer, const std::string& path, const LoadOptions& options) {
   Importing importing(path, options.import, options.defines);
-  const Ref<Component> read = importer.import(importing);
-  Ref<Job> job = ref_cast<Job>(read);
-  if (!job) {
-    const Ref<Scene> scene = ref_cast<Scene>(read);
-    if (!scene) throw Error("the importer gave neither a Job nor a Scene", importing.at());
-    job = job_around(scene, importing);
-  } else if (importing.is_lit) {
-    light_if_dark(*job->scene, importing, *importing.is_lit);
-  }
-  ImportedJob result{job, importing.notes()};
+  ImportedJob result{whole_job(importer.import(importing), importing), {}};
+  result.notes = importing.notes();
   if (options.import.strict && !result.notes.empty()) throw Errors(std::move(result.notes));
   return result;
 }

@@ -13,7 +13,7 @@ Ref<Job> load_job(const std::string& path, const LoadOptions& options) {
       for (const Error& note : imported.notes) warn(note.what(), note.location);
       return imported.job;
     }
-    language::Loader loader(options);
+    language::Loader loader(options, &imported_files());
     loader.add_file(path);
     return ref_cast<Job>(loader.result(true));
   } catch (const std::bad_alloc&) {
@@ -23,7 +23,7 @@ Ref<Job> load_job(const std::string& path, const LoadOptions& options) {
 
 Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder,
                        const LoadOptions& options) {
-  language::Loader loader(options);
+  language::Loader loader(options, &imported_files());
   loader.add_text(text, name, folder);
   return ref_cast<Job>(loader.result(true));
 }

@@ -106,6 +106,20 @@ FreeFlight through_heterogeneous(const VolumeShader& volume, const Ray& local, f
   return flight;
 }
 
+/// Where a ray that nothing ends leaves the bounds of the object whose inside a medium is. Such a ray has slipped through an
+/// edge or a corner of its surface, and is outside without knowing: there a bound of extinction is without matter, and a walk
+/// from one tentative collision to the next would never come to an end.
+float within_object(const Medium& medium, const Ray& ray, float reach) {
+  if (std::isfinite(reach) || !medium.object || medium.object->unbounded() || medium.object->infinite()) return reach;
+  const Bounds3 box = medium.object->bounds();
+  float end = infinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float d = ray.direction[axis];
+    if (d != 0) end = std::min(end, ((d > 0 ? box.high : box.low)[axis] - ray.origin[axis]) / d);
+  }
+  return std::max(end, 0.0f);
+}
+
 }  // namespace
 
 Point3 Medium::own(const Point3& p, float time) const { return object->transform.from_origin(time).back(p); }
@@ -122,8 +136,9 @@ Spectrum transmittance(const Medium& medium, const Ray& ray, float distance, con
   const VolumeShader& volume = *medium.volume;
   if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), distance);
   const float m = volume.majorant(w).maximum();
+  const float end = within_object(medium, ray, distance);
   Spectrum fraction(1.0f);
-  collide(volume, medium.own(ray), distance, m, w, numbers, [&](float, const VolumeCoefficients& c) {
+  collide(volume, medium.own(ray), end, m, w, numbers, [&](float, const VolumeCoefficients& c) {
     fraction *= left_of(m, c) / m;
     const float most = fraction.maximum();
     if (most < small) {
@@ -154,7 +169,8 @@ Spectrum likely_transmittance(const Medium& medium, const Ray& ray, float distan
 FreeFlight sample_free_flight(const Medium& medium, const Ray& ray, float reach, const Spectrum& throughput,
                               const Wavelengths& w, NumberStream& numbers) {
   const VolumeShader& volume = *medium.volume;
-  if (!volume.homogeneous()) return through_heterogeneous(volume, medium.own(ray), reach, throughput, w, numbers);
+  if (!volume.homogeneous())
+    return through_heterogeneous(volume, medium.own(ray), within_object(medium, ray, reach), throughput, w, numbers);
   const VolumeCoefficients c = volume.coefficients(ray.origin, ray.time, w);
   FreeFlight flight = through_homogeneous(c, reach, throughput, numbers);
   if (volume.emits()) flight.emitted = emitted_along(c, reach);

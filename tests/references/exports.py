@@ -13,8 +13,15 @@ from pathlib import Path
 import numpy as np
 
 MITSUBA = "mitsuba/tests/scenes/"
-# Scene, below `scenes` or the validation data, and samples a pixel there and here.
+# Scene, below the repository or the validation data, and samples a pixel there and here.
+HERE = "tests/references/exports/"
 SCENES = [
+    (HERE + "shapes.etd", 256),
+    (HERE + "metals.etd", 256),
+    (HERE + "glass.etd", 512),
+    (HERE + "media.etd", 256),
+    (HERE + "emitters.etd", 256),
+    (HERE + "textures.etd", 256),
     ("scenes/cornell_box.etd", 128),
     (MITSUBA + "bsdf_spheres/test_constant_path.xml", 512),
     (MITSUBA + "bsdf_spheres/test_textured_diffuse_path.xml", 1024),
@@ -46,7 +53,7 @@ def main():
         if options.only not in scene:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            path = scene if scene.startswith("scenes/") else str(Path(options.data) / scene)
+            path = scene if scene.endswith(".etd") else str(Path(options.data) / scene)
             size = ["--size", "128x128"] if scene.startswith(("scenes/", "bitterli/")) else []
             exported, picture = f"{folder}/scene.xml", f"{folder}/picture.npy"
             sets = ["--set", "image.width=128", "--set", "image.height=128"] if size else []

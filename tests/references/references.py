@@ -65,6 +65,7 @@ def compare(program, scene, data, effort, extra=()):
         if scene.size:
             pixels = scene.size[0] * scene.size[1]
         samples = max(4, int(SAMPLES_OF_ALL_PIXELS * effort / pixels / SEEDS) * (8 if scene.size else 1))
+        samples = max(samples, -(-scene.samples // SEEDS))
         renders = [render(program, scene, data, samples, seed, folder, extra) for seed in range(1, SEEDS + 1)]
         notes = renders[0][1]
         stack = np.array([picture for picture, _ in renders])

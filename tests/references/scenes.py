@@ -12,6 +12,7 @@ class Scene:
     size: tuple = ()  # of the render, when it is not the reference's
     tile: int = 8  # [pixels of the reference]
     skip_above: float = 0.0  # tiles with a brighter pixel [Y] hold the edge of a light; 0: none is left out
+    samples: int = 0  # a pixel, at least
     quick: bool = False  # also in the short run of the test suite
     reason: str = ""  # why the picture differs; "" when it must agree
 
@@ -47,7 +48,8 @@ SCENES = [
     mitsuba("mesh_attributes/test_mesh_attributes_3_vertex_direct", quick=True),
     mitsuba("orthographic_sensor/test_orthographic_path", quick=True),
     mitsuba("participating_media/test_hetero_sigmat_volpath"),
-    mitsuba("participating_media/test_homo_area_light_volpath"),
+    # Behind the two bodies few paths bring much: of few samples a tile is dark, and does not know how uncertain it is.
+    mitsuba("participating_media/test_homo_area_light_volpath", samples=1200),
     mitsuba("participating_media/test_homo_null_envmap_volpath"),
     mitsuba("participating_media/test_surf_area_light_volpath"),
     mitsuba("spot_light/test_spot_direct"),
@@ -61,8 +63,14 @@ SCENES = [
     bitterli("material-testball", 1280, 720, 64,
              sets=["scene.objects[0].shader.color.map.first=rgb(0.325, 0.31, 0.25)",
                    "scene.objects[0].shader.color.map.second=rgb(0.725, 0.71, 0.68)"],
-             reason="Tungsten's coat, like Mitsuba's, leaves out light that goes back and forth under it, which LayeredShader has: the "
-             "body is brighter here. (Its floor has the two colours of the checkerboard exchanged, since its rectangle counts v the other "
-             "way and 20 squares turned over change places; they are exchanged for the comparison.)"),
-    bitterli("staircase2", 1024, 1024, 64, skip_above=10),
+             reason="two things, both of the coated copper; floor and surroundings agree within 0.5 %. The reference is made of red, "
+             "green and blue, and the coat's absorption (0.5, 1, 2.5 on the way down) cuts narrower bands out of spectra: the body is 17, "
+             "6 and 7 % darker in R, G and B; with each channel's constants as flat spectra it is +0.6, -4.8 and +1.6 %. What is left, "
+             "-9 % of green where the coat is seen, is copper under a coat of index 1.7, where it reflects 51 % of green straight on, "
+             "and not 62 % as beside air, which Tungsten computes: with an index 1.7 times as large green is +0.7 %. (The floor has the "
+             "two colours of the checkerboard exchanged, since Tungsten's rectangle counts v the other way and 20 squares turned over change places; they are exchanged for the "
+             "comparison.)"),
+    bitterli("staircase2", 1024, 1024, 64, skip_above=10,
+             reason="it agrees within the bound; what there is, is the floor: its rough plastic is 3 to 4 % darker than Tungsten's, and what "
+             "stands above it 0.5 to 0.7 %. Why is not proven."),
 ]

@@ -151,5 +151,32 @@ TEST(GridVolume, LetsThroughWhatTheIntegralSays) {
   EXPECT_NEAR(sum, std::exp(-3.0), 4 * std::sqrt((squares - sum * sum) / n));
 }
 
+// A ray that has slipped through an edge of the surface is in the medium for ever. It ends with the object: from the middle the
+// optical depth of the ramp and of the rest, 4 wide 1/4, is 3/4 + 1, and from outside there is none. (Without the end this test
+// would not come to one.)
+TEST(GridVolume, EndsWithItsObjectWhereNothingElseEndsARay) {
+  const Ref<VolumeShader> v = volume("GridVolume { resolution: [2, 1, 1], density: [0, 4], extinction: 1, outside: cut }");
+  const Ref<SceneObject> box = prepared_as<SceneObject>("Box { centre: [0.5, 0.5, 0.5] m, size: [1, 1, 1] m }");
+  const Medium medium{v.get(), box.get()};
+  const Ref<Sampler> sampler = create<Sampler>("IndependentSampler");
+  const Wavelengths w = wavelengths();
+  Ray ray;
+  ray.origin = {0.5f, 0.3f, 0.3f};
+  ray.direction = {1, 0, 0};
+  double sum = 0, squares = 0;
+  constexpr int n = 40000;
+  for (int i = 0; i < n; ++i) {
+    NumberStream stream(*sampler, SampleKey(7, 0, 0, std::uint32_t(i)));
+    const double t = double(transmittance(medium, ray, infinity, w, stream)[0]);
+    sum += t / n;
+    squares += t * t / n;
+  }
+  EXPECT_NEAR(sum, std::exp(-1.75), 4 * std::sqrt((squares - sum * sum) / n));
+  ray.origin = {1.5f, 0.3f, 0.3f};
+  NumberStream stream(*sampler, SampleKey(7, 0, 0, 1));
+  EXPECT_EQ(transmittance(medium, ray, infinity, w, stream)[0], 1.0f);
+  EXPECT_FALSE(sample_free_flight(medium, ray, infinity, Spectrum(1.0f), w, stream).scattered);
+}
+
 }  // namespace
 }  // namespace etendue::test

@@ -50,7 +50,8 @@ void add_export_command(CLI::App& program, Run& run) {
   command->footer(
       "\nExamples\n"
       "  etendue export scenes/cornell_box.etd -o box.pbrt      meshes and images are written beside it\n"
-      "  etendue export box.etd --strict -o box.pbrt            fails where it cannot be the same");
+      "  etendue export box.etd --strict -o box.pbrt            fails where it cannot be the same\n"
+      "  etendue export box.etd -o box.glb                      a model for viewers, with simple materials");
   command->callback([options, &run] { run = [options] { return write(*options); }; });
 }
 

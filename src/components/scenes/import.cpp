@@ -1,5 +1,6 @@
 // Import: what a file of another program holds, as an object of a scene.
 
+#include "components/importers/permissions.h"
 #include "etendue/importer.h"
 
 #include "etendue/render/job.h"
@@ -47,10 +48,11 @@ class Import final : public Scene {
     if (file.empty()) fail("file", "a file is needed");
     const Ref<Importer> importer = importer_of(path);
     if (!importer) fail("file", "'" + path + "' is of no format that is imported");
-    ImportOptions options;
+    ImportOptions options = import_permissions();
     options.time = time;
     Importing importing(path, options);
     const Ref<Component> imported = importer->import(importing);
+    if (options.strict && !importing.notes().empty()) throw Errors(importing.notes());
     for (const Error& note : importing.notes()) warn(note.what(), note.location);
     const Ref<Job> job = ref_cast<Job>(imported);
     const Ref<Scene> scene = job ? job->scene : ref_cast<Scene>(imported);

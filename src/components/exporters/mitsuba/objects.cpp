@@ -123,25 +123,8 @@ void Writer::emission(Node shape, const SceneObject& o, const Component& e, Uv u
 
 void Writer::light(Node n, const char* name, const SceneObject& o, const Component& e, Uv uv) {
   if (!e.class_info().find("radiance")) return;
-  // An amount, such as a power, scales the radiance: by what the object emits with it over what it emits without.
-  double factor = 1;
-  static constexpr const char* amounts[] = {"power", "luminous_flux", "luminous_intensity", "illuminance"};
-  const bool amount =
-      std::ranges::any_of(amounts, [&](const char* member) { return e.class_info().find(member) && number_of(e, member) > 0; });
-  if (amount) {
-    const Ref<Component> object = copy(o);
-    prepare_tree(*object);
-    const Ref<Component> whole = part_of(*object, "emission"), bare = copy(*whole);
-    for (const char* member : amounts) set(*bare, member, Value(Number{0}));
-    prepare_tree(*bare);
-    Wavelengths w;
-    for (int i = 0; i < spectrum_size; ++i) w.place(i, 500 + 20 * float(i), 1);
-    const auto emitted = [&](const Component& emission) {
-      return double(dynamic_cast<const EmissionShader&>(emission).power(dynamic_cast<const SceneObject&>(*object), w)[0]);
-    };
-    const double without = emitted(*bare);
-    factor = without > 0 ? emitted(*whole) / without : 1;
-  }
+  const double factor = strength_of(o, e);
+  const bool amount = has_amount(e);
   const Ref<Component> m = part_of(e, "radiance");
   if (m && class_of(*m) == "ConstantMap") {
     const Color c = color_of(*m, "value");

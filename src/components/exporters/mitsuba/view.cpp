@@ -38,10 +38,7 @@ void Writer::camera(Node n) {
     placed = placed * Transform::scale({half, half, 1});
   } else if (class_of(c) == "PerspectiveCamera") {
     const std::string axis = word_of(c, "fov_axis");
-    const double focal_length = number_of(c, "focal_length");
-    number(n, "fov",
-           focal_length > 0 ? 2 * std::atan(number_of(c, "sensor_size") / 2 / focal_length) * 180 / std::numbers::pi
-                            : number_of(c, "fov"));
+    number(n, "fov", field_of_view(c));
     text(n, "fov_axis", axis == "width" ? "x" : (axis == "height" ? "y" : axis));
     const std::vector<double> middle = numbers_of(c, "principal_point");
     if (middle[0] != 0) number(n, "principal_point_offset_x", -middle[0]);

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <vector>
 
+#include "components/exporters/amounts.h"
+#include "components/exporters/members.h"
 #include "components/exporters/triangles/exported_mesh.h"
 #include "etendue/describe/color.h"
 #include "etendue/exporter.h"
@@ -77,15 +79,5 @@ class Writer {
   std::map<const Component*, std::string> groups_;
   std::map<std::tuple<const Component*, bool, Uv>, std::string> bsdfs_;
 };
-
-// Members of a part by name, as they are.
-double number_of(const Component&, std::string_view member);
-bool truth_of(const Component&, std::string_view member);
-std::string word_of(const Component&, std::string_view member);
-Ref<Component> part_of(const Component&, std::string_view member);
-std::vector<double> numbers_of(const Component&, std::string_view member);
-Color color_of(const Component&, std::string_view member);
-AnimatedTransform transform_of(const Component&, std::string_view member);
-inline const std::string& class_of(const Component& c) { return c.class_info().name; }
 
 }  // namespace etendue::mitsuba_export

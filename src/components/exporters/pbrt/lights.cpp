@@ -50,27 +50,27 @@ LinearImage squared(const LinearImage& image) {
 }  // namespace
 
 std::string Writer::environment(const SceneObject& object, const Component& emission) {
-  const std::string file = word(emission, "file");
-  const double scale = number(emission, "scale");
-  if (number(emission, "illuminance") > 0)
+  const std::string file = word_of(emission, "file");
+  const double scale = number_of(emission, "scale");
+  if (number_of(emission, "illuminance") > 0)
     exporting.inexact("the illuminance of an environment is left out: it is as strong as its scale says", &emission);
   std::string text = "LightSource \"infinite\"";
   if (file.empty()) {
-    const Ref<Component> map = part(emission, "radiance");
-    const Color c = map ? constant(*map) : nullptr;
+    const Ref<Component> map = part_of(emission, "radiance");
+    const Color c = map ? constant_of(*map) : nullptr;
     if (c)
       text += light("L", scale == 1 ? c : scaled_spectrum(scale, c));
     else
       exporting.inexact("an environment of a map is white of 1", &emission);
   } else {
-    if (!truth(emission, "illuminant"))
+    if (!truth_of(emission, "illuminant"))
       exporting.inexact("an environment's image has the white of its colour space", &emission);
-    const bool square = word(emission, "layout") == "equal_area";
+    const bool square = word_of(emission, "layout") == "equal_area";
     std::string name;
     if (square) {
       name = exporting.copy_beside(file);
     } else {
-      const LinearImage image = squared(read_linear_image(file, word(emission, "transfer")));
+      const LinearImage image = squared(read_linear_image(file, word_of(emission, "transfer")));
       const std::vector<unsigned char> bytes =
           image_library().encode(".exr", ImageHeader(image.width, image.height, 3, NumberType::single), image.rgb);
       name = exporting.write_beside("environment", "exr", std::string(bytes.begin(), bytes.end()));
@@ -85,14 +85,14 @@ std::string Writer::environment(const SceneObject& object, const Component& emis
 }
 
 std::string Writer::point_light(const SceneObject& object, const Component& emission) {
-  const std::vector<double> p = numbers(object, "position");
+  const std::vector<double> p = numbers_of(object, "position");
   const std::string from = fmt::format(" \"point3 from\" {}", list(p)), name = emission.class_info().name;
   if (name == "SpotEmission") {
-    const std::vector<double> axis = numbers(emission, "axis");
+    const std::vector<double> axis = numbers_of(emission, "axis");
     const std::vector<double> to{p[0] + axis[0], p[1] + axis[1], p[2] + axis[2]};
-    const double inner = number(emission, "inner_angle"), outer = number(emission, "outer_angle");
-    if (part(emission, "picture")) exporting.inexact("the picture of a spot is left out", &emission);
-    if (word(emission, "edge") == "linear") exporting.inexact("a spot's edge is smooth in pbrt", &emission);
+    const double inner = number_of(emission, "inner_angle"), outer = number_of(emission, "outer_angle");
+    if (part_of(emission, "picture")) exporting.inexact("the picture of a spot is left out", &emission);
+    if (word_of(emission, "edge") == "linear") exporting.inexact("a spot's edge is smooth in pbrt", &emission);
     return "LightSource \"spot\"" + light_of(emission, "I", object) + from +
            fmt::format(" \"point3 to\" {} \"float coneangle\" {} \"float conedeltaangle\" {}\n", list(to), outer,
                        outer - inner);
@@ -125,7 +125,7 @@ bool Writer::light_source(const SceneObject& object) {
   if (name == "Point") {
     text = point_light(object, *emission);
   } else {
-    const std::vector<double> way = numbers(object, "direction");
+    const std::vector<double> way = numbers_of(object, "direction");
     if (emission->class_info().name != "DiffuseEmission") exporting.inexact("a distant light is alike everywhere", emission);
     text = "LightSource \"distant\"" + light_of(*emission, "L", object) +
            fmt::format(" \"point3 from\" [ 0 0 0 ] \"point3 to\" {}\n", list(way));

@@ -5,7 +5,7 @@
 namespace etendue::pbrt_export {
 
 std::string Writer::value_or_texture(const char* name, const Ref<Component>& map, bool numbers, ColorUse use) {
-  if (const Color c = constant(*map)) {
+  if (const Color c = constant_of(*map)) {
     if (!numbers) return spectrum(name, c, use);
     return fmt::format(" \"float {}\" {}", name, c->at(550, ColorUse::coefficient));
   }
@@ -13,28 +13,29 @@ std::string Writer::value_or_texture(const char* name, const Ref<Component>& map
 }
 
 std::string Writer::color_map(const char* name, const Component& of, const char* member, ColorUse use) {
-  const Ref<Component> map = part(of, member);
+  const Ref<Component> map = part_of(of, member);
   return map ? value_or_texture(name, map, false, use) : std::string();
 }
 
 std::string Writer::number_map(const char* name, const Component& of, const char* member) {
-  const Ref<Component> map = part(of, member);
+  const Ref<Component> map = part_of(of, member);
   return map ? value_or_texture(name, map, true, ColorUse::coefficient) : std::string();
 }
 
 std::string Writer::image(const Component& map, const std::string& more, bool numbers) {
-  const std::string wrap = word(map, "wrap"), transfer = word(map, "transfer"), file = exporting.copy_beside(word(map, "file"));
+  const std::string wrap = word_of(map, "wrap"), transfer = word_of(map, "transfer"),
+                    file = exporting.copy_beside(word_of(map, "file"));
   std::string text = fmt::format(" \"imagemap\" \"string filename\" \"{}\"", file);
   if (wrap == "mirror")
     exporting.inexact("an image that is mirrored beyond its edges is repeated", &map);
   else
     text += fmt::format(" \"string wrap\" \"{}\"", wrap);
-  if (word(map, "interpolation") == "nearest") text += " \"string filter\" \"point\"";
+  if (word_of(map, "interpolation") == "nearest") text += " \"string filter\" \"point\"";
   if (transfer == "linear") text += " \"string encoding\" \"linear\"";
   if (transfer == "gamma2.2") text += " \"string encoding\" \"gamma 2.2\"";
-  if (!word(map, "channel").empty()) exporting.inexact("the choice of an image's channels is left out", &map);
-  if (word(map, "color_space") != "srgb") exporting.inexact("the colour space of an image is what its file says", &map);
-  const std::vector<double> repeat = etendue::pbrt_export::numbers(map, "repeat");
+  if (!word_of(map, "channel").empty()) exporting.inexact("the choice of an image's channels is left out", &map);
+  if (word_of(map, "color_space") != "srgb") exporting.inexact("the colour space of an image is what its file says", &map);
+  const std::vector<double> repeat = numbers_of(map, "repeat");
   if (more.empty() && repeat.size() == 2 && (repeat[0] != 1 || repeat[1] != 1))
     text += fmt::format(" \"float uscale\" {} \"float vscale\" {}", repeat[0], repeat[1]);
   static_cast<void>(numbers);
@@ -55,13 +56,13 @@ std::string Writer::texture(const Component& map, bool numbers) {
   std::string text;
   if (type == "ImageMap") {
     text = image(map, "", numbers);
-  } else if (type == "UvTransformMap" && number(map, "angle") == 0 && part(map, "map") &&
-             (part(map, "map")->class_info().name == "ImageMap" || part(map, "map")->class_info().name == "CheckerMap")) {
-    const Ref<Component> changed = part(map, "map");
+  } else if (type == "UvTransformMap" && number_of(map, "angle") == 0 && part_of(map, "map") &&
+             (part_of(map, "map")->class_info().name == "ImageMap" || part_of(map, "map")->class_info().name == "CheckerMap")) {
+    const Ref<Component> changed = part_of(map, "map");
     const bool is_image = changed->class_info().name == "ImageMap";
-    const std::vector<double> repeat = etendue::pbrt_export::numbers(*changed, "repeat"),
-                              scale = etendue::pbrt_export::numbers(map, "scale"),
-                              shift = etendue::pbrt_export::numbers(map, "shift");
+    const std::vector<double> repeat = numbers_of(*changed, "repeat"),
+                              scale = numbers_of(map, "scale"),
+                              shift = numbers_of(map, "shift");
     const std::string where =
         fmt::format(" \"float uscale\" {} \"float vscale\" {} \"float udelta\" {} \"float vdelta\" {}", repeat[0] * scale[0],
                     repeat[1] * scale[1], repeat[0] * shift[0], repeat[1] * shift[1]);
@@ -73,16 +74,16 @@ std::string Writer::texture(const Component& map, bool numbers) {
       };
       text = " \"checkerboard\"" + of("tex1", "first") + of("tex2", "second") + where;
     }
-  } else if (type == "CheckerMap" && word(map, "space") == "uv") {
-    const std::vector<double> repeat = etendue::pbrt_export::numbers(map, "repeat");
+  } else if (type == "CheckerMap" && word_of(map, "space") == "uv") {
+    const std::vector<double> repeat = numbers_of(map, "repeat");
     text = " \"checkerboard\"" + inner("tex1", "first") + inner("tex2", "second") +
            fmt::format(" \"float uscale\" {} \"float vscale\" {}", repeat[0], repeat[1]);
   } else if (type == "MixMap") {
     text = " \"mix\"" + inner("tex1", "first") + inner("tex2", "second") + number_map("amount", map, "amount");
-  } else if (type == "MultiplyMap" && !part(map, "third") && part(map, "second") && constant(*part(map, "second")) &&
-             !constant(*part(map, "second"))->varies()) {
+  } else if (type == "MultiplyMap" && !part_of(map, "third") && part_of(map, "second") &&
+             constant_of(*part_of(map, "second")) && !constant_of(*part_of(map, "second"))->varies()) {
     text = " \"scale\"" + inner("tex", "first") + number_map("scale", map, "second");
-  } else if (const Color c = constant(map)) {
+  } else if (const Color c = constant_of(map)) {
     text = " \"constant\"" + (numbers ? fmt::format(" \"float value\" {}", c->at(550, ColorUse::coefficient))
                                       : spectrum("value", c, ColorUse::reflectance));
   } else {

@@ -13,7 +13,7 @@ constexpr size_t most_inline = 64;  ///< vertices of a mesh that is written into
 
 /// The twelve triangles of a box, each face with corners and surface coordinates of its own.
 ExportedMesh box_of(const Component& box) {
-  const std::vector<double> centre = numbers(box, "centre"), size = numbers(box, "size");
+  const std::vector<double> centre = numbers_of(box, "centre"), size = numbers_of(box, "size");
   ExportedMesh mesh;
   for (size_t axis = 0; axis < 3; ++axis)
     for (const int side : {-1, 1}) {
@@ -50,25 +50,26 @@ std::string Writer::shape(const SceneObject& object, const std::string& more, bo
   const std::string name = object.class_info().name;
   placed = false;
   const auto moved = [&](const char* member) {
-    const std::vector<double> c = numbers(object, member);
+    const std::vector<double> c = numbers_of(object, member);
     return c[0] == 0 && c[1] == 0 && c[2] == 0 ? std::string() : fmt::format("Translate {} {} {}\n", c[0], c[1], c[2]);
   };
   if (name == "Sphere")
-    return moved("centre") + fmt::format("Shape \"sphere\" \"float radius\" {}{}\n", number(object, "radius"), more);
+    return moved("centre") + fmt::format("Shape \"sphere\" \"float radius\" {}{}\n", number_of(object, "radius"), more);
   if (name == "Ellipsoid") {
-    const std::vector<double> r = numbers(object, "radii");
+    const std::vector<double> r = numbers_of(object, "radii");
     return moved("centre") + fmt::format("Scale {} {} {}\nShape \"sphere\"{}\n", r[0], r[1], r[2], more);
   }
-  if (name == "Disc") return fmt::format("Shape \"disk\" \"float radius\" {}{}\n", number(object, "radius"), more);
+  if (name == "Disc") return fmt::format("Shape \"disk\" \"float radius\" {}{}\n", number_of(object, "radius"), more);
   if (name == "Annulus")
     return fmt::format("Shape \"disk\" \"float radius\" {} \"float innerradius\" {} \"float phimax\" {}{}\n",
-                       number(object, "radius"), number(object, "inner_radius"), number(object, "sweep"), more);
+                       number_of(object, "radius"), number_of(object, "inner_radius"), number_of(object, "sweep"), more);
   if (name == "Cylinder") {
-    const double half = number(object, "height") / 2, radius = number(object, "radius"), sweep = number(object, "sweep");
+    const double half = number_of(object, "height") / 2, radius = number_of(object, "radius"),
+                 sweep = number_of(object, "sweep");
     std::string text =
         fmt::format("Shape \"cylinder\" \"float radius\" {} \"float zmin\" {} \"float zmax\" {} \"float phimax\" {}{}\n",
                     radius, -half, half, sweep, more);
-    if (truth(object, "caps")) {
+    if (truth_of(object, "caps")) {
       const std::string cap = fmt::format("Shape \"disk\" \"float radius\" {} \"float phimax\" {}", radius, sweep);
       text += fmt::format("{0} \"float height\" {1}{2}\nReverseOrientation {0} \"float height\" {3}{2}\nReverseOrientation\n",
                           cap, half, more, -half);
@@ -76,7 +77,8 @@ std::string Writer::shape(const SceneObject& object, const std::string& more, bo
     return text;
   }
   if (name == "Rectangle") {
-    const std::vector<double> c = numbers(object, "corner"), u = numbers(object, "edge_u"), v = numbers(object, "edge_v");
+    const std::vector<double> c = numbers_of(object, "corner"), u = numbers_of(object, "edge_u"),
+                              v = numbers_of(object, "edge_v");
     std::vector<double> points;
     for (const double b : {0.0, 1.0})
       for (const double a : {0.0, 1.0})
@@ -85,7 +87,7 @@ std::string Writer::shape(const SceneObject& object, const std::string& more, bo
   }
   if (name == "Box") return mesh(box_of(object), more);
   if (const auto triangles = mesh_of(object, placed)) {
-    if (name == "TriangleMesh" && !numbers(object, "times").empty())
+    if (name == "TriangleMesh" && !numbers_of(object, "times").empty())
       exporting.inexact("a mesh that changes its shape is still in pbrt", &object);
     return mesh(*triangles, more);
   }
@@ -97,7 +99,7 @@ std::string Writer::emission_of(const SceneObject& object, bool& reversed) {
   const Component* emission = object.emission.get();
   reversed = false;
   if (!emission) return {};
-  const std::string name = emission->class_info().name, sides = word(*emission, "sides");
+  const std::string name = emission->class_info().name, sides = word_of(*emission, "sides");
   if (name != "DiffuseEmission") {
     exporting.inexact(fmt::format("light that leaves a surface by {} leaves it alike in all directions in pbrt", name),
                       emission);
@@ -105,9 +107,9 @@ std::string Writer::emission_of(const SceneObject& object, bool& reversed) {
   }
   reversed = sides == "back";
   std::string text = "AreaLightSource \"diffuse\"";
-  const Ref<Component> map = part(*emission, "radiance");
+  const Ref<Component> map = part_of(*emission, "radiance");
   if (map && map->class_info().name == "ImageMap")
-    text += fmt::format(" \"string filename\" \"{}\"", exporting.copy_beside(word(*map, "file")));
+    text += fmt::format(" \"string filename\" \"{}\"", exporting.copy_beside(word_of(*map, "file")));
   else
     text += light_of(*emission, "L", object);
   if (sides == "both") text += " \"bool twosided\" true";
@@ -141,7 +143,7 @@ void Writer::object(const SceneObject& object, bool instanced) {
   if (object.interior)
     if (const std::string inside = medium_of(*object.interior); !inside.empty())
       medium = fmt::format("MediumInterface \"{}\" \"\"\n", inside);
-  if (word(object, "sides") != "both") exporting.inexact("surfaces scatter light on both sides in pbrt", &object);
+  if (word_of(object, "sides") != "both") exporting.inexact("surfaces scatter light on both sides in pbrt", &object);
   const std::string directive = shape(object, surface.alpha, placed);
   if (directive.empty()) return;
   out_ += "AttributeBegin\n";
@@ -152,9 +154,9 @@ void Writer::object(const SceneObject& object, bool instanced) {
 }
 
 void Writer::instance(const Component& object) {
-  const Ref<Component> scene = part(object, "scene");
+  const Ref<Component> scene = part_of(object, "scene");
   if (!scene) return;
-  if (part(object, "shader")) exporting.inexact("the shader of an instance is left out", &object);
+  if (part_of(object, "shader")) exporting.inexact("the shader of an instance is left out", &object);
   std::string& name = instanced_[scene.get()];
   if (name.empty()) {
     name = exporting.name_for(*scene);

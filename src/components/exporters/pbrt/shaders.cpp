@@ -9,7 +9,7 @@ Surface Writer::surface_of(const Component* shader) {
   // Holes belong to the shape in pbrt.
   if (shader && shader->class_info().name == "MaskShader") {
     surface.alpha = number_map("alpha", *shader, "opacity");
-    const Ref<Component> inner = part(*shader, "shader");
+    const Ref<Component> inner = part_of(*shader, "shader");
     surface.material = inner ? material_of(*inner) : "";
   } else if (shader) {
     surface.material = material_of(*shader);
@@ -32,11 +32,11 @@ std::string Writer::material_of(const Component& shader) {
        name = base->class_info().name) {
     if (name == "BumpShader") {
       relief += number_map("displacement", *base, "height");
-      if (number(*base, "scale") != 1) exporting.inexact("the factor of a bump map's heights is left out", base);
+      if (number_of(*base, "scale") != 1) exporting.inexact("the factor of a bump map's heights is left out", base);
     } else {
-      relief += fmt::format(" \"string normalmap\" \"{}\"", exporting.copy_beside(word(*base, "file")));
+      relief += fmt::format(" \"string normalmap\" \"{}\"", exporting.copy_beside(word_of(*base, "file")));
     }
-    held = part(*base, "shader");
+    held = part_of(*base, "shader");
     if (!held) break;
     base = held.get();
   }
@@ -50,19 +50,19 @@ std::string Writer::material_of(const Component& shader) {
 
 std::string Writer::roughness_of(const Component& shader, const std::string& prefix) {
   std::string text;
-  if (part(shader, "roughness_v"))
+  if (part_of(shader, "roughness_v"))
     text = number_map((prefix + "uroughness").c_str(), shader, "roughness") +
            number_map((prefix + "vroughness").c_str(), shader, "roughness_v");
   else
     text = number_map((prefix + "roughness").c_str(), shader, "roughness");
-  if (const Ref<Component> rotation = part(shader, "rotation"))
-    if (const Color c = constant(*rotation); !c || c->at(550, ColorUse::coefficient) != 0)
+  if (const Ref<Component> rotation = part_of(shader, "rotation"))
+    if (const Color c = constant_of(*rotation); !c || c->at(550, ColorUse::coefficient) != 0)
       exporting.inexact("the rotation of an anisotropic surface is left out", &shader);
-  if (shader.class_info().find("distribution") && word(shader, "distribution") == "beckmann")
+  if (shader.class_info().find("distribution") && word_of(shader, "distribution") == "beckmann")
     exporting.inexact("pbrt has GGX's facets alone: they stand for Beckmann's", &shader);
-  if (truth(shader, "multiple_scattering")) {
-    const Ref<Component> alpha = part(shader, "roughness");
-    const Color c = alpha ? constant(*alpha) : nullptr;
+  if (truth_of(shader, "multiple_scattering")) {
+    const Ref<Component> alpha = part_of(shader, "roughness");
+    const Color c = alpha ? constant_of(*alpha) : nullptr;
     if (!c || c->at(550, ColorUse::coefficient) > 0.001f)
       exporting.inexact("pbrt loses the light that meets more than one facet: rough surfaces are a little darker there",
                         &shader);
@@ -71,14 +71,14 @@ std::string Writer::roughness_of(const Component& shader, const std::string& pre
 }
 
 std::string Writer::index_of(const Component& shader, const std::string& name) {
-  const Color c = color(shader, "ior");
-  if (!c) return fmt::format(" \"float {}\" {}", name, number(shader, "ior"));
+  const Color c = color_of(shader, "ior");
+  if (!c) return fmt::format(" \"float {}\" {}", name, number_of(shader, "ior"));
   if (!c->varies()) return fmt::format(" \"float {}\" {}", name, c->at(550, ColorUse::coefficient));
   return spectrum(name.c_str(), c, ColorUse::coefficient);
 }
 
 std::string Writer::metal_of(const Component& shader, const std::string& prefix) {
-  const Color ior = color(shader, "ior");
+  const Color ior = color_of(shader, "ior");
   for (const char* metal : {"Cu", "Au", "Ag", "Al"})
     if (ior && ior->expression() == fmt::format("metal(\"{}\")", metal))
       return fmt::format(" \"spectrum {0}eta\" \"metal-{1}-eta\" \"spectrum {0}k\" \"metal-{1}-k\"", prefix, metal);
@@ -86,14 +86,14 @@ std::string Writer::metal_of(const Component& shader, const std::string& prefix)
   std::string text = ior ? spectrum((prefix + "eta").c_str(), ior, ColorUse::coefficient) : "";
   text +=
       k ? spectrum((prefix + "k").c_str(), k, ColorUse::coefficient) : fmt::format(" \"spectrum {}k\" [ 360 0 830 0 ]", prefix);
-  if (const Ref<Component> tint = part(shader, "color"))
-    if (const Color c = constant(*tint); !c || c->varies() || c->at(550, ColorUse::reflectance) != 1)
+  if (const Ref<Component> tint = part_of(shader, "color"))
+    if (const Color c = constant_of(*tint); !c || c->varies() || c->at(550, ColorUse::reflectance) != 1)
       exporting.inexact("the colour that a metal's reflectance is multiplied by is left out", &shader);
   return text;
 }
 
 std::string Writer::layered(const Component& shader, std::string& type) {
-  const Ref<Component> top = part(shader, "top"), bottom = part(shader, "bottom"), medium = part(shader, "medium");
+  const Ref<Component> top = part_of(shader, "top"), bottom = part_of(shader, "bottom"), medium = part_of(shader, "medium");
   const std::string below = bottom ? bottom->class_info().name : "";
   if (!top || top->class_info().name != "Dielectric" || (below != "Lambertian" && below != "Conductor")) {
     exporting.inexact("pbrt has layers of a dielectric over a matt surface or a metal alone: the lower one is left", &shader);
@@ -107,11 +107,11 @@ std::string Writer::layered(const Component& shader, std::string& type) {
                   : roughness_of(*bottom, "conductor.") + metal_of(*bottom, "conductor.");
   text += " \"bool remaproughness\" false";
   // pbrt's layer absorbs as if its extinction were 1; a thickness of nothing makes that clear.
-  const Ref<Component> thickness = part(shader, "thickness");
-  const Color t = thickness ? constant(*thickness) : nullptr;
+  const Ref<Component> thickness = part_of(shader, "thickness");
+  const Color t = thickness ? constant_of(*thickness) : nullptr;
   if (!medium) return text + " \"float thickness\" 0";
-  const Color a = medium->class_info().name == "HomogeneousVolume" ? color(*medium, "absorption") : nullptr,
-              s = a ? color(*medium, "scattering") : nullptr;
+  const Color a = medium->class_info().name == "HomogeneousVolume" ? color_of(*medium, "absorption") : nullptr,
+              s = a ? color_of(*medium, "scattering") : nullptr;
   if (!a || !s || !t || a->varies() || s->varies()) {
     exporting.inexact("the medium between two layers is left out", &shader);
     return text + " \"float thickness\" 0";
@@ -119,7 +119,7 @@ std::string Writer::layered(const Component& shader, std::string& type) {
   const float absorbs = a->at(550, ColorUse::coefficient), scatters = s->at(550, ColorUse::coefficient);
   return text + fmt::format(" \"float thickness\" {}{}", t->at(550, ColorUse::coefficient) * (absorbs + scatters),
                             scatters > 0 ? fmt::format(" \"spectrum albedo\" [ 360 {0} 830 {0} ] \"float g\" {1}",
-                                                       scatters / (absorbs + scatters), number(*medium, "anisotropy"))
+                                                       scatters / (absorbs + scatters), number_of(*medium, "anisotropy"))
                                          : "");
 }
 
@@ -142,10 +142,10 @@ std::string Writer::parameters_of(const Component& shader, std::string& type) {
   }
   if (name == "Dielectric") {
     type = "dielectric";
-    if (part(shader, "reflection_tint") || part(shader, "transmission_tint"))
+    if (part_of(shader, "reflection_tint") || part_of(shader, "transmission_tint"))
       for (const char* tint : {"reflection_tint", "transmission_tint"})
-        if (const Ref<Component> map = part(shader, tint))
-          if (const Color c = constant(*map); !c || c->varies() || c->at(550, ColorUse::reflectance) != 1)
+        if (const Ref<Component> map = part_of(shader, tint))
+          if (const Color c = constant_of(*map); !c || c->varies() || c->at(550, ColorUse::reflectance) != 1)
             exporting.inexact(fmt::format("the '{}' of a dielectric is left out", tint), &shader);
     return index_of(shader, "eta") + roughness_of(shader, "") + " \"bool remaproughness\" false";
   }
@@ -170,23 +170,23 @@ std::string Writer::parameters_of(const Component& shader, std::string& type) {
   }
   if (name == "MixShader") {
     type = "mix";
-    const Ref<Component> first = part(shader, "first"), second = part(shader, "second");
+    const Ref<Component> first = part_of(shader, "first"), second = part_of(shader, "second");
     const std::string a = surface_of(first.get()).material, b = surface_of(second.get()).material;
     return fmt::format(" \"string materials\" [ \"{}\" \"{}\" ]{}", a, b, number_map("amount", shader, "amount"));
   }
   if (name == "HairShader") {
     type = "hair";
-    const std::string pigment = word(shader, "pigment");
+    const std::string pigment = word_of(shader, "pigment");
     const std::string what = pigment == "color"        ? color_map("reflectance", shader, "color")
                              : pigment == "absorption" ? color_map("sigma_a", shader, "absorption", ColorUse::coefficient)
                                                        : number_map("eumelanin", shader, "eumelanin") +
                                                              number_map("pheomelanin", shader, "pheomelanin");
     return what + number_map("beta_m", shader, "longitudinal_roughness") + number_map("beta_n", shader, "azimuthal_roughness") +
-           fmt::format(" \"float alpha\" {} \"float eta\" {}", number(shader, "tilt"), number(shader, "ior"));
+           fmt::format(" \"float alpha\" {} \"float eta\" {}", number_of(shader, "tilt"), number_of(shader, "ior"));
   }
   if (name == "RglShader") {
     type = "measured";
-    return fmt::format(" \"string filename\" \"{}\"", exporting.copy_beside(word(shader, "file")));
+    return fmt::format(" \"string filename\" \"{}\"", exporting.copy_beside(word_of(shader, "file")));
   }
   type = "diffuse";
   for (const char* member : {"color", "base_color"})
@@ -206,13 +206,13 @@ std::string Writer::medium_of(const Component& medium) {
     return name;
   }
   name = exporting.name_for(medium);
-  Color a = color(medium, "absorption"), s = color(medium, "scattering");
-  const Color extinction = medium.class_info().find("extinction") ? color(medium, "extinction") : nullptr;
+  Color a = color_of(medium, "absorption"), s = color_of(medium, "scattering");
+  const Color extinction = medium.class_info().find("extinction") ? color_of(medium, "extinction") : nullptr;
   if (extinction && extinction->expression() != "0")
     exporting.inexact("a medium's extinction and albedo are written as its absorption and scattering", &medium);
   out_ += fmt::format("MakeNamedMedium \"{}\" \"string type\" \"homogeneous\"{}{} \"float g\" {}\n", name,
                       spectrum("sigma_a", a, ColorUse::coefficient), spectrum("sigma_s", s, ColorUse::coefficient),
-                      number(medium, "anisotropy"));
+                      number_of(medium, "anisotropy"));
   return name;
 }
 

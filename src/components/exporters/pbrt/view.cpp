@@ -20,7 +20,7 @@ void Writer::camera() {
     out_ += "Camera \"perspective\"\n";
     return;
   }
-  const std::vector<double> f = numbers(camera, "from"), t = numbers(camera, "to"), u = numbers(camera, "up");
+  const std::vector<double> f = numbers_of(camera, "from"), t = numbers_of(camera, "to"), u = numbers_of(camera, "up");
   const Transform base = Transform::look_at({f[0], f[1], f[2]}, {t[0], t[1], t[2]}, {u[0], u[1], u[2]});
   const Value moved = get(camera, "transform");
   std::vector<AnimatedTransform::Key> keys;
@@ -32,27 +32,27 @@ void Writer::camera() {
   for (auto& key : keys) key.transform = (key.transform * base * Transform::scale({-1, 1, 1})).inverse();
   out_ += keys.size() == 1 ? fmt::format("Transform {}\n", matrix(keys[0].transform))
                            : transform_of(AnimatedTransform(keys), "Transform");
-  const double open = number(camera, "shutter_open"), close = number(camera, "shutter_close");
+  const double open = number_of(camera, "shutter_open"), close = number_of(camera, "shutter_close");
   const std::string shutter =
       close > open ? fmt::format(" \"float shutteropen\" {} \"float shutterclose\" {}", open, close) : "";
-  if (number(camera, "shutter_opening") > 0 || number(camera, "shutter_closing") > 0)
+  if (number_of(camera, "shutter_opening") > 0 || number_of(camera, "shutter_closing") > 0)
     exporting.inexact("a shutter opens and closes at once in pbrt", &camera);
   const double aspect = double(job.image->width) / job.image->height;
   if (orthographic) {
-    const double half = number(camera, "width") / 2;
+    const double half = number_of(camera, "width") / 2;
     out_ += fmt::format("Camera \"orthographic\" \"float screenwindow\" [ {} {} {} {} ]{}\n", -half, half, -half / aspect,
                         half / aspect, shutter);
     return;
   }
-  const std::string axis = word(camera, "fov_axis");
+  const std::string axis = word_of(camera, "fov_axis");
   const bool across_width = axis == "width" || (axis == "smaller" && aspect <= 1) || (axis == "larger" && aspect > 1);
   const bool shorter_is_width = aspect <= 1;
-  double tangent = std::tan(number(camera, "fov") * exact_pi / 360);
+  double tangent = std::tan(number_of(camera, "fov") * exact_pi / 360);
   if (across_width && !shorter_is_width) tangent /= aspect;
   if (!across_width && shorter_is_width) tangent *= aspect;
   out_ += fmt::format("Camera \"perspective\" \"float fov\" {}", 2 * std::atan(tangent) * 180 / exact_pi);
-  if (const double lens = number(camera, "lens_radius"); lens > 0) {
-    double focus = number(camera, "focus_distance");
+  if (const double lens = number_of(camera, "lens_radius"); lens > 0) {
+    double focus = number_of(camera, "focus_distance");
     if (focus == 0) focus = std::sqrt(std::pow(t[0] - f[0], 2) + std::pow(t[1] - f[1], 2) + std::pow(t[2] - f[2], 2));
     out_ += fmt::format(" \"float lensradius\" {} \"float focaldistance\" {}", lens, focus);
   }
@@ -63,31 +63,31 @@ void Writer::film() {
   const ImageBuffer& image = *job.image;
   std::string file = exporting.stem() + ".exr";
   if (!job.outputs.empty())
-    if (const std::string named = word(*job.outputs[0], "file"); !named.empty())
+    if (const std::string named = word_of(*job.outputs[0], "file"); !named.empty())
       file = std::filesystem::path(named).filename().string();
-  const double open = number(*job.camera, "shutter_open"), close = number(*job.camera, "shutter_close");
+  const double open = number_of(*job.camera, "shutter_open"), close = number_of(*job.camera, "shutter_close");
   out_ += fmt::format("Film \"rgb\" \"integer xresolution\" {} \"integer yresolution\" {} \"string filename\" \"{}\"",
                       image.width, image.height, file);
   // The longer its shutter is open, the brighter pbrt's picture is.
   if (close > open && close - open != 1) out_ += fmt::format(" \"float iso\" {}", 100 / (close - open));
-  if (const std::vector<double> crop = numbers(image, "crop"); crop.size() == 4)
+  if (const std::vector<double> crop = numbers_of(image, "crop"); crop.size() == 4)
     out_ += fmt::format(" \"integer pixelbounds\" [ {} {} {} {} ]", crop[0], crop[2], crop[1], crop[3]);
   out_ += "\n";
   if (!image.layers.empty()) exporting.inexact("further layers of the picture are left out", &image);
   if (job.tone_map && job.tone_map->class_info().name != "ExposureToneMap" && job.tone_map->class_info().name != "NoToneMap")
     exporting.inexact("pbrt's pictures are not tone mapped", job.tone_map.get());
-  const Ref<Component> filter = part(image, "filter");
+  const Ref<Component> filter = part_of(image, "filter");
   const std::string name = filter->class_info().name;
-  const double radius = number(*filter, "radius");
+  const double radius = number_of(*filter, "radius");
   const char* type = name == "BoxFilter"        ? "box"
                      : name == "TriangleFilter" ? "triangle"
                      : name == "MitchellFilter" ? "mitchell"
                      : name == "LanczosFilter"  ? "sinc"
                                                 : "gaussian";
   out_ += fmt::format("PixelFilter \"{0}\" \"float xradius\" {1} \"float yradius\" {1}", type, radius);
-  if (name == "GaussianFilter") out_ += fmt::format(" \"float sigma\" {}", number(*filter, "deviation"));
+  if (name == "GaussianFilter") out_ += fmt::format(" \"float sigma\" {}", number_of(*filter, "deviation"));
   if (name == "MitchellFilter")
-    out_ += fmt::format(" \"float B\" {} \"float C\" {}", number(*filter, "b"), number(*filter, "c"));
+    out_ += fmt::format(" \"float B\" {} \"float C\" {}", number_of(*filter, "b"), number_of(*filter, "c"));
   if (name == "LanczosFilter") out_ += fmt::format(" \"float tau\" {}", radius);
   out_ += "\n";
 }
@@ -95,7 +95,7 @@ void Writer::film() {
 void Writer::integrator() {
   const Component& renderer = *job.renderer;
   const std::string name = renderer.class_info().name;
-  const Ref<Component> sampler = renderer.class_info().find("sampler") ? part(renderer, "sampler") : nullptr;
+  const Ref<Component> sampler = renderer.class_info().find("sampler") ? part_of(renderer, "sampler") : nullptr;
   const bool independent = sampler && sampler->class_info().name == "IndependentSampler";
   out_ += fmt::format("Sampler \"{}\" \"integer pixelsamples\" {}\n", independent ? "independent" : "zsobol",
                       job.renderer->samples);
@@ -110,7 +110,7 @@ void Writer::integrator() {
   out_ += fmt::format("Integrator \"{}\"", type ? type : "volpath");
   // Segments of a path: pbrt counts the scattering between them.
   const double depth = name == "DirectRenderer"                  ? 2
-                       : renderer.class_info().find("max_depth") ? number(renderer, "max_depth")
+                       : renderer.class_info().find("max_depth") ? number_of(renderer, "max_depth")
                                                                  : 0;
   if (depth > 0) out_ += fmt::format(" \"integer maxdepth\" {}", depth - 1);
   if (type && std::string_view(type) == "mlt") out_ += fmt::format(" \"integer mutationsperpixel\" {}", job.renderer->samples);

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "components/exporters/members.h"
 #include "components/exporters/triangles/exported_mesh.h"
 #include "etendue/describe/color.h"
 #include "etendue/exporter.h"
@@ -87,15 +88,5 @@ std::string list(const auto& numbers) {
   return text + " ]";
 }
 std::string matrix(const Transform&);
-
-// Members of a part by name; angles in degrees.
-double number(const Component&, std::string_view member);
-bool truth(const Component&, std::string_view member);
-std::string word(const Component&, std::string_view member);
-Ref<Component> part(const Component&, std::string_view member);
-std::vector<double> numbers(const Component&, std::string_view member);
-Color color(const Component&, std::string_view member);
-/// The value of a map that is the same everywhere; null: it is not.
-Color constant(const Component& map);
 
 }  // namespace etendue::pbrt_export

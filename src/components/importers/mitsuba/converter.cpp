@@ -18,6 +18,22 @@ Converter::Reading::Reading(const Element& element) : element_(element) {
   element.being_read = element.read = true;
 }
 
+namespace {
+
+/// The first element of one of these types within another; null: there is none.
+const Element* first_of(const Element& within, const char* tag, std::initializer_list<const char*> types) {
+  for (const Property& p : within.properties) {
+    const auto* nested = std::get_if<Nested>(&p.value);
+    if (!nested || !nested->reference.empty()) continue;
+    const Element& e = *nested->element;
+    if (e.tag == tag && std::ranges::any_of(types, [&](const char* type) { return e.type == type; })) return &e;
+    if (const Element* inner = first_of(e, tag, types)) return inner;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 Ref<Job> Converter::job(const Element& scene) {
   const Reading reading(scene);
   Ref<Component> job = importing_.make("Job", scene.at);
@@ -54,6 +70,11 @@ Ref<Job> Converter::job(const Element& scene) {
   const std::vector<const Element*> integrators = scene.all("integrator");
   const Element* const film = films.empty() ? nullptr : films.front();
   set_member(*job, "image", image(film), scene.at);
+  // To volpath what goes straight through a pane has not been scattered (BSDFFlags::Null); to path it has.
+  const Element* volumetric = first_of(scene, "integrator", {"volpath", "volpathmis", "prbvolpath"});
+  const Element* pane = first_of(scene, "bsdf", {"thindielectric"});
+  if (volumetric && pane && volumetric->integer("max_depth", -1) >= 0)
+    importing_.inexact("passing through a thin dielectric counts for max_depth here, unlike in volpath", pane->at);
   if (sensor) {
     set_member(*job, "camera", camera(*sensor), sensor->at);
   } else {

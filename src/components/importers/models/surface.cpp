@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "etendue/describe/color.h"
+#include "language/writer.h"
 
 namespace etendue {
 namespace {
@@ -249,18 +250,6 @@ Value color_value(const std::array<double, 3>& rgb, Location at) {
   return Value(rgb_color("srgb", r, g, b), at);
 }
 
-std::string plain_name(const std::string& name) {
-  std::string plain;
-  for (const char c : name) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'), digit = c >= '0' && c <= '9';
-    if (letter || (digit && !plain.empty()))
-      plain += c;
-    else if (!plain.empty() && plain.back() != '_')
-      plain += '_';
-  }
-  while (!plain.empty() && plain.back() == '_') plain.pop_back();
-  constexpr size_t longest = 64;
-  return plain.substr(0, longest);
-}
+std::string plain_name(const std::string& name) { return language::plain_name(name); }
 
 }  // namespace etendue

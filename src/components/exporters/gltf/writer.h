@@ -1,0 +1,76 @@
+#pragma once
+// A job on its way into a file of glTF 2.0.
+
+#include <fmt/format.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <tuple>
+
+#include "components/exporters/amounts.h"
+#include "components/exporters/members.h"
+#include "components/exporters/triangles/exported_mesh.h"
+#include "etendue/exporter.h"
+#include "etendue/render/job.h"
+
+namespace etendue::gltf_export {
+
+using Json = nlohmann::ordered_json;
+
+class Writer {
+ public:
+  Writer(const Job& j, Exporting& e) : job(j), exporting(e) {}
+  /// The JSON and its buffer in one file, or the JSON alone with the buffer beside it.
+  std::string write(bool binary);
+
+ private:
+  // nodes.cpp: each gives the node's index.
+  size_t node(Json);
+  /// A node that moves what stands in it; `children` are indices.
+  size_t group(const Transform&, Json children);
+  Json nodes_of(const Scene&);
+  /// Nothing: the object is left out.
+  std::optional<size_t> node_of(const SceneObject&);
+  std::optional<size_t> light_node(const SceneObject&, bool& is_light);
+  size_t camera_node();
+  Transform still(const AnimatedTransform&, const Component& of);
+
+  // meshes.cpp
+  /// The index of the mesh of an object; `placed`: with the object's transform done. Nothing: it has no triangles.
+  std::optional<size_t> mesh(const SceneObject&, bool& placed);
+  size_t accessor(const void* data, size_t bytes, size_t count, int component_type, const char* type, int target);
+
+  // materials.cpp
+  /// The index of what an object's shader, emission, sides and interior are in one.
+  std::optional<size_t> material(const SceneObject&);
+  void surface(Json& m, const Component& shader);
+  void glass(Json& m, const Component& shader, bool thin);
+  void holes(Json& m, const Component& mask);
+  void emission(Json& m, const SceneObject&, const Component& emission);
+  void absorption(Json& m, const Component& interior);
+  /// The mean over wavelengths as a number; what is no constant is noted, and `otherwise`.
+  double scalar(const Component& of, const char* member, double otherwise);
+  /// A colour as factor and texture.
+  struct Look {
+    std::array<double, 3> factor{1, 1, 1};
+    std::optional<Json> texture;
+  };
+  Look look(const Component& of, const char* member, ColorUse);
+  Look look_of(const Component& map, ColorUse);
+  std::optional<Json> texture(const Component& image, double scale_u, double scale_v, double angle, double shift_u,
+                              double shift_v);
+  void extend(Json& m, const char* extension, Json content);
+
+  const Job& job;
+  Exporting& exporting;
+  Json document_;
+  std::string buffer_;
+  size_t made_nodes_ = 0;
+  std::map<const SceneObject*, std::pair<std::optional<size_t>, bool>> meshes_;
+  std::map<std::tuple<const Component*, const Component*, const Component*, std::string>, size_t> materials_;
+  std::map<std::pair<std::string, std::string>, size_t> textures_;
+};
+
+}  // namespace etendue::gltf_export

@@ -1,0 +1,96 @@
+#include "components/exporters/members.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <regex>
+
+#include "etendue/describe/description.h"
+#include "etendue/describe/registry.h"
+
+namespace etendue {
+
+namespace {
+
+double shortest(double value) { return double(float(value)) == value ? std::stod(fmt::format("{}", float(value))) : value; }
+
+}  // namespace
+
+double number_of(const Component& of, std::string_view member) {
+  const Value value = get(of, member);
+  const Number* n = value.as<Number>();
+  if (!n) return 0;
+  // Angles come in radians, and are floats in degrees.
+  return n->dimension == Dimension::angle ? shortest(double(float(n->value * 180 / std::numbers::pi))) : shortest(n->value);
+}
+bool truth_of(const Component& of, std::string_view member) {
+  const Value value = get(of, member);
+  const bool* is = value.as<bool>();
+  return is && *is;
+}
+std::string word_of(const Component& of, std::string_view member) {
+  const Value value = get(of, member);
+  if (const FilePath* path = value.as<FilePath>()) return path->empty() ? "" : path->resolved();
+  const std::string* text = value.as<std::string>();
+  return text ? *text : std::string();
+}
+Ref<Component> part_of(const Component& of, std::string_view member) {
+  const Value value = get(of, member);
+  const Ref<Component>* found = value.as<Ref<Component>>();
+  return found ? *found : nullptr;
+}
+std::vector<double> numbers_of(const Component& of, std::string_view member) {
+  const Value value = get(of, member);
+  const Numbers* found = value.as<Numbers>();
+  std::vector<double> all = found ? found->values : std::vector<double>();
+  for (double& x : all) x = shortest(x);
+  return all;
+}
+Color color_of(const Component& of, std::string_view member) {
+  const Value value = get(of, member);
+  if (const Color* found = value.as<Color>()) return *found;
+  const Number* n = value.as<Number>();
+  return n ? flat_spectrum(float(n->value)) : nullptr;
+}
+AnimatedTransform transform_of(const Component& of, std::string_view member) {
+  const Value value = get(of, member);
+  if (const auto* moving = value.as<AnimatedTransform>()) return *moving;
+  const auto* still = value.as<Transform>();
+  return still ? AnimatedTransform(*still) : AnimatedTransform();
+}
+const std::string& class_of(const Component& c) { return c.class_info().name; }
+
+Color constant_of(const Component& map) { return class_of(map) == "ConstantMap" ? color_of(map, "value") : nullptr; }
+
+std::optional<std::array<double, 3>> written_rgb(const Color& c) {
+  static const std::regex form(R"((?:([-+0-9.e]+) \* )?rgb\(([-+0-9.e]+), ([-+0-9.e]+), ([-+0-9.e]+)\))");
+  std::smatch match;
+  const std::string text = c->expression();
+  if (!std::regex_match(text, match, form)) return std::nullopt;
+  const double factor = match[1].matched ? std::stod(match[1]) : 1;
+  return std::array<double, 3>{factor * std::stod(match[2]), factor * std::stod(match[3]), factor * std::stod(match[4])};
+}
+
+std::vector<std::pair<int, double>> sampled(const Color& c, ColorUse use) {
+  std::vector<std::pair<int, double>> all;
+  for (int nm = 360; nm <= 830; nm += 5) all.emplace_back(nm, double(c->at(float(nm), use)));
+  return all;
+}
+
+std::array<double, 3> rgb_of(const Color& c, ColorUse use) {
+  if (const auto written = written_rgb(c)) return *written;
+  const Color white = illuminant_spectrum("D65");
+  const Xyz xyz = to_xyz(*c, use, use == ColorUse::radiance ? nullptr : white.get());
+  const auto& m = rgb_space("srgb").from_xyz;
+  const double x = double(xyz.x), y = double(xyz.y), z = double(xyz.z);
+  return {m[0] * x + m[1] * y + m[2] * z, m[3] * x + m[4] * y + m[5] * z, m[6] * x + m[7] * y + m[8] * z};
+}
+
+double field_of_view(const Component& camera) {
+  const double focal_length = number_of(camera, "focal_length");
+  if (!(focal_length > 0)) return number_of(camera, "fov");
+  return 2 * std::atan(number_of(camera, "sensor_size") / 2 / focal_length) * 180 / std::numbers::pi;
+}
+
+}  // namespace etendue

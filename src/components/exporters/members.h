@@ -1,0 +1,40 @@
+#pragma once
+// What exporters ask of the parts that they write.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "etendue/core/transform.h"
+#include "etendue/describe/color.h"
+#include "etendue/describe/component.h"
+
+namespace etendue {
+
+// Members of a part by name; what is of another kind, or no member of it, is 0, false, "" or null. Numbers that floats hold are
+// as they would be written (0.3, not 0.30000001192092896), angles are in degrees, files are paths that can be opened.
+double number_of(const Component&, std::string_view member);
+bool truth_of(const Component&, std::string_view member);
+std::string word_of(const Component&, std::string_view member);
+Ref<Component> part_of(const Component&, std::string_view member);
+std::vector<double> numbers_of(const Component&, std::string_view member);
+Color color_of(const Component&, std::string_view member);
+AnimatedTransform transform_of(const Component&, std::string_view member);
+const std::string& class_of(const Component&);
+
+/// The value of a map that is the same everywhere; null: it is not.
+Color constant_of(const Component& map);
+/// The components of a colour that was written as rgb(...), perhaps times a number; nothing: it was written otherwise.
+std::optional<std::array<double, 3>> written_rgb(const Color&);
+/// Wavelengths [nm] and values of a spectrum. Between whole nanometres everything is linear or smooth; steps of five are fine
+/// enough for what is smooth.
+std::vector<std::pair<int, double>> sampled(const Color&, ColorUse);
+/// Linear sRGB of a spectrum: of light as it is, of a reflectance under D65, of a coefficient as if it were one.
+std::array<double, 3> rgb_of(const Color&, ColorUse);
+/// The angle of view of a PerspectiveCamera across its fov_axis [deg].
+double field_of_view(const Component& camera);
+
+}  // namespace etendue

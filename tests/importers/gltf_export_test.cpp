@@ -1,0 +1,118 @@
+// What is exported to glTF is the same scene: read back, it makes the same picture, as far as glTF has what is in it.
+
+#include "etendue/exporter.h"
+#include "etendue/language/language.h"
+#include "mitsuba_support.h"
+#include "support/image_file.h"
+
+namespace etendue::mitsuba_test {
+namespace {
+
+struct Exported {
+  std::string text, told;
+  Imported back;
+};
+
+Exported export_job(const TemporaryFolder& folder, const std::string& job, const std::string& name) {
+  Exported result;
+  const Ref<Job> described = load_job_text(job, "test.etd", folder.path());
+  Exporting exporting(folder / name);
+  result.text = exporter_of(name)->write(*described, exporting);
+  for (const Error& note : exporting.notes()) result.told += note.what() + std::string("\n");
+  folder.write(name, result.text);
+  result.back = import_file(folder / name);
+  return result;
+}
+
+std::string job(const std::string& objects) {
+  return "wood = Lambertian { color: rgb(0.5, 0.3, 0.15) }\n"
+         "Job {\n renderer: PathTracer { samples: 1024, max_depth: 5 }\n camera: PerspectiveCamera { from: [0.5, 1, 6] m, to: "
+         "[0, 0, 0] m, fov: 35 deg, transform: rotate(5 deg, \"z\") }\n image: ImageBuffer { width: 12, height: 8, filter: "
+         "BoxFilter {} }\n scene: BvhScene { objects: [\n" +
+         objects + "\n] }\n}\n";
+}
+
+void expect_same(const std::string& described, const Exported& exported) {
+  ASSERT_TRUE(exported.back.job) << exported.back.told() << exported.text;
+  const Ref<Job> before = load_job_text(described, "test.etd");
+  exported.back.job->outputs.clear();
+  exported.back.job->renderer = before->renderer;
+  exported.back.job->image = before->image;
+  const Xyz a = test::measure(before).mean, b = test::measure(exported.back.job).mean;
+  EXPECT_NEAR(b.x / a.x, 1, 0.02) << exported.told;
+  EXPECT_NEAR(b.y / a.y, 1, 0.02);
+  EXPECT_NEAR(b.z / a.z, 1, 0.025);
+}
+
+TEST(GltfExport, MakesTheSamePictureWhenReadBack) {
+  const char* const scenes[] = {
+      // Shapes with and without transforms, nested and repeated; a luminaire of a given power, a point and a spot.
+      "Sphere { centre: [-1, 0, 0] m, shader: wood, transform: translate(0.2, 0, 0) * scale(1, 1.3, 1) },"
+      "Box { size: [1, 1, 1] m, centre: [1, 0, 0.5] m, shader: Lambertian { color: 0.7 } },"
+      "Instance { scene: EmbreeScene { objects: [Cylinder { shader: wood, radius: 0.3 m }] }, transform: translate(0, 1, 0) },"
+      "Rectangle { corner: [-4, -1, 4] m, edge_u: [8, 0, 0] m, edge_v: [0, 0, -8] m, shader: Lambertian { color: 0.4 } },"
+      "Rectangle { corner: [-1, 4, -1] m, edge_u: [2, 0, 0] m, edge_v: [0, 0, 2] m, sides: front, emission: DiffuseEmission {"
+      " radiance: rgb(4, 3, 2), power: 90 W } },"
+      "Point { position: [0, 2, 5] m, emission: DiffuseEmission { radiance: rgb(20, 30, 40) } },"
+      "Point { position: [3, 3, 3] m, emission: SpotEmission { radiance: rgb(60, 50, 40), axis: [-1, -1, -1], outer_angle: 30 "
+      "deg, inner_angle: 10 deg } }",
+      // A mirror under a distant light, and triangles with holes.
+      "Distant { direction: [0.3, -1, -0.4], emission: DiffuseEmission { radiance: rgb(3, 3, 2.5) } },"
+      "Sphere { centre: [-1, 0, 0] m, shader: PerfectSpecular { color: 0.8 } },"
+      "TriangleMesh { positions: [[-3, -1, -2], [3, -1, -2], [0, 3, -2]], triangles: [0, 1, 2], shader: MaskShader { opacity: "
+      "0.6, shader: Lambertian { color: 0.6 } } },"
+      "Rectangle { corner: [-4, -1, 4] m, edge_u: [8, 0, 0] m, edge_v: [0, 0, -8] m, shader: Lambertian { color: 0.4 } }",
+  };
+  for (const char* objects : scenes)
+    for (const char* name : {"out.gltf", "out.glb"}) {
+      SCOPED_TRACE(objects);
+      const TemporaryFolder folder;
+      expect_same(job(objects), export_job(folder, job(objects), name));
+    }
+}
+
+// An image whose four quarters differ, turned, scaled and shifted, on a square that fills the picture: each pixel is the same.
+TEST(GltfExport, LaysImagesWhereTheyWere) {
+  const TemporaryFolder folder;
+  const test::ImageFile image("quarters.png", {2, 2, 3, NumberType::uint8}, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0});
+  for (const char* placed :
+       {"", "scale: [2, 1.5], shift: [0.2, 0.4]", "angle: 30 deg", "scale: [1.3, 0.7], angle: 70 deg, shift: [0.1, 0.3]"}) {
+    const std::string described =
+        "Job { renderer: DirectRenderer { samples: 256 }\n camera: OrthographicCamera { from: [0, 0, 3] m, to: [0, 0, 0] m, "
+        "width: "
+        "2 m }\n image: ImageBuffer { width: 8, height: 8, filter: BoxFilter {} }\n scene: BvhScene { objects: [\n"
+        "Rectangle { corner: [-1, -1, 0] m, edge_u: [2, 0, 0] m, edge_v: [0, 2, 0] m, shader: Lambertian { color: "
+        "UvTransformMap { map: "
+        "ImageMap { file: \"" +
+        image.path + "\", interpolation: nearest }, " + placed +
+        " } } },\n"
+        "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: rgb(1, 1, 1) } }] } }";
+    Exported exported = export_job(folder, described, "out.gltf");
+    ASSERT_TRUE(exported.back.job) << exported.back.told() << exported.text;
+    const Ref<Job> before = load_job_text(described, "test.etd");
+    exported.back.job->outputs.clear();
+    exported.back.job->renderer = before->renderer;
+    exported.back.job->image->width = exported.back.job->image->height = 8;
+    exported.back.job->image->filter = before->image->filter;
+    const Image a = test::rendered(before)->picture(), b = test::rendered(exported.back.job)->picture();
+    // At most 1 / pi is between black and white, so that 256 samples scatter by 0.01; the difference by 0.014.
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) EXPECT_NEAR(b.at(x, y, 1), a.at(x, y, 1), 0.06) << placed << " at " << x << ", " << y;
+  }
+}
+
+TEST(GltfExport, TellsWhatItCannotExpress) {
+  const TemporaryFolder folder;
+  const std::string told =
+      export_job(folder,
+                 job("Torus { shader: PhongShader {} }, Environment { emission: DiffuseEmission {} },"
+                     "Sphere { shader: Lambertian { color: CheckerMap {} }, interior: HomogeneousVolume { scattering: 1 } }"),
+                 "out.gltf")
+          .told;
+  for (const char* words : {"Torus", "an environment is left out", "curved shapes become triangles", "a map like CheckerMap",
+                            "media do not scatter in glTF"})
+    EXPECT_NE(told.find(words), std::string::npos) << words << " in " << told;
+}
+
+}  // namespace
+}  // namespace etendue::mitsuba_test
