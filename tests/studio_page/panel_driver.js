@@ -171,6 +171,15 @@ globalThis.driver = (() => {
     return tryTexts(id, m.name, 0, ["0.25", "0.5", "2", "1", "-1"]);
   }
 
+  /** Brings a member back to its default by the button behind it. */
+  async function reset(id, member) {
+    const before = signature(id, member);
+    const button = fieldOf(id, member)?.querySelector(".after button");
+    if (!button) return "no button";
+    button.click();
+    return (await settled(id, member, before)) ?? "silent";
+  }
+
   /** Selects a component that the present panel refers to. */
   async function go(id) {
     const [holder] = component(id)?.uses ?? [];
@@ -178,5 +187,5 @@ globalThis.driver = (() => {
     await until(() => selectedId() === id, 2000);
   }
 
-  return { select, create, edit, go, selectedId };
+  return { select, create, edit, reset, go, selectedId };
 })();
