@@ -212,7 +212,7 @@ export const texts = {
     rate: "Rate",
     perSecond: (n: string) => `${n}/s`,
     bad: "Bad samples",
-    details: "Goals, error, queue, checks",
+    details: "Details",
     course: "Relative error over time",
     courseSays: (error: string) => `Relative error over time; now ${error}`,
     goals: "Algorithm and goals",

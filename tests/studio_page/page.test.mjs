@@ -118,7 +118,7 @@ test("axe finds nothing wrong, in light and dark, in any view", async (t) => {
     if (name === "dark") await on.emulateMedia({ colorScheme: "dark" });
     await check(on, `${name} picture`);
     await row(on, "Sphere").click();
-    await on.click("text=Goals, error, queue, checks");
+    await on.click("button:has-text('Details')");
     await check(on, `${name} panel`);
     await on.click("#tab-text");
     await check(on, `${name} text`);

@@ -93,7 +93,7 @@ test("renders stand side by side, live, with their errors", { timeout: 200000 },
 
 test("states are kept and gone on from; strategies stand apart; a class is checked", { timeout: 300000 }, async (t) => {
   const { page, program, studio } = await begin(t);
-  await page.click("text=Goals, error, queue, checks");
+  await page.click("button:has-text('Details')");
   await until("there are samples", async () => !(await page.locator("button:has-text('Keep the state')").isDisabled()), 30);
   await page.click("button:has-text('Keep the state')");
   await page.locator("dialog input[type=text]").fill("kept.state");

@@ -1,5 +1,5 @@
 // How much of each column of a picture has what brightness: a waveform.
-import { isBad, luminance, type Film } from "./film.ts";
+import { luminance, type Film } from "./film.ts";
 
 export interface Waveform {
   columns: number;
@@ -17,9 +17,8 @@ export function waveform(film: Film, columns = 240, low = -12, high = 8, rows = 
   const step = Math.max(1, Math.ceil(Math.sqrt((film.width * film.height) / 200000)));
   for (let y = 0; y < film.height; y += step) {
     for (let x = 0; x < film.width; x += step) {
-      const rgb = film.rgb(x, y);
-      const value = luminance(rgb);
-      if (isBad(rgb) || !(value > 0)) continue;
+      const value = luminance(film.rgb(x, y));
+      if (!(value > 0)) continue; // black, or no number
       const row = Math.floor(((Math.log2(value) - low) / (high - low)) * rows);
       const at = Math.floor((x / film.width) * columns) * rows + row;
       if (row >= 0 && row < rows) counts[at] = (counts[at] as number) + 1;

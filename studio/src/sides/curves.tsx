@@ -78,7 +78,7 @@ function make(parent: HTMLElement, dark: boolean, all: Course[]): UPlot {
         { ...axis, size: 28, values: (_u, v) => v.map((x) => (x === null ? "" : `${brief(x, 2)} s`)) },
         { ...axis, size: 52, values: (_u, v) => v.map((y) => (y === null ? "" : `${brief(y, 2)} %`)) },
       ],
-      series: [{}, ...all.map((_, i) => ({ stroke: lineColors[i % lineColors.length] as string, width: 1.8, points: { show: false }, spanGaps: true }))],
+      series: [{}, ...all.map((course, i) => ({ stroke: lineColors[i % lineColors.length] as string, width: 1.8, points: { show: course.length === 1 }, spanGaps: true }))],
     },
     [times, ...rows],
     parent,
