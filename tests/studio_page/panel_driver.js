@@ -77,7 +77,7 @@ globalThis.driver = (() => {
   };
   const complaint = (id, member) => fieldOf(id, member)?.querySelector("[role=alert]")?.textContent ?? "";
 
-  async function settled(id, member, before, ms = 4000) {
+  async function settled(id, member, before, ms = 20000) {
     return until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) ? "refused" : null), ms);
   }
 
@@ -93,7 +93,7 @@ globalThis.driver = (() => {
       set(entry, text);
       const said = complaint(id, member);
       key(entry, "Enter", { ctrlKey: true });
-      const end = await until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) && (complaint(id, member) !== said || !said) ? "refused" : null), said ? 600 : 4000);
+      const end = await until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) && (complaint(id, member) !== said || !said) ? "refused" : null), said ? 600 : 20000);
       entry.blur();
       if (end === "changed") return "changed";
       refused = complaint(id, member) || refused;
