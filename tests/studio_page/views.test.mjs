@@ -141,3 +141,19 @@ test("pictures are viewed without a document", { timeout: 200000 }, async (t) =>
   await checkAccess(page, "view");
   await checkInside(page, "view");
 });
+
+test("warnings stand in the text; the program begins again and the page is there again", { timeout: 300000 }, async (t) => {
+  const dark = scene.replace(", emission: DiffuseEmission { radiance: 8 }", "");
+  assert.notEqual(dark, scene);
+  const studio = await startStudio(t, dark, "--threads", "1");
+  const browser = await openBrowser(t);
+  const page = await openPage(t, browser, studio.address);
+  await page.click("#tab-text");
+  await page.locator(".cm-lintRange-warning").first().waitFor({ timeout: 60000 });
+  await page.click("button:has-text('Details')");
+  await page.click("button:has-text('Begin again')");
+  await page.locator(".ended").waitFor({ timeout: 30000 });
+  await page.locator(".ended").waitFor({ state: "detached", timeout: 90000 });
+  await page.locator("[role=treeitem]", { hasText: "Sphere" }).first().click();
+  await page.locator(".panel-title h2", { hasText: "Sphere" }).waitFor();
+});
