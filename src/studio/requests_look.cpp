@@ -182,7 +182,8 @@ Json wires_of(const Job& job, const Component& wanted, size_t most) {
     else
       wires.box(bounds);
     const auto world = [&](const Point3& p) { return triple(job.world_centre() + DoubleVector3(p - Point3{})); };
-    reply = {{"lines", std::move(wires.lines)}, {"whole", !wires.full()}, {"low", world(bounds.low)}, {"high", world(bounds.high)}};
+    reply = {
+        {"lines", std::move(wires.lines)}, {"whole", !wires.full()}, {"low", world(bounds.low)}, {"high", world(bounds.high)}};
     break;
   }
   return reply;

@@ -5,7 +5,7 @@ import { ControlStrip } from "./control/control.tsx";
 import { FileBrowser } from "./files/browser.tsx";
 import { Help } from "./help.tsx";
 import { remember, remembered } from "./memory.ts";
-import { dismiss, document_, line, notices, tab, type Tab } from "./model/state.ts";
+import { dismiss, document_, line, notices, tab, viewing, type Tab } from "./model/state.ts";
 import { Explanation } from "./panel/field.tsx";
 import { Panel } from "./panel/panel.tsx";
 import { Button, Divider, Tabs } from "./parts/parts.tsx";
@@ -13,6 +13,8 @@ import { Paths } from "./paths/paths.tsx";
 import { Picture } from "./picture/picture.tsx";
 import { SavePicture, savePicture } from "./picture/save.tsx";
 import { PictureToolbar } from "./picture/toolbar.tsx";
+import { Sides } from "./sides/sides.tsx";
+import { Strategies } from "./sides/strategies.tsx";
 import { Editor } from "./text/editor.tsx";
 import { texts } from "./texts.ts";
 import { TopBar } from "./top_bar.tsx";
@@ -31,10 +33,12 @@ function resize(which: "left" | "right") {
 
 export function App(): JSX.Element {
   const chosen = tab.value;
+  if (viewing.value) return <Viewing />;
   const tabs: { name: Tab; label: string }[] = [
     { name: "picture", label: texts.tabs.picture },
     { name: "text", label: texts.tabs.text },
     { name: "paths", label: texts.tabs.paths },
+    { name: "sides", label: texts.tabs.sides },
   ];
   return (
     <div class="app" style={{ gridTemplateColumns: `${left.value}px minmax(0, 1fr) ${right.value}px` }}>
@@ -56,6 +60,9 @@ export function App(): JSX.Element {
         <div class="tab-panel" id="panel-paths" role="tabpanel" aria-labelledby="tab-paths" hidden={chosen !== "paths"}>
           {chosen === "paths" && <Paths />}
         </div>
+        <div class="tab-panel" id="panel-sides" role="tabpanel" aria-labelledby="tab-sides" hidden={chosen !== "sides"}>
+          {chosen === "sides" && <Sides />}
+        </div>
         <ControlStrip />
       </main>
       <aside class="right" aria-label={texts.panel.label}>
@@ -71,8 +78,24 @@ export function App(): JSX.Element {
       <Sharing />
       <FileBrowser />
       {savePicture.value && <SavePicture />}
+      <Strategies />
       <Help />
       {line.value === "closed" && <p class="banner ended" role="alert">{texts.top.locked.closed}</p>}
+    </div>
+  );
+}
+
+/** Pictures without a document: `etendue view`. */
+function Viewing(): JSX.Element {
+  return (
+    <div class="app viewing">
+      <main class="middle" aria-label={texts.viewing.title}>
+        <h1 class="unseen">{texts.viewing.title}</h1>
+        <PictureToolbar />
+        <Picture />
+      </main>
+      <Notices />
+      <Help />
     </div>
   );
 }

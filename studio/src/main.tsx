@@ -28,7 +28,7 @@ function key(event: KeyboardEvent): void {
   else if (command && name === "o") void openDocument();
   else if (command && name === "enter") toggleRender();
   else if (event.key === "F1") helping.value = true;
-  else if (event.altKey && "123".includes(event.key)) tab.value = (["picture", "text", "paths"] as const)[Number(event.key) - 1] ?? "picture";
+  else if (event.altKey && "1234".includes(event.key)) tab.value = (["picture", "text", "paths", "sides"] as const)[Number(event.key) - 1] ?? "picture";
   else if (event.key === "F6") nextPane(event.shiftKey);
   else return;
   event.preventDefault();

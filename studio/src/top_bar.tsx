@@ -2,32 +2,17 @@
 import { signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { chooseFile } from "./files/browser.tsx";
-import { Refused } from "./model/protocol.ts";
 import { document_, line, locked, notify, readOnly } from "./model/state.ts";
-import { ask, demand, report } from "./model/studio.ts";
-import { Button, Dialog } from "./parts/parts.tsx";
+import { ask } from "./model/studio.ts";
+import { Button } from "./parts/parts.tsx";
 import { RenderButtons } from "./control/control.tsx";
+import { guarded, Question } from "./guarded.tsx";
 import { settle } from "./text/editor.tsx";
 import { texts } from "./texts.ts";
 import { isDark, theme } from "./theme.ts";
 
 const t = texts.top;
 export const helping = signal(false);
-/** What is to be done once it is clear that unsaved changes may be lost. */
-const asking = signal<{ text: string; yes: string; then: () => Promise<void> } | null>(null);
-
-async function guarded(what: string, arguments_: Record<string, unknown>, again: Record<string, unknown>, code: string, text: string, yes: string): Promise<boolean> {
-  try {
-    await demand(what, arguments_);
-    return true;
-  } catch (error) {
-    if (error instanceof Refused && error.code === code) {
-      asking.value = { text, yes, then: async () => void (await ask(what, { ...arguments_, ...again })) };
-    } else report(error);
-    return false;
-  }
-}
-
 export async function newDocument(): Promise<void> {
   await guarded("new", {}, { discard: true }, "busy", t.unsaved, t.discard);
 }
@@ -87,22 +72,5 @@ export function TopBar(): JSX.Element {
       <Button icon="help" label={t.help} keys="F1" onClick={() => (helping.value = true)} />
       <Question />
     </header>
-  );
-}
-
-function Question(): JSX.Element | null {
-  const what = asking.value;
-  if (!what) return null;
-  const close = (): void => {
-    asking.value = null;
-  };
-  return (
-    <Dialog title={t.sure} close={close}>
-      <p>{what.text}</p>
-      <footer>
-        <Button label={texts.common.cancel} onClick={close} />
-        <Button primary label={what.yes} onClick={() => (close(), void what.then())} />
-      </footer>
-    </Dialog>
   );
 }

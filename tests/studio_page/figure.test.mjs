@@ -203,6 +203,7 @@ test("figure 4.4 is built from nothing by mouse and keyboard, and renders to the
   await hands.press("Control+Shift+s");
   const name = page.locator("dialog input[type=text]");
   await name.fill("built.etd");
+  await page.locator("dialog button[type=submit]:enabled").waitFor();
   await hands.press("Enter");
   const file = join(studio.folder, "built.etd");
   await until("it is saved", async () => existsSync(file) && readFileSync(file, "utf8") === (await program.text()));

@@ -1,7 +1,9 @@
 // Starts the program's studio on a copy of a scene, and Debian's Chromium on its page. Ends both.
+import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
 import { spawn, execFileSync } from "node:child_process";
 import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -30,7 +32,17 @@ export async function startStudio(t, text, ...more) {
   const file = join(folder, "scene.etd");
   if (text !== null) writeFileSync(file, text);
   if (existsSync(join(repository, "scenes/data"))) cpSync(join(repository, "scenes/data"), join(folder, "data"), { recursive: true });
-  const child = spawn(program, ["studio", "--no-browser", "--page", page, ...more, ...(text === null ? [] : [file])], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+  const address = await startProgram(t, folder, ["studio", "--no-browser", "--page", page, ...more, ...(text === null ? [] : [file])]);
+  return { address, file, folder, read: () => readFileSync(file, "utf8") };
+}
+
+/** Starts `etendue view`; gives its address. */
+export function startView(t, folder, files) {
+  return startProgram(t, folder, ["view", "--no-browser", "--page", page, ...files]);
+}
+
+async function startProgram(t, folder, arguments_) {
+  const child = spawn(program, arguments_, { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
   let errors = "";
   child.stderr.on("data", (data) => (errors += data));
   let wanted = false;
@@ -43,7 +55,7 @@ export async function startStudio(t, text, ...more) {
     child.kill("SIGTERM");
     await ended;
   });
-  const address = await new Promise((done, fail) => {
+  return new Promise((done, fail) => {
     let said = "";
     child.stdout.on("data", (data) => {
       said += data;
@@ -52,7 +64,28 @@ export async function startStudio(t, text, ...more) {
     });
     child.on("exit", (code) => fail(new Error(`the studio ended with ${code}: ${errors}`)));
   });
-  return { address, file, folder, read: () => readFileSync(file, "utf8") };
+}
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+/** Fails for whatever axe finds wrong with what is on the page now. */
+export async function checkAccess(opened, what) {
+  await opened.evaluate(axe);
+  const { violations } = await opened.evaluate(() => globalThis.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"] }));
+  assert.deepEqual(violations.map((v) => `${what}: ${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 140)).join(" | ")}`), []);
+}
+
+/** Fails if anything reaches over the right or lower edge of the window. */
+export async function checkInside(opened, what) {
+  const over = await opened.evaluate(() => {
+    const found = [];
+    for (const e of document.querySelectorAll("button, input, select, h1, h2, canvas, [role=tab]")) {
+      const { left, right, width, height } = e.getBoundingClientRect();
+      if (width && height && e.checkVisibility() && (right > window.innerWidth + 1 || left < -1) && !e.closest(".unseen, .help")) found.push(e.outerHTML.slice(0, 120));
+    }
+    return found;
+  });
+  assert.deepEqual(over, [], what);
 }
 
 export async function openBrowser(t) {

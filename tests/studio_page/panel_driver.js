@@ -77,7 +77,7 @@ globalThis.driver = (() => {
   };
   const complaint = (id, member) => fieldOf(id, member)?.querySelector("[role=alert]")?.textContent ?? "";
 
-  async function settled(id, member, before, ms = 4000) {
+  async function settled(id, member, before, ms = 20000) {
     return until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) ? "refused" : null), ms);
   }
 
@@ -93,7 +93,7 @@ globalThis.driver = (() => {
       set(entry, text);
       const said = complaint(id, member);
       key(entry, "Enter", { ctrlKey: true });
-      const end = await until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) && (complaint(id, member) !== said || !said) ? "refused" : null), said ? 600 : 4000);
+      const end = await until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) && (complaint(id, member) !== said || !said) ? "refused" : null), said ? 600 : 20000);
       entry.blur();
       if (end === "changed") return "changed";
       refused = complaint(id, member) || refused;
@@ -171,6 +171,15 @@ globalThis.driver = (() => {
     return tryTexts(id, m.name, 0, ["0.25", "0.5", "2", "1", "-1"]);
   }
 
+  /** Brings a member back to its default by the button behind it. */
+  async function reset(id, member) {
+    const before = signature(id, member);
+    const button = fieldOf(id, member)?.querySelector(".after button");
+    if (!button) return "no button";
+    button.click();
+    return (await settled(id, member, before)) ?? "silent";
+  }
+
   /** Selects a component that the present panel refers to. */
   async function go(id) {
     const [holder] = component(id)?.uses ?? [];
@@ -178,5 +187,5 @@ globalThis.driver = (() => {
     await until(() => selectedId() === id, 2000);
   }
 
-  return { select, create, edit, go, selectedId };
+  return { select, create, edit, reset, go, selectedId };
 })();

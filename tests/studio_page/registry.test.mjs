@@ -77,7 +77,7 @@ function values(components, root) {
 const some = "AgXToneMap,MixMap,GaussianFilter,PathTracer,Sphere,Conductor,EnvironmentEmission,HomogeneousVolume,TriangleMesh,PngOutput,SobolSampler,PowerLightSampler,HeroWavelengths,BidirectionalMutation";
 const chosen = process.env.ETENDUE_CLASSES ?? some;
 const only = chosen === "all" ? null : chosen.split(",");
-test("every class is created and every member edited; saved, read again, undone", { timeout: 850000 }, async (t) => {
+test("every class is created and every member edited; saved, read again, undone", { timeout: 3000000 }, async (t) => {
   const studio = await startStudio(t, base, "--threads", "1");
   const browser = await openBrowser(t);
   const page = await openPage(t, browser, studio.address, { viewport: { width: 1280, height: 1400 } });

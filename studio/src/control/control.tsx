@@ -7,11 +7,14 @@ import { ask, demand, report } from "../model/studio.ts";
 import { remember, remembered } from "../memory.ts";
 import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
-import { components, locked, select } from "../model/state.ts";
+import { components, document_, locked, notify, select } from "../model/state.ts";
+import { chooseFile } from "../files/browser.tsx";
+import { guarded } from "../guarded.tsx";
 import { choosing } from "../tree/actions.ts";
 import { isUse } from "../tree/rows.ts";
 import { ErrorCurve } from "./curve.tsx";
 import { QueueView } from "./queue.tsx";
+import { TasksView } from "./tasks.tsx";
 
 const t = texts.control;
 
@@ -34,6 +37,20 @@ export function RenderButtons(): JSX.Element {
 
 export function toggleRender(): void {
   if (!readOnly.value) void ask(progress.value?.state === "rendering" ? "pause" : "start");
+}
+
+const stateFiles = [".state"];
+
+/** Keeps what is rendered so far in a file, from which any later session, or `etendue render --resume`, goes on. */
+async function saveState(): Promise<void> {
+  const base = (document_.value?.title ?? "scene").replace(/\.(etd|json)$/, "");
+  const file = await chooseFile({ title: t.saveState, endings: stateFiles, save: `${base}.state` });
+  if (file && (await guarded("save_state", { file }, { over: true }, "changed_on_disk", texts.top.exists(file), texts.top.over))) notify(texts.top.saved(file));
+}
+
+async function loadState(): Promise<void> {
+  const file = await chooseFile({ title: t.loadState, endings: stateFiles });
+  if (file && (await ask("load_state", { file }))) notify(t.loaded(file));
 }
 
 export function ControlStrip(): JSX.Element {
@@ -77,6 +94,7 @@ export function ControlStrip(): JSX.Element {
             <ErrorCurve />
           </div>
           <QueueView />
+          <TasksView />
         </div>
       )}
     </section>
@@ -130,6 +148,10 @@ function Goals(): JSX.Element {
       {field(t.goalTime, time, t.asWritten)}
       {field(t.goalError, error, t.asWritten)}
       <p class="dim">{t.goalsHelp}</p>
+      <div class="cluster wrap">
+        <Button icon="save" text label={t.saveState} disabled={readOnly.value || !progress.value?.samples} onClick={() => void saveState()} />
+        <Button icon="open" text label={t.loadState} disabled={readOnly.value || root.value === null} onClick={() => void loadState()} />
+      </div>
     </div>
   );
 }

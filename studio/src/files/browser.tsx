@@ -117,7 +117,7 @@ function Browser({ what, done }: { what: Wish; done: (file: string | null) => vo
       <form
         onSubmit={(e) => {
           e.preventDefault();
-          if (chosen.value) finish(full(chosen.value));
+          if (chosen.value && listing.value) finish(full(chosen.value));
         }}
       >
         <label class="stack">
@@ -126,7 +126,7 @@ function Browser({ what, done }: { what: Wish; done: (file: string | null) => vo
         </label>
         <footer>
           <Button label={texts.common.cancel} onClick={() => finish(null)} />
-          <button type="submit" class="button primary" disabled={!chosen.value}>{what.save === undefined ? texts.common.open : texts.common.save}</button>
+          <button type="submit" class="button primary" disabled={!chosen.value || !listing.value}>{what.save === undefined ? texts.common.open : texts.common.save}</button>
         </footer>
       </form>
     </Dialog>

@@ -29,12 +29,13 @@ export class Connection {
   ) {}
 
   connect(): void {
-    this.listener.line(this.failures ? "lost" : "connecting");
+    if (!this.ended) this.listener.line(this.failures ? "lost" : "connecting");
     const socket = new WebSocket(this.address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     socket.onopen = () => {
       this.failures = 0;
+      this.ended = false;
       this.listener.line("open");
       this.listener.opened();
     };
@@ -45,7 +46,7 @@ export class Connection {
     socket.onclose = () => this.lost(socket);
   }
 
-  /** The program says goodbye: it will not be back. */
+  /** The program says goodbye: it ends, or begins again, which is looked for during some minutes. */
   end(): void {
     this.ended = true;
     this.listener.line("closed");
@@ -82,8 +83,11 @@ export class Connection {
     if (socket !== this.socket) return;
     for (const { reject } of this.waiting.values()) reject(new Error("offline"));
     this.waiting.clear();
-    if (this.ended) return;
     ++this.failures;
+    if (this.ended) {
+      if (this.failures < 150) setTimeout(() => this.connect(), 2000);
+      return;
+    }
     this.listener.line("lost");
     setTimeout(() => this.connect(), Math.min(5000, 250 * 2 ** Math.min(this.failures, 5)));
   }

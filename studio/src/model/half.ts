@@ -30,3 +30,10 @@ function encodeNormal(size: number): number {
   const exponent = Math.floor(Math.log2(size));
   return ((exponent + 15) << 10) + Math.round((size / 2 ** exponent - 1) * 1024);
 }
+
+/** Half floats as JSON brings them: little endian, in base64. */
+export function fromBase64(text: string): Uint16Array {
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const view = new DataView(bytes.buffer);
+  return Uint16Array.from({ length: bytes.length >> 1 }, (_, i) => view.getUint16(2 * i, true));
+}

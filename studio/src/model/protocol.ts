@@ -132,6 +132,42 @@ export interface Progress {
   coarse: boolean;
 }
 
+/** A render beside the document's own: its text with another renderer, or other members. */
+export interface SideRender extends Progress {
+  render: number;
+  title: string;
+  renderer: string | null;
+  set: Record<string, string>;
+}
+
+/** A picture that is pinned, or a file that is viewed. */
+export interface PictureInfo {
+  name: string;
+  width: number;
+  height: number;
+  channels: string[];
+}
+
+export interface SavedView {
+  name: string;
+  class: string;
+  used: boolean;
+}
+
+/** Values as halves, in base64: linear sRGB is half × scale. */
+export interface PackedPicture {
+  scale: number;
+  halfs: string;
+}
+
+export interface Strategy {
+  strategy: string;
+  length: number;
+  mean: number;
+  weighted: PackedPicture;
+  unweighted: PackedPicture;
+}
+
 export interface QueueEntry {
   entry: number;
   file: string;
@@ -167,13 +203,21 @@ export interface Hello {
   tree: TreeState | null;
   progress: Progress;
   queue: Queue;
+  renders?: SideRender[];
+  viewing?: boolean;
+  pictures?: PictureInfo[];
 }
 
 export interface Task {
   task: number;
-  state: "running" | "done" | "failed";
+  title?: string;
+  state: "running" | "done" | "failed" | "ended";
   text?: string;
   fraction?: number;
+  passed?: boolean;
+  width?: number;
+  height?: number;
+  strategies?: Strategy[];
 }
 
 export interface Notice {
@@ -215,6 +259,8 @@ export interface Pixels {
   samples: number;
   coarse: boolean;
   finished: boolean;
+  /** Of which `watch` it is. */
+  slot: number;
   tiles: { x0: number; y0: number; x1: number; y1: number; values: Uint16Array | Uint8Array }[];
 }
 
@@ -243,6 +289,7 @@ export function readPixels(message: ArrayBuffer): Pixels {
     samples: word(36),
     coarse: (flags & 1) !== 0,
     finished: (flags & 2) !== 0,
+    slot: (flags >>> 8) & 255,
     tiles: [],
   };
   let at = (48 + 4 * count + 3) & ~3;

@@ -2,7 +2,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import { Classes } from "./classes.ts";
 import type { Line } from "./connection.ts";
-import type { Component, DocumentState, Name, Notice, Progress, Queue, Unit, Use } from "./protocol.ts";
+import type { Component, DocumentState, Name, Notice, PictureInfo, Progress, Queue, SideRender, Task, Unit, Use } from "./protocol.ts";
 
 export const line = signal<Line>("connecting");
 export const readOnly = signal(false);
@@ -24,6 +24,12 @@ export const root = signal<number | null>(null);
 export const components = signal<ReadonlyMap<number, Component>>(new Map());
 export const names = signal<Name[]>([]);
 export const progress = signal<Progress | null>(null);
+export const renders = signal<SideRender[]>([]);
+/** `etendue view`: pictures without a document. */
+export const viewing = signal(false);
+export const pictures = signal<PictureInfo[]>([]);
+/** What runs in processes of its own, the newest last. */
+export const tasks = signal<Task[]>([]);
 export const queue = signal<Queue>({ running: false, entries: [] });
 
 /** The course of the error: seconds and relative standard error, since the film was begun. */
@@ -34,7 +40,7 @@ export interface Shown extends Notice {
 }
 export const notices = signal<Shown[]>([]);
 
-export type Tab = "picture" | "text" | "paths";
+export type Tab = "picture" | "text" | "paths" | "sides";
 export const tab = signal<Tab>("picture");
 export const selected = signal<number | null>(null);
 /** In which of its places the selected component is meant; null: the first. */

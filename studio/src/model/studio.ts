@@ -2,7 +2,7 @@
 import { Classes } from "./classes.ts";
 import { Connection } from "./connection.ts";
 import { Refused } from "./protocol.ts";
-import type { Component, DocumentState, Event, Hello, Notice, Progress, Queue, Reply, TextChange, TextState, TreeState } from "./protocol.ts";
+import type { Component, DocumentState, Event, Hello, Notice, Progress, Queue, Reply, SideRender, Task, TextChange, TextState, TreeState } from "./protocol.ts";
 import * as state from "./state.ts";
 import { forgetPictures, takePixels } from "../picture/store.ts";
 import { texts } from "../texts.ts";
@@ -39,7 +39,12 @@ export async function hello(): Promise<void> {
     if (said.tree) takeTree(said.tree);
     takeProgress(said.progress);
     state.queue.value = said.queue;
+    state.renders.value = said.renders ?? [];
+    state.viewing.value = said.viewing ?? false;
+    state.pictures.value = said.pictures ?? [];
+    if (state.viewing.value && state.pictures.value[0] && watched.layer === undefined) watched = { what: "linear", layer: pictureLayer(state.pictures.value[0].name) };
     await connection.ask("watch", watched);
+    for (const more of sides.values()) await connection.ask("watch", more);
   } catch (error) {
     report(error);
   }
@@ -63,6 +68,12 @@ function take(event: Event): void {
       break;
     case "queue":
       state.queue.value = event as unknown as Queue;
+      break;
+    case "renders":
+      state.renders.value = (event as unknown as { renders: SideRender[] }).renders;
+      break;
+    case "task":
+      takeTask(event as unknown as Task);
       break;
     case "notice":
       state.notify((event as unknown as Notice).text, (event as unknown as Notice).kind);
@@ -148,6 +159,11 @@ function takeProgress(progress: Progress): void {
   state.progress.value = progress;
 }
 
+function takeTask(task: Task): void {
+  const before = state.tasks.value.find((t) => t.task === task.task);
+  state.tasks.value = before ? state.tasks.value.map((t) => (t === before ? { ...t, ...task } : t)) : [...state.tasks.value, task].slice(-12);
+}
+
 /** Shows why something could not be done. */
 export function report(error: unknown): void {
   if (error instanceof Refused) state.notify(error.message, "error");
@@ -168,6 +184,22 @@ export async function ask<T = Reply>(what: string, with_: Record<string, unknown
 /** Asks; throws what is refused. */
 export function demand<T = Reply>(what: string, with_: Record<string, unknown> = {}): Promise<T> {
   return connection.ask<T>(what, with_);
+}
+
+/** The layer by which a picture that is pinned, or viewed, is watched. */
+export function pictureLayer(name: string): string {
+  return `pin:${name}`;
+}
+
+/** What is watched beside the picture, by slot. */
+const sides = new Map<number, Record<string, unknown>>();
+
+/** Watches another render in a slot from 1 on; null: no longer. */
+export function watchSide(slot: number, render: number | null): void {
+  const what = { slot, ...(render === null ? { what: "none" } : { what: "linear", render }) };
+  if (render === null) sides.delete(slot);
+  else sides.set(slot, what);
+  if (state.line.value === "open") void ask("watch", what);
 }
 
 export function watch(what: Record<string, unknown>): void {

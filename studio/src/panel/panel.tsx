@@ -4,7 +4,8 @@ import type { JSX } from "preact";
 import { useLayoutEffect } from "preact/hooks";
 import { ownGroupsFirst, type Member } from "../model/classes.ts";
 import type { Component } from "../model/protocol.ts";
-import { classes, components, locked, placeOfSelected, select, selectedComponent } from "../model/state.ts";
+import { classes, components, locked, notify, placeOfSelected, readOnly, select, selectedComponent } from "../model/state.ts";
+import { ask } from "../model/studio.ts";
 import { Icon, kindIcon } from "../parts/icons.tsx";
 import { inline } from "../parts/markdown.tsx";
 import { Button } from "../parts/parts.tsx";
@@ -56,6 +57,11 @@ function Section({ name, members, component }: { name: string; members: Member[]
   );
 }
 
+/** Asks whether the class does what its interface promises; the answer comes with the checks below the picture. */
+async function check(name: string): Promise<void> {
+  if (await ask("conform", { class: name })) notify(t.checking(name));
+}
+
 function Head({ component }: { component: Component }): JSX.Element {
   const use = placeOfSelected.value;
   const off = locked.value !== null || component.written === "elsewhere";
@@ -84,6 +90,7 @@ function Head({ component }: { component: Component }): JSX.Element {
         {component.name && <span class="class">{component.class}</span>}
         <span class="spring" />
         {use && <Button label={t.replace} disabled={off} onClick={() => (choosing.value = { what: "replace", component, use })} />}
+        <Button icon="check" label={t.check} disabled={readOnly.value} onClick={() => void check(component.class)} />
         {component.written === "text" && use && <Button label={t.name} keys="F2" disabled={off} onClick={() => (renaming.value = component)} />}
       </div>
       {component.uses.length > 1 && (

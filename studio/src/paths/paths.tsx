@@ -7,7 +7,7 @@ import { Refused } from "../model/protocol.ts";
 import { progress, tab } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { Button } from "../parts/parts.tsx";
-import { mode, pathPixel } from "../picture/picture.tsx";
+import { mode, pathPixel } from "../picture/state.ts";
 import { texts } from "../texts.ts";
 import type { Replay, ReplayedPath, Vertex } from "./model.ts";
 import { pathColors, type Chosen } from "./space.ts";

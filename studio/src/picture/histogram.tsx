@@ -5,7 +5,7 @@ import { useRef } from "preact/hooks";
 import { texts } from "../texts.ts";
 import { isDark } from "../theme.ts";
 import { histogram, type Histogram } from "./film.ts";
-import { falseColor, falseRange, film, pixelsVersion, stops } from "./store.ts";
+import { falseColor, falseRange, pixelsVersion, shownFilm, stops } from "./store.ts";
 
 const width = 240;
 const height = 72;
@@ -16,7 +16,7 @@ export function HistogramView(): JSX.Element {
   const last = useRef({ at: 0, timer: 0 });
   useSignalEffect(() => {
     void pixelsVersion.value;
-    const now = film.value;
+    const now = shownFilm.value;
     if (!now) return;
     clearTimeout(last.current.timer);
     const wait = Math.max(0, last.current.at + 300 - performance.now());

@@ -7,6 +7,8 @@ export interface Marks {
   crop: readonly [number, number, number, number] | null;
   cursor: { x: number; y: number } | null;
   paths: { x: number; y: number } | null;
+  /** Pixels with samples that were no light. */
+  bad: readonly { x: number; y: number }[];
 }
 
 /** From how large a pixel on there is room for its numbers. */
@@ -19,6 +21,7 @@ export function drawOverlay(canvas: HTMLCanvasElement, film: Film, size: Size, v
   if (view.zoom >= numbersFrom && film.width === size.width) numbers(context, canvas, film, view);
   if (marks.crop) rectangle(context, view, marks.crop, "#ffd166", [6, 4]);
   if (marks.paths) rectangle(context, view, [marks.paths.x, marks.paths.y, marks.paths.x + 1, marks.paths.y + 1], "#5bc0ff", [], 3);
+  for (const { x, y } of marks.bad) ring(context, view, x, y);
   if (marks.cursor && view.zoom >= 4) {
     rectangle(context, view, [marks.cursor.x, marks.cursor.y, marks.cursor.x + 1, marks.cursor.y + 1], "#ffffff", []);
   }
@@ -36,6 +39,18 @@ function rectangle(context: CanvasRenderingContext2D, view: View, area: readonly
     context.strokeRect(Math.round(x0) - 0.5 - g, Math.round(y0) - 0.5 - g, Math.round(x1 - x0) + 2 * g + 1, Math.round(y1 - y0) + 2 * g + 1);
   }
   context.setLineDash([]);
+}
+
+/** A ring that is seen on anything, however small the pixel in it is. */
+function ring(context: CanvasRenderingContext2D, view: View, x: number, y: number): void {
+  const [cx, cy] = toCanvas(view, x + 0.5, y + 0.5);
+  for (const [style, width] of [["rgba(0,0,0,0.8)", 4], ["#ff4fd8", 2]] as const) {
+    context.strokeStyle = style;
+    context.lineWidth = width;
+    context.beginPath();
+    context.arc(cx, cy, Math.max(6, view.zoom), 0, 2 * Math.PI);
+    context.stroke();
+  }
 }
 
 function numbers(context: CanvasRenderingContext2D, canvas: HTMLCanvasElement, film: Film, view: View): void {

@@ -2,9 +2,10 @@
 import { computed, signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { brief, percent } from "../model/numbers.ts";
-import { line } from "../model/state.ts";
+import { line, pictures, viewing } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { texts } from "../texts.ts";
+import { zoom } from "./state.ts";
 import { luminance } from "./film.ts";
 import { pixelsVersion, samplesShown, shownFilm, size } from "./store.ts";
 
@@ -23,7 +24,12 @@ interface Probe extends Pixel {
 
 /** The pixel under the mouse, or where the arrow keys have brought the cursor. */
 export const cursor = signal<Pixel | null>(null);
+/** The picture that has been chosen in `etendue view`. */
+export const chosenPicture = signal<string | null>(null);
 export const probe = signal<Probe | null>(null);
+
+/** The name of the picture that is viewed; null for the render. */
+export const watchedPicture = computed(() => (viewing.value ? (chosenPicture.value ?? pictures.value[0]?.name ?? null) : null));
 
 let asking = false;
 let next: Pixel | null = null;
@@ -42,7 +48,8 @@ async function askProbe(): Promise<void> {
   const { x, y } = next;
   next = null;
   try {
-    probe.value = await demand<Probe>("probe", { x, y });
+    const picture = watchedPicture.value;
+    probe.value = picture === null ? await demand<Probe>("probe", { x, y }) : { ...(await demand<Probe>("picture_probe", { picture, x, y })), samples: 0, error: null };
   } catch {
     probe.value = null; // there is no picture yet
   } finally {
@@ -63,7 +70,7 @@ const here = computed(() => {
   return { ...pixel, rgb: film.rgb(x, y) };
 });
 
-const number = (v: number): string => (Number.isFinite(v) ? brief(v, 4) : String(v));
+const number = (v: number | string): string => (typeof v === "number" && Number.isFinite(v) ? brief(v, 4) : String(v));
 
 export function PixelNumbers(): JSX.Element {
   const now = here.value;
@@ -76,14 +83,14 @@ export function PixelNumbers(): JSX.Element {
           <Item label="RGB" value={(known?.rgb ?? now.rgb).map(number).join("  ")} width={22} />
           <Item label="XYZ" value={known ? known.xyz.map(number).join("  ") : "…"} width={22} />
           <Item label="Y" value={number(known ? known.xyz[1] : luminance(now.rgb))} width={7} />
-          <Item label={texts.picture.samples} value={brief(known?.samples ?? samplesShown.value)} width={6} />
-          <Item label={texts.picture.error} value={known?.error != null ? percent(known.error) : "–"} width={7} />
+          {!viewing.value && <Item label={texts.picture.samples} value={brief(known?.samples ?? samplesShown.value)} width={6} />}
+          {!viewing.value && <Item label={texts.picture.error} value={known?.error != null ? percent(known.error) : "–"} width={7} />}
           {Object.entries(known?.layers ?? {}).map(([name, v]) => (
             <Item key={name} label={name} value={(Array.isArray(v) ? v : [v]).map(number).join("  ")} width={6} />
           ))}
         </dl>
       ) : (
-        <span class="dim">{size.value.width ? texts.picture.size(size.value.width, size.value.height, samplesShown.value) : ""}</span>
+        <span class="dim">{size.value.width ? texts.picture.size(size.value.width, size.value.height, samplesShown.value, percent(zoom.value)) : ""}</span>
       )}
     </div>
   );

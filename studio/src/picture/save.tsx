@@ -6,7 +6,7 @@ import { demand } from "../model/studio.ts";
 import { Refused } from "../model/protocol.ts";
 import { Button, Dialog } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
-import { takeScreenshot } from "./picture.tsx";
+import { takeScreenshot } from "./canvas.ts";
 
 export const savePicture = signal(false);
 const t = texts.picture;

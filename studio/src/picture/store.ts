@@ -38,8 +38,22 @@ export const split = signal(0.5);
 
 export const shownFilm = computed(() => coarse.value ?? mixed.value ?? film.value);
 
+/** Pictures of renders beside the document's own, by slot. */
+export const sideFilms = signal<ReadonlyMap<number, Film>>(new Map());
+
+function takeSide(pixels: Pixels): void {
+  const { fullWidth, fullHeight, slot, coarse: isCoarse, x0: left, y0: top, width, height } = pixels;
+  const [w, h, dx, dy] = isCoarse ? [width, height, 0, 0] : [fullWidth, fullHeight, left, top];
+  const old = sideFilms.value.get(slot);
+  const to = old?.width === w && old.height === h ? old : new Film(w, h);
+  to.rescale(pixels.scale);
+  for (const { x0, y0, x1, y1, values } of pixels.tiles) to.write({ x0: x0 + dx, y0: y0 + dy, x1: x1 + dx, y1: y1 + dy }, values as Uint16Array);
+  sideFilms.value = new Map(sideFilms.value).set(slot, to);
+}
+
 export function takePixels(message: ArrayBuffer): void {
   const pixels = readPixels(message);
+  if (pixels.slot > 0) return takeSide(pixels);
   size.value = { width: pixels.fullWidth, height: pixels.fullHeight };
   samplesShown.value = pixels.samples;
   if (pixels.kind === "linear") takeLinear(pixels);

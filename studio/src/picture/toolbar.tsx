@@ -1,17 +1,20 @@
 // The row of tools above the picture.
-import { computed } from "@preact/signals";
 import type { JSX } from "preact";
-import { document_, progress, readOnly } from "../model/state.ts";
-import { ask, watch } from "../model/studio.ts";
-import { brief } from "../model/numbers.ts";
+import { document_, progress, readOnly, tab, viewing } from "../model/state.ts";
+import { pictureLayer, watch } from "../model/studio.ts";
 import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
 import { frameSelected } from "./camera.ts";
+import { badMarks } from "./bad.ts";
 import { automaticStops } from "./film.ts";
 import { HistogramView } from "./histogram.tsx";
-import { command, crop, mode, setCrop, zoom, type Mode } from "./picture.tsx";
+import { command, crop, mode, movesCamera, pathPixel, setCrop, type Mode } from "./state.ts";
+import { watchedPicture } from "./readout.tsx";
 import { savePicture } from "./save.tsx";
 import * as store from "./store.ts";
+import { ViewedPictures } from "./viewed.tsx";
+import { Views } from "./views.tsx";
+import { WaveformView } from "./waveform.tsx";
 
 const t = texts.picture;
 
@@ -22,35 +25,35 @@ function setCurve(curve: store.Curve): void {
 
 /** Asks for the pixels that what is chosen needs. */
 function follow(): void {
-  if (store.curve.value === "program" && !store.falseColor.value && store.compare.value === "none" && !store.layer.value) {
+  if (store.curve.value === "program" && watchedPicture.value === null && !store.falseColor.value && store.compare.value === "none" && !store.layer.value) {
     watch({ what: "toned" });
-  } else watch(store.layer.value ? { what: "linear", layer: store.layer.value } : { what: "linear" });
+  } else if (watchedPicture.value !== null) watch({ what: "linear", layer: pictureLayer(watchedPicture.value) });
+  else watch(store.layer.value ? { what: "linear", layer: store.layer.value } : { what: "linear" });
 }
 
-const zoomText = computed(() => `${brief(zoom.value * 100, 3)} %`);
-
 export function PictureToolbar(): JSX.Element {
-  const modes: { name: Mode; label: string; icon: "search" | "crop" | "orbit" | "SceneObject" | "link" }[] = [
+  const all: { name: Mode; label: string; icon: "search" | "crop" | "orbit" | "fly" | "SceneObject" | "link" }[] = [
     { name: "look", label: t.modes.look, icon: "search" },
     { name: "pick", label: t.modes.pick, icon: "SceneObject" },
     { name: "orbit", label: t.modes.orbit, icon: "orbit" },
+    { name: "fly", label: t.modes.fly, icon: "fly" },
     { name: "crop", label: t.modes.crop, icon: "crop" },
     { name: "paths", label: t.modes.paths, icon: "link" },
   ];
+  const modes = viewing.value ? [] : all;
   return (
     <div class="toolbar picture-bar" role="toolbar" aria-label={t.toolbar}>
       <div class="cluster" role="group" aria-label={t.mouse}>
         {modes.map((m) => (
-          <Button key={m.name} icon={m.icon} label={m.label} pressed={mode.value === m.name} disabled={m.name === "orbit" && readOnly.value}
+          <Button key={m.name} icon={m.icon} label={m.label} pressed={mode.value === m.name} disabled={movesCamera(m.name) && readOnly.value}
             onClick={() => (mode.value = m.name)} />
         ))}
         {crop.value && <Button label={t.wholePicture} onClick={() => void setCrop(null)} />}
-        {mode.value === "orbit" && <Button icon="target" label={t.frame} onClick={frameSelected} />}
+        {movesCamera(mode.value) && <Button icon="target" label={t.frame} onClick={frameSelected} />}
       </div>
       <div class="cluster" role="group" aria-label={t.zoom}>
         <Button icon="fit" label={t.fit} keys="F" onClick={() => command("fit")} />
         <Button label="1:1" keys="1" onClick={() => command("one")} />
-        <output class="zoom">{zoomText.value}</output>
       </div>
       <Exposure />
       <select aria-label={t.curve} title={t.curve} value={store.curve.value} onChange={(e) => setCurve(e.currentTarget.value as store.Curve)}>
@@ -62,6 +65,7 @@ export function PictureToolbar(): JSX.Element {
       </select>
       <Layers />
       <div class="cluster end">
+        {viewing.value ? <ViewedPictures /> : <Views />}
         <details class="drop">
           <summary class="button" title={t.more}>{t.more}</summary>
           <More />
@@ -120,6 +124,7 @@ function More(): JSX.Element {
   return (
     <div class="drop-content">
       <HistogramView />
+      <WaveformView />
       <label class="check">
         <input
           type="checkbox"
@@ -146,11 +151,20 @@ function More(): JSX.Element {
         <input type="checkbox" checked={store.markBad.value} onChange={(e) => (store.markBad.value = e.currentTarget.checked)} />
         {t.markBad(progress.value?.bad_samples ?? 0)}
       </label>
+      {badMarks.value.length > 0 && (
+        <ul class="plain scroll bad-list" aria-label={t.badList}>
+          {badMarks.value.slice(0, 50).map((b) => (
+            <li key={`${b.x}.${b.y}.${b.sample}`}>
+              <button type="button" class="link" onClick={() => ((pathPixel.value = { x: b.x, y: b.y }), (tab.value = "paths"))}>{t.badAt(b.x, b.y, b.kind)}</button>
+            </li>
+          ))}
+        </ul>
+      )}
       <hr />
       <div class="cluster">
         <Button icon="pin" text label={pinned ? t.pinAgain : t.pin} disabled={!store.film.value}
           onClick={() => {
-            store.pin(t.pinnedTitle(document_.value?.title ?? "", store.samplesShown.value));
+            store.pin(t.pinnedTitle(watchedPicture.value ?? document_.value?.title ?? "", store.samplesShown.value));
             follow();
           }} />
         {pinned && <Button label={t.unpin} onClick={() => (store.unpin(), follow())} />}
@@ -173,16 +187,8 @@ function More(): JSX.Element {
       )}
       <hr />
       <div class="cluster">
-        <Button icon="save" text label={t.save} disabled={!store.film.value} onClick={() => (savePicture.value = true)} />
-        <Button label={t.badList} onClick={() => void listBad()} />
+        <Button icon="save" text label={t.save} disabled={!store.film.value || viewing.value} onClick={() => (savePicture.value = true)} />
       </div>
     </div>
   );
-}
-
-async function listBad(): Promise<void> {
-  const said = await ask<{ samples: { x: number; y: number; kind: string }[] }>("bad_samples");
-  if (!said) return;
-  const { notify } = await import("../model/state.ts");
-  notify(said.samples.length ? said.samples.slice(0, 8).map((s) => `${s.x}, ${s.y}: ${s.kind}`).join("; ") : t.noBad);
 }

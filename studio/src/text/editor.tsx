@@ -14,6 +14,7 @@ import { browser, components, document_, locked, readOnly, select, selectedCompo
 import { ask, connection, demand, followText, hello, report, textNow } from "../model/studio.ts";
 import { Markdown } from "../parts/markdown.tsx";
 import { Button } from "../parts/parts.tsx";
+import { warnings } from "./warnings.ts";
 import { texts } from "../texts.ts";
 import { language } from "./language.ts";
 import { Sync, type Answer } from "./sync.ts";
@@ -70,7 +71,7 @@ function showProblems(errors: Problem[]): void {
   if (!view) return;
   shownErrors = errors;
   const length = view.state.doc.length;
-  view.dispatch(setDiagnostics(view.state, [...problemsAt(errors, "error", length), ...problemsAt(document_.value?.warnings ?? [], "warning", length)]));
+  view.dispatch(setDiagnostics(view.state, [...problemsAt(errors, "error", length), ...problemsAt(warnings.peek(), "warning", length)]));
 }
 
 async function complete(context: CompletionContext): Promise<CompletionResult | null> {
@@ -201,6 +202,7 @@ function begin(parent: HTMLElement): () => void {
     } else if (event.changes) sync?.changed(event, event.by === browser.value && event.request === lastTextRequest);
   });
   const endProblems = effect(() => {
+    void warnings.value;
     const now = document_.value;
     if (now) queueMicrotask(() => showProblems(now.errors.length ? now.errors : now.draft ? shownErrors : []));
   });

@@ -87,6 +87,34 @@ export async function moveTo(use: Use, target: Use): Promise<void> {
   await ask("move", { ...place(use), to, ...(same ? {} : { component_to: target.id, member_to: target.member }) });
 }
 
+/** The list of a component into which what stands in `use` can be dragged: not into itself, nor where it is. */
+export function placeInside(use: Use, into: Component): Use | null {
+  const value = components.value.get(use.id)?.members[use.member]?.value;
+  const entry = Array.isArray(value) && use.index !== undefined ? value[use.index] : undefined;
+  const moved = typeof entry === "object" && entry !== null && "component" in entry ? components.value.get(entry.component as number) : undefined;
+  if (!moved || into.written !== "text" || into.id === use.id || isInside(into, moved.id)) return null;
+  const list = classes.value.find(into.class)?.members.find((m) => m.type === "component" && m.list && classes.value.isA(moved.class, m.class ?? ""));
+  const there = list && into.members[list.name]?.value;
+  return list ? { id: into.id, member: list.name, index: Array.isArray(there) ? there.length : 0 } : null;
+}
+
+/** Whether a component is, or is held by, the one with a number. */
+function isInside(component: Component | undefined, id: number): boolean {
+  for (let at = component, i = 0; at && i < 1000; ++i) {
+    if (at.id === id) return true;
+    const use: Use | undefined = at.uses[0];
+    at = use && components.value.get(use.id);
+  }
+  return false;
+}
+
+/** What is dropped on a row goes into what stands there, if that has a list for it; else before it. */
+export async function drop(use: Use, onto: Component, place: Use | null): Promise<void> {
+  const inside = placeInside(use, onto);
+  if (inside) await moveTo(use, inside);
+  else if (place) await moveTo(use, place);
+}
+
 export async function share(use: Use, with_: number): Promise<void> {
   if (await ask("share", { ...place(use), with: with_ })) select(with_, use);
 }

@@ -122,10 +122,11 @@ export function Tree(): JSX.Element {
               current={first + i === current.value}
               target={first + i === over.value}
               drag={(use) => (dragged.value = use)}
+              inside={dragged.value !== null && actions.placeInside(dragged.value, row.component) !== null}
               enter={(at) => (over.value = dragged.value ? at : -1)}
-              drop={(use) => {
+              drop={(onto) => {
                 over.value = -1;
-                if (dragged.value && use) void actions.moveTo(dragged.value, use);
+                if (dragged.value && onto) void actions.drop(dragged.value, onto.component, onto.use);
                 dragged.value = null;
               }}
             />
@@ -161,17 +162,19 @@ interface RowProps {
   current: boolean;
   target: boolean;
   drag: (use: Use | null) => void;
+  /** What is dragged may be put into it, at the end of one of its lists. */
+  inside: boolean;
   enter: (at: number) => void;
-  drop: (use: Use | null) => void;
+  drop: (row: Row | null) => void;
 }
 
-function RowView({ row, at, current, target, drag, enter, drop }: RowProps): JSX.Element {
+function RowView({ row, at, current, target, inside, drag, enter, drop }: RowProps): JSX.Element {
   const { component, use, depth, expanded } = row;
   const shared = component.uses.length > 1;
   return (
     <div
       id={`row-${at}`}
-      class={`row${current ? " current" : ""}${component.written === "default" ? " default" : ""}${target ? " target" : ""}`}
+      class={`row${current ? " current" : ""}${component.written === "default" ? " default" : ""}${target ? (inside ? " target-inside" : " target") : ""}`}
       style={{ top: `${at * rowHeight}px`, paddingLeft: `${6 + depth * 14}px` }}
       role="treeitem"
       aria-level={depth + 1}
@@ -182,13 +185,13 @@ function RowView({ row, at, current, target, drag, enter, drop }: RowProps): JSX
       draggable={use?.index !== undefined && locked.value === null}
       onDragStart={() => drag(use)}
       onDragOver={(e) => {
-        if (use?.index === undefined) return;
+        if (use?.index === undefined && !inside) return enter(-1);
         e.preventDefault();
         enter(at);
       }}
       onDrop={(e) => {
         e.preventDefault();
-        drop(use);
+        drop(row);
       }}
       onDragEnd={() => drop(null)}
       onClick={() => select(component.id, use)}
