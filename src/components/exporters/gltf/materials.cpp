@@ -220,6 +220,7 @@ void Writer::glass(Json& m, const Component& s, bool thin) {
                        (outside ? double(outside->at(at_d_line, ColorUse::coefficient)) : 1.0);
   extend(m, "KHR_materials_ior", {{"ior", index}});
   if (index < 1) exporting.inexact("an index of refraction below that around is 1 in glTF", &s);
+  if (thin) exporting.inexact("light between the two faces of a pane is as glTF's thin walls have it", &s);
   if (!thin) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
   if (!thin && ior->varies()) {
     // KHR_materials_dispersion: 20 over the Abbe number (n_d - 1) / (n_F - n_C).

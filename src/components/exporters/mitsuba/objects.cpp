@@ -198,15 +198,17 @@ void Writer::medium(Node shape, const Component& v) {
   } else {
     const Color a = color_of(v, "absorption"), s = color_of(v, "scattering");
     std::string total, albedo;
+    bool scatters = false;
     for (int nm = 360; nm <= 830; nm += 5) {
       const double absorbed = double(a->at(float(nm), ColorUse::coefficient)),
                    scattered = double(s->at(float(nm), ColorUse::coefficient));
       const double sum = absorbed + scattered;
+      scatters = scatters || scattered > 0;
       total += fmt::format("{}{}:{:.7g}", nm > 360 ? ", " : "", nm, sum);
       albedo += fmt::format("{}{}:{:.7g}", nm > 360 ? ", " : "", nm, sum > 0 ? scattered / sum : 0);
     }
     value(n, "spectrum", "sigma_t", total);
-    value(n, "spectrum", "albedo", albedo);
+    value(n, "spectrum", "albedo", scatters ? albedo : "0");  // a table of nothing but zeros is refused there
   }
   const double g = number_of(v, "anisotropy");
   Node phase = plugin(n, "phase", g == 0 ? "isotropic" : "hg");

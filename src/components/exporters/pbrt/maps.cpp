@@ -60,8 +60,7 @@ std::string Writer::texture(const Component& map, bool numbers) {
              (part_of(map, "map")->class_info().name == "ImageMap" || part_of(map, "map")->class_info().name == "CheckerMap")) {
     const Ref<Component> changed = part_of(map, "map");
     const bool is_image = changed->class_info().name == "ImageMap";
-    const std::vector<double> repeat = numbers_of(*changed, "repeat"),
-                              scale = numbers_of(map, "scale"),
+    const std::vector<double> repeat = numbers_of(*changed, "repeat"), scale = numbers_of(map, "scale"),
                               shift = numbers_of(map, "shift");
     const std::string where =
         fmt::format(" \"float uscale\" {} \"float vscale\" {} \"float udelta\" {} \"float vdelta\" {}", repeat[0] * scale[0],
