@@ -64,7 +64,8 @@ std::vector<std::string> renderers_for(PathClass kind) {
   std::vector<std::string> names;
   const ClassInfo* interface = Registry::instance().find("Renderer");
   for (const ClassInfo* info : Registry::instance().subclasses(*interface))
-    if (info != interface && !info->abstract() && (ref_cast<Renderer>(create(*info))->finds() & kind)) names.push_back(info->name);
+    if (info != interface && !info->abstract() && (ref_cast<Renderer>(create(*info))->finds() & kind))
+      names.push_back(info->name);
   return names;
 }
 

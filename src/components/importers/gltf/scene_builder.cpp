@@ -164,7 +164,8 @@ Ref<Scene> SceneBuilder::shared(size_t mesh) {
   Ref<Scene>& scene = shared_[mesh];
   const std::vector<Ref<SceneObject>> objects = primitives(mesh, PartName{false, mesh, 0, {}, 0});
   if (objects.empty()) return scene;
-  scene = ref_cast<Scene>(importing_.make(imported_structure, at(), plain_name(text(document_.element("meshes", mesh), "name"))));
+  scene =
+      ref_cast<Scene>(importing_.make(imported_structure, at(), plain_name(text(document_.element("meshes", mesh), "name"))));
   scene->objects = objects;
   return scene;
 }
