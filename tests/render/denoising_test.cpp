@@ -103,7 +103,7 @@ TEST(Denoising, LuminairesAreWhiteAndNothingIsBlack) {
 
 TEST(Denoising, GuidesOfACropAreThoseOfTheWhole) {
   const auto guides = [](const std::vector<int>& crop) {
-    const Ref<Job> job = load_job("scenes/cornell_box.etd");
+    const Ref<Job> job = load_job(ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd");
     job->image->width = job->image->height = 40;
     job->image->crop = crop;
     prepare_tree(*job);
@@ -133,7 +133,7 @@ class HalvingDenoiser final : public Denoiser {
 const Register<HalvingDenoiser> halving;
 
 TEST(Denoising, TheTextsTellOfTheBiasAndLayersOfNoiseAreLeftOut) {
-  const Ref<Job> job = load_job("scenes/cornell_box.etd");
+  const Ref<Job> job = load_job(ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd");
   job->image->width = job->image->height = 6;
   job->image->layers = {"variance", "depth"};
   job->image->path_lengths = 2;
@@ -160,7 +160,7 @@ TEST(Denoising, OpenImageDenoiseComesNearerToTheTruth) {
   } catch (const Error& error) {
     GTEST_SKIP() << error.what();
   }
-  const Ref<Job> job = load_job("scenes/cornell_box.etd");
+  const Ref<Job> job = load_job(ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd");
   job->image->width = job->image->height = 64;
   job->image->filter = ref_cast<Filter>(Registry::instance().create("BoxFilter"));
   job->renderer->samples = 8;
@@ -169,7 +169,7 @@ TEST(Denoising, OpenImageDenoiseComesNearerToTheTruth) {
   const Image with = denoised(*denoiser, *job, picture, 1);
   denoiser->guide_samples = 0;
   const Image without = denoised(*denoiser, *job, picture, 1);
-  const Ref<Job> reference = load_job("scenes/cornell_box.etd");
+  const Ref<Job> reference = load_job(ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd");
   reference->image->width = reference->image->height = 64;
   reference->image->filter = job->image->filter;
   reference->renderer->samples = 256;
