@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "moving_triangles.h"
+#include "sound_ray.h"
 
 namespace etendue {
 
@@ -56,8 +57,8 @@ struct EmbreeClock {
 void attach_moving_triangles(RTCScene, const MovingTriangleView&, RTCBuildQuality,
                              const std::function<void(unsigned)>& attached);
 
-/// Embree ends the program when a ray is not made of numbers below 1.8e18 (FLT_LARGE in its math.h), where squares of sums
-/// still are floats: such a ray is one without length, which meets nothing.
+/// Embree ends the program when a ray is not made of numbers below 1.8e18 (FLT_LARGE in its math.h): such a ray becomes one
+/// without length, which meets nothing.
 inline void set_embree_ray(RTCRay& to, const Ray& ray, const EmbreeClock& clock = {}) {
   to.org_x = ray.origin.x;
   to.org_y = ray.origin.y;
@@ -72,9 +73,7 @@ inline void set_embree_ray(RTCRay& to, const Ray& ray, const EmbreeClock& clock 
   to.mask = ~0u;
   to.id = 0;
   to.flags = 0;
-  bool taken = true;
-  for (int k = 0; k < 3; ++k) taken &= std::abs(ray.origin[k]) < 1e18f && std::abs(ray.direction[k]) < 1e18f;
-  if (taken) [[likely]]
+  if (squares_are_floats(ray)) [[likely]]
     return;
   to.org_x = to.org_y = to.org_z = to.dir_x = to.dir_y = to.tfar = 0;
   to.dir_z = 1;

@@ -230,7 +230,9 @@ TEST(SceneStructures, RaysBeyondWhatFloatsCanSquareMeetNothing) {
     const Ref<Scene> one = scene(structure, {object("Sphere", {}), object("Rectangle", {})});
     Hit hit;
     for (const float far : {2e18f, 1e20f, 1e38f, infinity, std::nanf("")})
-      for (const Ray& r : {ray({0, 0, far}, {0, 0, 1}), ray({far, 0, 0}, {0, 1, 0}), ray({0, 3, 0}, {0, far, 0})}) {
+      for (const Ray& r :
+           {ray({0, 0, far}, {0, 0, 1}), ray({far, 0, 0}, {0, 1, 0}), ray({0, 3, 0}, {0, far, 0}),
+            ray({far, far, far}, {1, 1, 1}), ray({-far, -far, -far}, {1, 1, 1}), ray({0, 3, 0}, {far, far, far})}) {
         EXPECT_FALSE(one->nearest(r, hit));
         EXPECT_FALSE(one->any(r));
       }

@@ -291,7 +291,7 @@ class EnvironmentEmission final : public EmissionShader {
       for (size_t x = 0; x < w; ++x)
         for (size_t c = 0; c < 3; ++c) sums[c] += double(image_.rgb[(y * w + x) * 3 + c]) * solid_angles[y];
     }
-    texels_.build(std::move(importance), w, solid_angles);
+    texels_.build(importance, w, solid_angles);
     for (size_t c = 0; c < 3; ++c) mean_[c] = float(sums[c] / (4 * 3.14159265358979323846));
   }
 

@@ -19,8 +19,7 @@ void TexelDistribution::make_guide(const float* cumulative, size_t count, std::u
   }
 }
 
-void TexelDistribution::build(std::vector<float> weights, size_t width, const std::vector<double>& measures) {
-  weights_ = std::move(weights);
+void TexelDistribution::build(const std::vector<float>& weights, size_t width, const std::vector<double>& measures) {
   width_ = width;
   measures_.assign(measures.begin(), measures.end());
   const size_t height = measures.size();
@@ -29,9 +28,9 @@ void TexelDistribution::build(std::vector<float> weights, size_t width, const st
   total_ = 0;
   for (size_t y = 0; y < height; ++y) {
     double row = 0, sum = 0;
-    for (size_t x = 0; x < width; ++x) row += double(weights_[y * width + x]);
+    for (size_t x = 0; x < width; ++x) row += double(weights[y * width + x]);
     for (size_t x = 0; x < width; ++x) {
-      sum += double(weights_[y * width + x]);
+      sum += double(weights[y * width + x]);
       columns_[y * width + x] = row > 0 ? float(sum / row) : float(x + 1) / float(width);
     }
     row_sums[y] = row * measures[y];
@@ -51,24 +50,20 @@ void TexelDistribution::build(std::vector<float> weights, size_t width, const st
 }
 
 /// An interval of the cumulative distribution; u becomes the uniform place in it.
-size_t TexelDistribution::Guided::find(float& u, float& share) const {
+size_t TexelDistribution::Guided::find(float& u) const {
   const size_t k = std::min(size_t(u * float(guides)), guides - 1);
   const size_t first = guide[k], last = k + 1 < guides ? guide[k + 1] : count - 1;
   const size_t i = std::min(size_t(std::upper_bound(cumulative + first, cumulative + last + 1, u) - cumulative), count - 1);
   const float low = i == 0 ? 0 : cumulative[i - 1], high = cumulative[i];
-  share = high - low;
   u = high > low ? clamp((u - low) / (high - low), 0, one_minus_epsilon) : 0.5f;
   return i;
 }
 
-// The density comes from the numbers that made the choice: to look the texel's weight up would wait for memory once more, and
-// be off by what they were rounded by.
 TexelDistribution::Choice TexelDistribution::choose(Point2 u) const {
-  float row = 0, column = 0;
-  const size_t y = Guided{rows_.data(), rows_.size(), row_guide_.data(), row_guide_.size()}.find(u.y, row);
+  const size_t y = Guided{rows_.data(), rows_.size(), row_guide_.data(), row_guide_.size()}.find(u.y);
   const size_t guides = guides_for(width_);
-  const size_t x = Guided{&columns_[y * width_], width_, &column_guides_[y * guides], guides}.find(u.x, column);
-  return {x, y, u, row * column / measures_[y]};
+  const size_t x = Guided{&columns_[y * width_], width_, &column_guides_[y * guides], guides}.find(u.x);
+  return {x, y, u, density(x, y)};
 }
 
 }  // namespace etendue

@@ -13,18 +13,18 @@ namespace etendue {
 class TexelDistribution {
  public:
   /// `weights` row by row, none negative; `measures` [any unit] of a texel of each row.
-  void build(std::vector<float> weights, size_t width, const std::vector<double>& measures);
+  void build(const std::vector<float>& weights, size_t width, const std::vector<double>& measures);
   void clear() { *this = {}; }
 
   /// The sum of weights times measures; 0: there is nothing to choose.
   double total() const { return total_; }
-  /// Probability over measure, per texel.
-  float density(size_t x, size_t y) const { return float(double(weights_[y * width_ + x]) / total_); }
+  /// Probability over measure, per texel: that with which `choose` gives it, rounding included.
+  float density(size_t x, size_t y) const { return share(rows_.data(), y) * share(&columns_[y * width_], x) / measures_[y]; }
 
   struct Choice {
     size_t x, y;
     Point2 within;  ///< uniform in the texel
-    float density;  ///< that of the texel
+    float density;  ///< the texel's
   };
   Choice choose(Point2 u) const;
 
@@ -37,16 +37,16 @@ class TexelDistribution {
     size_t count;
     const std::uint32_t* guide;
     size_t guides;
-    /// `share` becomes the probability of what was found.
-    size_t find(float& u, float& share) const;
+    size_t find(float& u) const;
   };
+  static float share(const float* cumulative, size_t i) { return cumulative[i] - (i == 0 ? 0 : cumulative[i - 1]); }
   static void make_guide(const float* cumulative, size_t count, std::uint32_t* guide, size_t guides);
   static size_t guides_for(size_t count);
 
   size_t width_ = 0;
   double total_ = 0;
-  std::vector<float> weights_, rows_, columns_;  ///< the last two cumulative: of rows, and in each row of its texels
-  std::vector<float> measures_;                  ///< of a texel, by row
+  std::vector<float> rows_, columns_;  ///< cumulative: of rows, and in each row of its texels
+  std::vector<float> measures_;        ///< of a texel, by row
   std::vector<std::uint32_t> row_guide_, column_guides_;
 };
 

@@ -164,7 +164,11 @@ class Builder {
         node.sides[2 * k + 1][i] = i < count ? child.box.high[k] : -infinity;
       }
       node.child[i] = i < count ? std::uint32_t(child.begin) : 0;
-      node.count[i] = i < count && child.leaf ? child.counts.sum() | (child.counts.objects ? WideNode::objects : 0) : 0;
+      // A child that is none is a leaf of no objects: no node that rays could go on to.
+      node.count[i] = i >= count                 ? WideNode::objects
+                      : !child.leaf              ? 0
+                      : child.counts.objects > 0 ? child.counts.sum() | WideNode::objects
+                                                 : child.counts.sum();
     }
     tbb::task_group others;
     for (int i = 0; i < count; ++i) {

@@ -6,6 +6,7 @@
 
 #include "etendue/core/ray.h"
 #include "geometry/lanes.h"
+#include "geometry/sound_ray.h"
 
 namespace etendue {
 
@@ -79,7 +80,7 @@ class BoxTest {
 /// out what begins beyond `limit`, which the calls may lower.
 template <class Leaf>
 inline void traverse(const WideBvh& bvh, const Ray& ray, const float& limit, const Leaf& leaf) {
-  if (bvh.nodes.empty()) return;
+  if (bvh.nodes.empty() || !squares_are_floats(ray)) return;
   struct Waiting {
     float entry;
     std::uint32_t child, count;

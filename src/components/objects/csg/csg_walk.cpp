@@ -125,7 +125,8 @@ CsgCrossing* CsgWalk::nearest() const {
 
 const CsgCrossing* CsgWalk::next() {
   // Each turn goes on by more than an error of a surface; the limit, of a whole walk, is for objects that do not keep to that.
-  while (turns_++ < 1 << 13) {
+  const int most = (1 << 13) + 16 * int(crossings_.size());
+  while (turns_++ < most) {
     for (CsgCrossing& c : crossings_)
       if (c.passed) advance(c);
     CsgCrossing* const first = nearest();
