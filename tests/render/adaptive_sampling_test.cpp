@@ -151,6 +151,24 @@ TEST(AdaptiveSampling, TheSameBitsForAnyThreadsAndAfterABreak) {
   EXPECT_EQ(once, picture(2, 5));
 }
 
+TEST(AdaptiveSampling, WhatWouldHaveNoEffectIsRefusedWhereItIsWritten) {
+  const std::pair<const char*, const char*> written[] = {
+      {"light_sampler: UniformLightSampler {}, inner: PathTracer {}", "AdaptiveSampling.light_sampler"},
+      {"inner: PathTracer { samples: 64 }", "PathTracer.samples"},
+      {"inner: PathTracer { sampler: IndependentSampler {} }", "PathTracer.sampler"}};
+  for (const auto& [members, told] : written) {
+    const Ref<Job> made = job("AdaptiveSampling { " + std::string(members) + " }", 8);
+    try {
+      Render(made).run();
+      ADD_FAILURE() << members << " was taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).find(told), 0u) << error.what();
+      EXPECT_GT(error.location.line, 0);
+    }
+  }
+  EXPECT_NO_THROW(Render(job("AdaptiveSampling { inner: PathTracer { light_sampler: UniformLightSampler {} } }", 8)).run());
+}
+
 TEST(AdaptiveSampling, WhatHasNoPixelsOfItsOwnIsRefused) {
   for (const char* inner : {"BidirectionalPathTracer {}", "LightTracer {}", "PrimarySampleMetropolis {}", "none"}) {
     const Ref<Job> made = job("AdaptiveSampling { inner: " + std::string(inner) + " }", 8);
