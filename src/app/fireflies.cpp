@@ -16,12 +16,17 @@ std::string fireflies_text(const Render& render, const std::string& picture_comm
 
   const Image picture = render.film().develop();
   const PixelArea& area = render.job().image->area();
-  std::string text = largest.size() == 1
-                         ? "The sample that brought most light; to see its path:\n"
-                         : fmt::format("The {} samples that brought most light; to see the path of one:\n", largest.size());
+  const std::string refusal = replay_refusal(render);
+  std::string text = largest.size() == 1 ? "The sample that brought most light; "
+                                         : fmt::format("The {} samples that brought most light; ", largest.size());
+  if (!refusal.empty())
+    text += fmt::format("no path can be shown ({}):\n", refusal);
+  else
+    text += largest.size() == 1 ? "to see its path:\n" : "to see the path of one:\n";
   for (const LargeSample& sample : largest) {
-    text +=
-        fmt::format("  {}    # Y {:.6g}", replay_command(picture_command, sample.x, sample.y, sample.sample), sample.luminance);
+    const std::string which = refusal.empty() ? replay_command(picture_command, sample.x, sample.y, sample.sample) + "   "
+                                              : fmt::format("pixel {},{}", sample.x, sample.y);
+    text += fmt::format("  {} # Y {:.6g}", which, sample.luminance);
     // Light of a path from a luminaire falls into another pixel than its own.
     const int x = sample.splat ? int(std::floor(sample.film.x)) : sample.x;
     const int y = sample.splat ? int(std::floor(sample.film.y)) : sample.y;

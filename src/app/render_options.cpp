@@ -42,9 +42,10 @@ void RenderOptions::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "Choose other random numbers")->type_name("N");
   command.add_option("--size", size, "Size of the picture in pixels")->type_name("WxH");
   command.add_option("--crop", crop, "Render these pixels only, ends not included")->type_name("X0,Y0,X1,Y1");
-  command.add_flag("--denoise", denoise,
-                   "Write a second, denoised picture beside each, NAME.denoised.ENDING, by Open Image Denoise (pip install "
-                   "pyoidn) where the file says nothing else");
+  CLI::Option* denoise_option =
+      command.add_flag("--denoise", denoise,
+                       "Write a second, denoised picture beside each, NAME.denoised.ENDING, by Open Image Denoise (pip install "
+                       "pyoidn) where the file says nothing else");
   command.add_option("--threads", threads, "Threads to use; 0: all cores. The picture does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""));
@@ -77,6 +78,7 @@ void RenderOptions::add_to(CLI::App& command) {
   command.add_option("--tev", tev, "Show the picture in the viewer tev while it is rendered; PORT is 14158 unless it is said")
       ->type_name("HOST[:PORT]")
       ->excludes(pixel_option);
+  pixel_option->excludes(denoise_option);
   for (CLI::Option* option : checkpoint_options) pixel_option->excludes(option);
 }
 

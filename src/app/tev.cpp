@@ -6,8 +6,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 
 #include "etendue/film/image_tools.h"
@@ -105,17 +107,24 @@ std::vector<std::byte> tev_close_image(const std::string& name) {
 
 namespace {
 
-constexpr int patience = 3000;  // [ms], to connect, and for a packet to be taken
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds patience(3);  // to connect, and for a packet to be taken whole
+constexpr std::chrono::seconds farewell(5);  // for all that is sent once the render has ended
 
-/// Waits until a socket can be written to. Throws Error.
-void await_room(int socket) {
+/// Waits until a socket can be written to. Throws Error, also when that is not so by `deadline`.
+void await_room(int socket, Clock::time_point deadline) {
   pollfd ready{socket, POLLOUT, 0};
-  const int count = poll(&ready, 1, patience);
-  if (count == 0) throw Error("there is no answer");
-  if (count < 0) throw Error(std::strerror(errno));
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    const int count = left > 0 ? poll(&ready, 1, int(left)) : 0;
+    if (count > 0) return;
+    if (count == 0) throw Error("there is no answer, or a slow one");
+    if (errno != EINTR) throw Error(std::strerror(errno));
+  }
 }
 
 int connected(const TevAddress& address) {
+  const Clock::time_point deadline = Clock::now() + patience;
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
@@ -129,7 +138,7 @@ int connected(const TevAddress& address) {
     try {
       int failure = connect(socket, one->ai_addr, one->ai_addrlen) == 0 ? 0 : errno;
       if (failure == EINPROGRESS) {
-        await_room(socket);
+        await_room(socket, deadline);
         socklen_t size = sizeof failure;
         getsockopt(socket, SOL_SOCKET, SO_ERROR, &failure, &size);
       }
@@ -159,14 +168,22 @@ void TevDisplay::finish(bool keep) {
     const std::lock_guard lock(guard_);
     ending_ = true;
     keep_ = keep;
+    last_moment_ = Clock::now() + farewell;
   }
   changed_.notify_all();
   thread_.join();
 }
 
 void TevDisplay::send(const std::vector<std::byte>& bytes) {
+  // For the whole packet: a viewer that takes a few bytes now and then holds nothing up for longer.
+  const Clock::time_point whole = Clock::now() + patience;
   for (size_t sent = 0; sent < bytes.size();) {
-    await_room(socket_);
+    Clock::time_point deadline = whole;
+    {
+      const std::lock_guard lock(guard_);
+      if (ending_) deadline = std::min(deadline, last_moment_);
+    }
+    await_room(socket_, deadline);
     const ssize_t count = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
     if (count < 0 && errno != EAGAIN && errno != EINTR) throw Error(std::strerror(errno));
     if (count > 0) sent += size_t(count);
@@ -185,7 +202,7 @@ void TevDisplay::show() {
   std::vector<std::vector<float>> planes(channels.size());
   for (size_t c = 0; c < planes.size(); ++c)
     for (size_t i = c; i < picture.values.size(); i += picture.channels.size()) planes[c].push_back(float(picture.values[i]));
-  constexpr int pixels = 1 << 18;
+  constexpr int pixels = 1 << 16;
   const int rows = std::max(1, pixels / std::max(width_, 1));
   for (int y = 0; y < height_; y += rows)
     send(tev_update_image(name_, channels, planes, width_, y, std::min(y + rows, height_)));
@@ -194,7 +211,6 @@ void TevDisplay::show() {
 void TevDisplay::work() {
   try {
     socket_ = connected(address_);
-    using Clock = std::chrono::steady_clock;
     for (bool last = false; !last;) {
       const Clock::time_point began = Clock::now();
       show();

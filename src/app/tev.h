@@ -2,6 +2,7 @@
 // A render shown in tev while it goes on: `etendue render --tev HOST[:PORT]`. tev (https://github.com/Tom94/tev) is a viewer of
 // pictures that takes them over TCP; its README says how (section "Over a Network").
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -36,7 +37,8 @@ class TevDisplay {
   TevDisplay(const TevDisplay&) = delete;
   TevDisplay& operator=(const TevDisplay&) = delete;
 
-  /// The last picture is shown; or, of a render that came to nothing, taken away.
+  /// The last picture is shown; or, of a render that came to nothing, taken away. Waits for that, but a few seconds at most:
+  /// what is to be kept is better written before.
   void finish(bool keep);
 
  private:
@@ -52,6 +54,7 @@ class TevDisplay {
   std::mutex guard_;
   std::condition_variable changed_;
   bool ending_ = false, keep_ = true;
+  std::chrono::steady_clock::time_point last_moment_;  // for what is sent when ending_
   std::thread thread_;
 };
 

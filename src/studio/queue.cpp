@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "etendue/language/language.h"
+#include "render/denoising.h"
 
 namespace etendue::studio {
 
@@ -72,6 +73,25 @@ Json Queue::json() const {
   return {{"event", "queue"}, {"running", running_}, {"entries", std::move(list)}};
 }
 
+namespace {
+
+/// Every picture that can be written is, whatever is wrong with others.
+void write_all(const Render& render, const std::string& stem, std::vector<std::string>& written, std::vector<Error>& errors) {
+  const Job& job = render.job();
+  const Image picture = render.picture();
+  for (const Ref<Output>& output : job.outputs) {
+    try {
+      written.push_back(write_output(job, *output, picture, stem));
+    } catch (const Error& error) {
+      errors.push_back(error);
+    }
+  }
+  for (std::string& path : write_denoised(job, job.outputs, picture, stem, render.settings().threads, errors))
+    written.push_back(std::move(path));
+}
+
+}  // namespace
+
 void Queue::render(const std::string& file, int number) {
   std::vector<Error> errors;
   std::vector<std::string> outputs;
@@ -79,6 +99,7 @@ void Queue::render(const std::string& file, int number) {
   try {
     const Ref<Job> job = load_job(file);
     job->metadata["file"] = file;
+    require_denoisers(job->outputs);  // before hours are spent
     RenderSettings settings = settings_;
     settings.on_progress = [this, number](const Progress& p) {
       {
@@ -94,13 +115,13 @@ void Queue::render(const std::string& file, int number) {
       given_up = !running_ || !find(number);
     }
     if (!given_up) given_up = render->run() == Ended::aborted;
-    if (!given_up) outputs = render->write_outputs(std::filesystem::path(file).replace_extension().string());
+    if (!given_up) write_all(*render, std::filesystem::path(file).replace_extension().string(), outputs, errors);
   } catch (const Errors& several) {
-    errors = several.errors;
+    errors.insert(errors.end(), several.errors.begin(), several.errors.end());
   } catch (const Error& error) {
-    errors = {error};
+    errors.push_back(error);
   } catch (const std::exception& error) {
-    errors = {Error(error.what())};
+    errors.emplace_back(error.what());
   }
   const std::lock_guard lock(guard_);
   at_work_.reset();

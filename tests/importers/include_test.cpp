@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "components/importers/permissions.h"
 #include "mitsuba_support.h"
 #include "support/language_test_support.h"
@@ -118,6 +120,31 @@ TEST_F(IncludedScenes, TellWhatIsWrongWhereItIs) {
   EXPECT_NE(errors("include \"room.xml\" as r\nJob { camera: r.camera, scene: r.scenes }").find("'r.scenes' is not defined"),
             std::string::npos);
   EXPECT_EQ(errors("include \"room.xml\" as r"), "main.etd: there is no Job: a render description needs one Job { … }\n");
+}
+
+// What is wrong with an include or elsewhere is told; that names of a file which was not read are missing follows from it.
+TEST_F(IncludedScenes, OneErrorBringsNoOthers) {
+  const std::string use = " as r\nJob { camera: r.camera, scene: r.scene, image: r.image }";
+  const auto lines = [](const std::string& all) { return std::ranges::count(all, '\n'); };
+  for (const char* given : {" with { samples: 2 m }", " with { samples: undefd }", " with { samples: Sphere {} }"}) {
+    const std::string wrong = errors("include \"room.xml\"" + std::string(given) + use);
+    EXPECT_EQ(lines(wrong), 1) << wrong;
+  }
+  const std::string twice = errors("include \"room.xml\" as r\ninclude \"room.xml\"" + use);
+  EXPECT_EQ(lines(twice), 1) << twice;
+  const std::string syntax = errors("include \"room.xml\"" + use + "\nball = Sphere { radius: }");
+  EXPECT_EQ(lines(syntax), 1) << syntax;
+  LoadOptions options;
+  options.defines = {{"r.samples", "2"}, {"r.samples", "3"}};
+  const std::string defines = errors("include \"room.xml\"" + use, options);
+  EXPECT_EQ(lines(defines), 1) << defines;
+}
+
+TEST_F(IncludedScenes, PartsThatNothingUsesBringNoWarning) {
+  testing::internal::CaptureStderr();
+  load("include \"room.xml\" as r\nJob { camera: r.camera, scene: r.scene, image: r.image }");
+  const std::string told = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(told.find("not used"), std::string::npos) << told;
 }
 
 TEST_F(IncludedScenes, AreReadAsTheCommandLineSays) {

@@ -97,9 +97,9 @@ TEST(AdaptiveSampling, MeansAreTheTruthWhereBrightSamplesAreRare) {
 }
 
 TEST(AdaptiveSampling, ErrorsAreLessWhereNoiseIsLocal) {
-  const std::string numbers = "sampler: IndependentSampler {}", often = "RareLight { rarity: 4, " + numbers + " }";
+  const std::string numbers = "sampler: IndependentSampler {}", often = "RareLight { rarity: 4 }";
   const Statistics found = over_seeds("AdaptiveSampling { " + numbers + ", inner: " + often + " }", 64, 8),
-                   even = over_seeds(often, 64, 8);
+                   even = over_seeds("RareLight { rarity: 4, " + numbers + " }", 64, 8);
   // A sixteenth of the picture has all the noise: up to 8 times the samples there. The first of 8 steps is even: with
   // weights 1/8 each, the variance is (1/8 + 7/8 / 8) / 8 ... of that of even samples, 0.03 + 0.10 in all.
   EXPECT_LT(found.error, 0.4 * even.error) << found.error << " " << even.error;
@@ -149,6 +149,24 @@ TEST(AdaptiveSampling, TheSameBitsForAnyThreadsAndAfterABreak) {
   const std::vector<double> once = picture(1, 0);
   EXPECT_EQ(once, picture(3, 0));
   EXPECT_EQ(once, picture(2, 5));
+}
+
+TEST(AdaptiveSampling, WhatWouldHaveNoEffectIsRefusedWhereItIsWritten) {
+  const std::pair<const char*, const char*> written[] = {
+      {"light_sampler: UniformLightSampler {}, inner: PathTracer {}", "AdaptiveSampling.light_sampler"},
+      {"inner: PathTracer { samples: 64 }", "PathTracer.samples"},
+      {"inner: PathTracer { sampler: IndependentSampler {} }", "PathTracer.sampler"}};
+  for (const auto& [members, told] : written) {
+    const Ref<Job> made = job("AdaptiveSampling { " + std::string(members) + " }", 8);
+    try {
+      Render(made).run();
+      ADD_FAILURE() << members << " was taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).find(told), 0u) << error.what();
+      EXPECT_GT(error.location.line, 0);
+    }
+  }
+  EXPECT_NO_THROW(Render(job("AdaptiveSampling { inner: PathTracer { light_sampler: UniformLightSampler {} } }", 8)).run());
 }
 
 TEST(AdaptiveSampling, WhatHasNoPixelsOfItsOwnIsRefused) {

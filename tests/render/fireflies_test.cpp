@@ -80,6 +80,18 @@ TEST(Fireflies, places_in_a_crop_and_of_splats) {
   EXPECT_GT(bad, 0u);
 }
 
+TEST(Fireflies, no_command_is_given_that_would_be_refused) {
+  std::string text = glass_text(8);
+  text.replace(text.find("PathTracer {"), 12, "AdaptiveSampling { inner: PathTracer {},");
+  const auto render = rendered_keeping(3, loaded(text));
+  const std::string told = fireflies_text(*render, "etendue render a.etd");
+  EXPECT_FALSE(has(told, "--pixel")) << told;
+  EXPECT_TRUE(has(told, "AdaptiveSampling")) << told;
+  const LargeSample brightest = render->film().largest_samples()[0];
+  EXPECT_TRUE(has(told, "  pixel " + std::to_string(brightest.x) + "," + std::to_string(brightest.y) + " # Y ")) << told;
+  EXPECT_THROW(replay_sample(*render, brightest.x, brightest.y, brightest.sample), Error);
+}
+
 TEST(Fireflies, a_black_picture_has_none) {
   const std::string text = test::job_text("PathTracer { samples: 2 }", camera, 4, floor_disc);
   EXPECT_EQ(fireflies_text(*rendered_keeping(3, loaded(text)), "c"), "No sample brought any light.\n");

@@ -53,7 +53,7 @@ class Rendering(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
         self.file = pathlib.Path(self.folder.name) / "scene.etd"
         self.file.write_text(SCENE, encoding="utf-8")
-        self.studio = Studio(self.file, folder=self.folder.name)
+        self.studio = Studio(self.file, folder=self.folder.name, environment={"ETENDUE_OIDN": "/nowhere/lib.so"})
         self.addCleanup(self.studio.__exit__)
 
     def finished(self, page):
@@ -203,6 +203,27 @@ class Rendering(unittest.TestCase):
             self.assertEqual(
                 pathlib.Path(self.folder.name, "other.npy").read_bytes(), pathlib.Path(self.folder.name, "fresh.npy").read_bytes()
             )
+
+    def test_queue_loses_nothing_to_what_goes_wrong(self):
+        folder = pathlib.Path(self.folder.name)
+
+        def write(name, outputs):
+            text = SCENE.replace("samples: 64", "samples: 1").replace("NpyOutput {}", outputs)
+            (folder / name).write_text(text, encoding="utf-8")
+
+        write("one.etd", 'PngOutput { file: "one.etd/below_a_file.png" }, NpyOutput {}')
+        write("two.etd", "DenoisedOutput { output: NpyOutput {} }")
+        with self.studio.page() as page:
+            page.good("pause")
+            page.good("queue", add=["one.etd", "two.etd"], start=True)
+            done = page.wait(lambda e: e.get("event") == "queue" and [x["state"] for x in e["entries"]] == ["failed", "failed"])
+        one, two = done["entries"]
+        self.assertEqual([pathlib.Path(f).name for f in one["outputs"]], ["one.npy"])
+        self.assertIn("below_a_file.png", one["errors"][0]["message"])
+        self.assertEqual((two["outputs"], len(two["errors"])), ([], 1))
+        self.assertIn("/nowhere/lib.so", two["errors"][0]["message"])
+        self.assertTrue((folder / "one.npy").exists())
+        self.assertFalse((folder / "two.npy").exists(), "nothing is rendered that could not be denoised")
 
 
 if __name__ == "__main__":

@@ -137,6 +137,30 @@ class Sending(unittest.TestCase):
         self.assertLess(time.monotonic() - began, 40)
         self.assertEqual((self.path / "ball.npy").read_bytes(), true)
 
+    def test_a_slow_one_does_not_hold_the_picture_back(self):
+        def serve(connection):
+            with connection:
+                while connection.recv(1000):
+                    time.sleep(0.25)
+
+        address, _ = self.listening(serve)
+        began, written_after = time.monotonic(), []
+
+        def watch():
+            while not (self.path / "ball.npy").exists() and time.monotonic() - began < 60:
+                time.sleep(0.05)
+            written_after.append(time.monotonic() - began)
+
+        watcher = threading.Thread(target=watch)
+        watcher.start()
+        done = self.render("--tev", address)
+        ended = time.monotonic() - began
+        watcher.join()
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("a slow one", done.stderr)
+        self.assertGreater(ended - written_after[0], 1.5, "the viewer is waited for, with the picture in its file")
+        self.assertLess(ended - written_after[0], 12)
+
     def test_what_is_no_address(self):
         for text in ("", ":14158", "host:", "host:0", "host:70000", "host:x", "[::1", "[::1]x"):
             done = self.render("--tev", text) if text else self.render("--tev=")

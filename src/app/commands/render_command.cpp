@@ -54,16 +54,20 @@ std::string_view kind_text(BadSample::Kind kind) {
   return "";
 }
 
-void report_bad_samples(const Film& film, const RenderOptions& options) {
+void report_bad_samples(const Render& render, const RenderOptions& options) {
+  const Film& film = render.film();
   if (film.bad_samples() == 0) return;
-  fmt::print(stderr, "{} of {} samples were not finite and non-negative; they count as black. To see the path of one:\n",
-             grouped(film.bad_samples()), grouped(film.samples()));
+  const std::string refusal = replay_refusal(render);
+  fmt::print(stderr, "{} of {} samples were not finite and non-negative; they count as black. {}:\n",
+             grouped(film.bad_samples()), grouped(film.samples()),
+             refusal.empty() ? "To see the path of one" : fmt::format("No path can be shown ({})", refusal));
   constexpr size_t most = 5;
   const auto& first = film.first_bad_samples();
   for (size_t i = 0; i < std::min(first.size(), most); ++i) {
     const BadSample& bad = first[i];
-    fmt::print(stderr, "  {} --pixel {},{} --sample {}    # {}\n", options.picture_command(), bad.x, bad.y, bad.sample,
-               kind_text(bad.kind));
+    const std::string which = refusal.empty() ? replay_command(options.picture_command(), bad.x, bad.y, bad.sample) + "   "
+                                              : fmt::format("pixel {},{}", bad.x, bad.y);
+    fmt::print(stderr, "  {} # {}\n", which, kind_text(bad.kind));
   }
 }
 
@@ -142,6 +146,9 @@ int render(const RenderOptions& options, Series& series) {
   std::vector<Ref<Output>> outputs;
   if (!settings.steps || !options.outputs.empty()) outputs = chosen_outputs(job->outputs, options.outputs);
   number_outputs(outputs, options);
+  if (options.denoise && outputs.empty())
+    throw Error("there is no picture to denoise: with --passes those alone are written that -o names",
+                {intern("--denoise"), 0, 0});
   if (options.denoise) outputs = with_denoising(outputs);
   require_outputs(*job, outputs, options, series);
   require_denoisers(outputs);
@@ -169,18 +176,18 @@ int render(const RenderOptions& options, Series& series) {
     if (tev) shown.emplace(render, *tev, options.stem());
     ended = render.run();
     display.clear();
-    if (shown) shown->finish(ended != Ended::aborted);
     picture = render.picture();
     const bool unfinished = options.in_series && ended == Ended::interrupted;
     if (ended != Ended::aborted && !unfinished) {
       written.pictures = write_each(outputs, *job, picture, options.stem(), written.errors);
       written.denoised = write_denoised(*job, outputs, picture, options.stem(), settings.threads, written.errors);
     }
+    if (shown) shown->finish(ended != Ended::aborted);  // behind what is written: a slow viewer may hold it up
   }
 
   if (const std::string failure = render.checkpoint_failure(); !failure.empty()) written.errors.emplace_back(failure);
   if (!written.pictures.empty()) show_warnings(picture_warnings(*job, outputs, picture));
-  report_bad_samples(render.film(), options);
+  report_bad_samples(render, options);
   report_result(display.last(), ended, written, kind, render, options);
   if (options.fireflies > 0 && ended != Ended::aborted)
     report_fireflies(render, options.picture_command(), kind == ProgressDisplay::Kind::json ? stderr : stdout);

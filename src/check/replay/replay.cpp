@@ -100,6 +100,17 @@ PixelReplay replay_sample(const Render& render, int x, int y, std::uint32_t samp
   return result;
 }
 
+std::string replay_refusal(const Render& render) {
+  if (render.job().renderer->estimator() == Estimator::independent) return {};
+  const PixelArea& area = render.job().image->area();
+  try {
+    static_cast<void>(replay_sample(render, area.x0, area.y0, 0));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
 PixelReplay replay_pixel(const Render& render, int x, int y, size_t most) {
   PixelReplay result = begin(render.job(), x, y);
 

@@ -34,6 +34,9 @@ PixelReplay replay_sample(const Render&, int x, int y, std::uint32_t sample);
 /// Computes all samples of a pixel and tells the paths of the `most` that bring most light.
 PixelReplay replay_pixel(const Render&, int x, int y, size_t most);
 
+/// Why no sample of the render can be replayed, as its renderer tells; empty: they can.
+std::string replay_refusal(const Render&);
+
 /// For people to read. `picture_command` is the command line that renders the picture.
 std::string replay_text(const PixelReplay&, const std::string& picture_command);
 /// For programs to read; docs/finding-fireflies.md describes it. `file` is the description's.

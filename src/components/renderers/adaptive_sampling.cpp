@@ -45,8 +45,8 @@ class AdaptiveSampling final : public Renderer {
          "Kirk & Arvo 1991, Unbiased sampling techniques for image synthesis")
         .member<&AdaptiveSampling::inner>(
             "inner", "",
-            "the renderer, whose samples must stay in their own pixels; how many there are, their sampler and map_filter are "
-            "said here, not there")
+            "the renderer, whose samples must stay in their own pixels; its light_sampler is said there, but how many samples "
+            "there are, their sampler and map_filter out here: each is refused at the other place")
         .member<&AdaptiveSampling::most>("most", "1", "samples of a pixel, in relation to the mean; 1: as many everywhere",
                                          range(1, 1024), soft(1, 64), logarithmic)
         .member<&AdaptiveSampling::dark>(
@@ -244,6 +244,11 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
   }
 }
 
+/// Whether the description gives this member, be it what it would be anyway.
+bool is_written(const Component& component, std::string_view member) {
+  return component.origin && std::ranges::any_of(component.origin->members, [&](const auto& m) { return m.first == member; });
+}
+
 std::unique_ptr<RenderProcess> AdaptiveSampling::begin(const RenderContext& context) const {
   if (!inner) fail("inner", "needs a renderer whose samples it takes");
   if (inner->splats())
@@ -252,6 +257,10 @@ std::unique_ptr<RenderProcess> AdaptiveSampling::begin(const RenderContext& cont
              " brings light to other places of the film than a sample's own pixel: there is no more or less of it in a pixel");
   if (inner->estimator() == Estimator::correlated || inner->steps_depend())
     fail("inner", inner->class_info().name + " does not take its samples one by one, independent of each other");
+  for (const char* name : {"samples", "sampler"})
+    if (is_written(*inner, name)) inner->fail(name, "has no effect here: say it of the AdaptiveSampling around");
+  if (is_written(*this, "light_sampler"))
+    fail("light_sampler", "has no effect here: the renderer that is 'inner' chooses the lights, inner.light_sampler");
   if (inner->map_filter != map_filter && inner->map_filter != 0)
     fail("inner", "its map_filter is not looked at: AdaptiveSampling has one");
   return std::make_unique<AdaptiveProcess>(*this, context);

@@ -80,7 +80,7 @@ std::vector<std::pair<std::string, std::string>> Loader::parameters_of(Other& ot
 
 void Loader::read_other(Other& other, bool stands_for_itself) {
   const auto parameters = parameters_of(other);
-  if (!diagnostics_.empty()) return;
+  if (!diagnostics_.empty()) return evaluator_.set_incomplete();  // its names are not there, which is no news
   const OtherTrail trail(other.file);
   const Trail* outer = std::exchange(diagnostics_.trail, &trail);
   const auto failed = [&](const Error& e) { diagnostics_.add(located(e, other.file.at)); };
@@ -90,7 +90,8 @@ void Loader::read_other(Other& other, bool stands_for_itself) {
     for (auto& [name, value] : other.read->names(other.named)) {
       const auto* part = value.as<Ref<Component>>();
       const Location at = part && *part ? (*part)->location_of() : Location{};
-      const Label label{name, at.known() ? at : other.file.at};
+      // Not where the include is: a name of that file that nothing uses needs no warning.
+      const Label label{name, at.known() ? at : Location{intern(other.path), 0, 0}};
       if (const bool* used = evaluator_.define_part(label, std::move(value), *other.space)) other.used.push_back(used);
     }
     const std::vector<std::string> unused = other.read->unused_parameters();
