@@ -18,6 +18,7 @@ Exported export_job(const TemporaryFolder& folder, const std::string& job, const
   const Ref<Job> described = load_job_text(job, "test.etd", folder.path());
   Exporting exporting(folder / name);
   result.text = exporter_of(name)->write(*described, exporting);
+  exporting.write_files();
   for (const Error& note : exporting.notes()) result.told += note.what() + std::string("\n");
   folder.write(name, result.text);
   result.back = import_file(folder / name);

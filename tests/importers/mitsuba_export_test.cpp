@@ -20,6 +20,7 @@ Exported export_job(const TemporaryFolder& folder, const std::string& job) {
   const std::string path = folder / "out.xml";
   Exporting exporting(path);
   result.text = exporter_of(path)->write(*described, exporting);
+  exporting.write_files();
   result.notes = exporting.notes();
   folder.write("out.xml", result.text);
   result.back = import_file(path);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "files/regular_file.h"
 #include "writer.h"
 
 namespace etendue::gltf_export {
@@ -106,6 +107,20 @@ Writer::Look Writer::look_of(const Component& map, ColorUse use) {
   return {{0.5, 0.5, 0.5}, std::nullopt};
 }
 
+Json Writer::image_entry(const std::string& file, const std::string& ending) {
+  if (!binary_) return {{"uri", as_uri(exporting.copy_beside(file))}};
+  std::string bytes;
+  try {
+    bytes = read_regular_file(file);
+  } catch (const Error& reason) {
+    throw Error(fmt::format("cannot read '{}': {}", file, reason.what()));
+  }
+  document_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes.size()}});
+  buffer_ += bytes;
+  buffer_.resize((buffer_.size() + 3) / 4 * 4);  // the numbers that follow stay aligned
+  return {{"bufferView", document_["bufferViews"].size() - 1}, {"mimeType", ending == ".png" ? "image/png" : "image/jpeg"}};
+}
+
 // Our coordinates of a texel are shift + R(angle) (scale * uv), glTF's the same of coordinates that count v downwards, where a
 // turn has the other sense; what the two shifts differ by follows.
 std::optional<Json> Writer::texture(const Component& image, double scale_u, double scale_v, double angle, double shift_u,
@@ -127,7 +142,7 @@ std::optional<Json> Writer::texture(const Component& image, double scale_u, doub
   if (known == 0) {
     constexpr int clamp = 33071, mirror = 33648, repeated = 10497, filter_nearest = 9728, filter_linear = 9729;
     const int continued = wrap == "mirror" ? mirror : (wrap == "clamp" || wrap == "black" ? clamp : repeated);
-    document_["images"].push_back({{"uri", exporting.copy_beside(file)}});
+    document_["images"].push_back(image_entry(file, ending));
     document_["samplers"].push_back(
         {{"wrapS", continued}, {"wrapT", continued}, {"magFilter", nearest ? filter_nearest : filter_linear}});
     document_["textures"].push_back(

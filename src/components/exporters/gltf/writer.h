@@ -19,6 +19,9 @@ namespace etendue::gltf_export {
 
 using Json = nlohmann::ordered_json;
 
+/// A file's name as a URI reference: all but letters, digits and what never means anything in one as percents (RFC 3986).
+std::string as_uri(const std::string& name);
+
 class Writer {
  public:
   Writer(const Job& j, Exporting& e) : job(j), exporting(e) {}
@@ -59,12 +62,15 @@ class Writer {
   };
   Look look(const Component& of, const char* member, ColorUse);
   Look look_of(const Component& map, ColorUse);
+  /// An image's entry: in a .glb its bytes are in the buffer, otherwise its file is named.
+  Json image_entry(const std::string& file, const std::string& ending);
   std::optional<Json> texture(const Component& image, double scale_u, double scale_v, double angle, double shift_u,
                               double shift_v);
   void extend(Json& m, const char* extension, Json content);
 
   const Job& job;
   Exporting& exporting;
+  bool binary_ = false;
   Json document_;
   std::string buffer_;
   size_t made_nodes_ = 0;
