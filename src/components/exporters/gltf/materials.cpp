@@ -12,29 +12,6 @@ namespace etendue::gltf_export {
 
 namespace {
 
-constexpr float at_d_line = 587.6f;  // [nm] where indices are told
-
-Json& child(Json& of, const char* name) {
-  Json& inner = of[name];
-  if (inner.is_null()) inner = Json::object();
-  return inner;
-}
-Json& metal(Json& m) { return child(m, "pbrMetallicRoughness"); }
-
-std::array<double, 3> clamped(std::array<double, 3> rgb) {
-  for (double& x : rgb) x = std::clamp(x, 0.0, 1.0);
-  return rgb;
-}
-Json with_alpha(const std::array<double, 3>& rgb) { return {rgb[0], rgb[1], rgb[2], 1.0}; }
-
-/// Whether a map colours what it is multiplied with.
-bool colored(const Component& of, const char* member) {
-  const Ref<Component> map = part_of(of, member);
-  const Color c = map ? constant_of(*map) : nullptr;
-  if (!map || !c) return bool(map);
-  return std::ranges::any_of(rgb_of(c, ColorUse::reflectance), [](double x) { return std::abs(x - 1) > 1e-3; });
-}
-
 /// What a metal reflects of light straight on.
 std::array<double, 3> reflected(const Color& ior) {
   std::vector<float> wavelengths, values;
@@ -49,6 +26,26 @@ std::array<double, 3> reflected(const Color& ior) {
 }
 
 }  // namespace
+
+Json& child(Json& of, const char* name) {
+  Json& inner = of[name];
+  if (inner.is_null()) inner = Json::object();
+  return inner;
+}
+Json& metal(Json& m) { return child(m, "pbrMetallicRoughness"); }
+
+std::array<double, 3> clamped(std::array<double, 3> rgb) {
+  for (double& x : rgb) x = std::clamp(x, 0.0, 1.0);
+  return rgb;
+}
+Json with_alpha(const std::array<double, 3>& rgb) { return {rgb[0], rgb[1], rgb[2], 1.0}; }
+
+bool colored(const Component& of, const char* member) {
+  const Ref<Component> map = part_of(of, member);
+  const Color c = map ? constant_of(*map) : nullptr;
+  if (!map || !c) return bool(map);
+  return std::ranges::any_of(rgb_of(c, ColorUse::reflectance), [](double x) { return std::abs(x - 1) > 1e-3; });
+}
 
 void Writer::extend(Json& m, const char* extension, Json content) {
   child(m, "extensions");
@@ -198,7 +195,8 @@ void Writer::emission(Json& m, const SceneObject& o, const Component& e) {
   Look light = look(e, "radiance", ColorUse::radiance);
   double most = 0;
   for (double& x : light.factor) most = std::max(most, x = std::max(0.0, x * strength_of(o, e)));
-  if (most > 1) {
+  // The importer takes it for a lamp, not for a bright screen, by the extension, however weak it is.
+  if (most > 0) {
     for (double& x : light.factor) x /= most;
     extend(m, "KHR_materials_emissive_strength", {{"emissiveStrength", most}});
   }
@@ -224,32 +222,11 @@ void Writer::absorption(Json& m, const Component& v) {
           {"attenuationColor", {std::exp(-a[0] / most), std::exp(-a[1] / most), std::exp(-a[2] / most)}}});
 }
 
-void Writer::glass(Json& m, const Component& s, bool thin) {
-  metal(m) = {{"metallicFactor", 0}, {"roughnessFactor", std::sqrt(std::max(0.0, thin ? 0.0 : scalar(s, "roughness", 0)))}};
-  if (colored(s, "transmission_tint"))
-    metal(m)["baseColorFactor"] = with_alpha(clamped(look(s, "transmission_tint", ColorUse::reflectance).factor));
-  if (colored(s, "reflection_tint")) exporting.inexact("the colour of a glass's reflections is left out", &s);
-  extend(m, "KHR_materials_transmission", {{"transmissionFactor", 1}});
-  const Color ior = color_of(s, "ior"), outside = thin ? nullptr : color_of(s, "exterior");
-  const double index = double(ior->at(at_d_line, ColorUse::coefficient)) /
-                       (outside ? double(outside->at(at_d_line, ColorUse::coefficient)) : 1.0);
-  extend(m, "KHR_materials_ior", {{"ior", index}});
-  if (index < 1) exporting.inexact("an index of refraction below that around is 1 in glTF", &s);
-  if (thin) exporting.inexact("light between the two faces of a pane is as glTF's thin walls have it", &s);
-  if (!thin) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
-  if (!thin && ior->varies()) {
-    // KHR_materials_dispersion: 20 over the Abbe number (n_d - 1) / (n_F - n_C).
-    const double spread = double(ior->at(486.1f, ColorUse::coefficient)) - double(ior->at(656.3f, ColorUse::coefficient));
-    if (spread > 0 && index > 1) extend(m, "KHR_materials_dispersion", {{"dispersion", 20 * spread / (index - 1)}});
-  }
-}
-
-void Writer::holes(Json& m, const Component& mask) {
-  const Ref<Component> opacity = part_of(mask, "opacity");
-  const double left = scalar(mask, "opacity", 1);
+void Writer::holes(Json& m, const Component& of, const char* member) {
+  const double left = scalar(of, member, 1);
   Json& factor = metal(m)["baseColorFactor"];
   if (factor.is_null()) factor = with_alpha({1, 1, 1});
-  factor[3] = std::clamp(left, 0.0, 1.0);
+  factor[3] = factor[3].get<double>() * std::clamp(left, 0.0, 1.0);
   m["alphaMode"] = "BLEND";
 }
 
@@ -263,7 +240,7 @@ void Writer::surface(Json& m, const Component& s) {
   const auto root = [&](const char* member) { return std::sqrt(std::max(0.0, scalar(s, member, 0.1))); };
   if (type == "MaskShader" || type == "NormalMapShader" || type == "BumpShader") {
     if (const Ref<Component> inner = part_of(s, "shader")) surface(m, *inner);
-    if (type == "MaskShader") holes(m, s);
+    if (type == "MaskShader") holes(m, s, "opacity");
     if (type == "BumpShader") exporting.inexact("bumps by heights are left out: glTF has maps of normals", &s);
     if (type == "NormalMapShader") {
       Json t;
@@ -277,6 +254,10 @@ void Writer::surface(Json& m, const Component& s) {
     }
     return;
   }
+  if (s.class_info().find("roughness_v") && part_of(s, "roughness_v"))
+    exporting.inexact("a surface that is less rough along one direction is as rough as along u: 'roughness_v' is left out", &s);
+  if (s.class_info().find("distribution") && word_of(s, "distribution") == "beckmann")
+    exporting.inexact("the facets of a rough surface are GGX's in glTF", &s);
   metal(m)["metallicFactor"] = 0;
   if (type == "Lambertian" || type == "OrenNayar") {
     base("color");
@@ -300,28 +281,7 @@ void Writer::surface(Json& m, const Component& s) {
     extend(m, "KHR_materials_ior", {{"ior", scalar(s, "ior", 1.5)}});
     exporting.inexact("light between the layers of a plastic is as glTF's dielectrics have it", &s);
   } else if (type == "Principled") {
-    base("base_color");
-    metal(m)["metallicFactor"] = scalar(s, "base_metalness", 0);
-    metal(m)["roughnessFactor"] = scalar(s, "specular_roughness", 0.5);
-    if (const double ior = scalar(s, "specular_ior", 1.5); ior != 1.5) extend(m, "KHR_materials_ior", {{"ior", ior}});
-    const Look tint = look(s, "specular_color", ColorUse::reflectance);
-    extend(m, "KHR_materials_specular",
-           {{"specularFactor", scalar(s, "specular_weight", 1)}, {"specularColorFactor", clamped(tint.factor)}});
-    if (const double clear = scalar(s, "transmission_weight", 0); clear > 0) {
-      extend(m, "KHR_materials_transmission", {{"transmissionFactor", clear}});
-      if (!truth_of(s, "thin_walled")) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
-    }
-    if (const double coat = scalar(s, "coat_weight", 0); coat > 0)
-      extend(m, "KHR_materials_clearcoat",
-             {{"clearcoatFactor", coat}, {"clearcoatRoughnessFactor", scalar(s, "coat_roughness", 0)}});
-    if (scalar(s, "fuzz_weight", 0) > 0)
-      extend(m, "KHR_materials_sheen",
-             {{"sheenColorFactor", clamped(look(s, "fuzz_color", ColorUse::reflectance).factor)},
-              {"sheenRoughnessFactor", scalar(s, "fuzz_roughness", 0.5)}});
-    for (const char* rest :
-         {"subsurface_weight", "thin_film_weight", "base_diffuse_roughness", "specular_roughness_anisotropy"})
-      if (s.class_info().find(rest) && scalar(s, rest, 0) > 0)
-        exporting.inexact(fmt::format("'{}' of Principled is left out", rest), &s);
+    principled(m, s);
   } else if (type == "DisneyPrincipled") {
     base("base_color");
     metal(m)["metallicFactor"] = scalar(s, "metallic", 0);
