@@ -2,6 +2,7 @@
 // Exporter: components into a file of another program.
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,15 @@ class Exporting {
   /// All notes, one for each text, in the order in which they came.
   std::vector<Error> notes() const;
 
-  /// Writes a file beside the one that is exported, such as a mesh, and gives its name there: the stem, `what` and a number,
-  /// with the ending.
-  std::string write_beside(const std::string& what, const std::string& ending, const std::string& bytes);
+  /// Has a file written beside the one that is exported, such as a mesh, and gives its name there: the stem, `what` and a
+  /// number, with the ending. No file that is read has that name.
+  std::string write_beside(const std::string& what, const std::string& ending, std::string bytes);
   /// The name by which the exported file can name a file that there is: a copy beside it unless it lies in the same folder or
   /// below.
   std::string copy_beside(const std::string& path);
+  /// The files that are to be written beside it; none is before write_files is called.
+  std::vector<std::string> files_beside() const;
+  void write_files() const;
   /// A name that no other part has, made of letters, digits and underscores.
   std::string name_for(const Component&);
 
@@ -43,7 +47,17 @@ class Exporting {
     Location first;
     size_t count = 0;
   };
+  struct Beside {
+    std::string path;
+    std::string bytes;   ///< what it holds, or
+    std::string source;  ///< the file that it is a copy of
+  };
+  /// Whether nothing that is read, and nothing else that is written, is called so.
+  bool is_free(const std::string& path) const;
+
   std::string path_, folder_, stem_;
+  std::vector<Beside> beside_;
+  std::set<std::string> taken_paths_;
   std::vector<Note> notes_;
   std::map<std::string, size_t> note_of_;
   std::map<std::string, int> numbers_, taken_;

@@ -1,7 +1,12 @@
 // What is exported to glTF is the same scene: read back, it makes the same picture, as far as glTF has what is in it.
 
+#include <filesystem>
+
+#include "components/scenes/import.h"
 #include "etendue/exporter.h"
 #include "etendue/language/language.h"
+#include "files/input_files.h"
+#include "files/regular_file.h"
 #include "mitsuba_support.h"
 #include "support/image_file.h"
 
@@ -10,6 +15,7 @@ namespace {
 
 struct Exported {
   std::string text, told;
+  std::vector<std::string> beside;
   Imported back;
 };
 
@@ -18,6 +24,8 @@ Exported export_job(const TemporaryFolder& folder, const std::string& job, const
   const Ref<Job> described = load_job_text(job, "test.etd", folder.path());
   Exporting exporting(folder / name);
   result.text = exporter_of(name)->write(*described, exporting);
+  result.beside = exporting.files_beside();
+  exporting.write_files();
   for (const Error& note : exporting.notes()) result.told += note.what() + std::string("\n");
   folder.write(name, result.text);
   result.back = import_file(folder / name);
@@ -75,8 +83,11 @@ TEST(GltfExport, MakesTheSamePictureWhenReadBack) {
 TEST(GltfExport, LaysImagesWhereTheyWere) {
   const TemporaryFolder folder;
   const test::ImageFile image("quarters.png", {2, 2, 3, NumberType::uint8}, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0});
+  int turn = 0;
   for (const char* placed :
        {"", "scale: [2, 1.5], shift: [0.2, 0.4]", "angle: 30 deg", "scale: [1.3, 0.7], angle: 70 deg, shift: [0.1, 0.3]"}) {
+    // By a name that is no URI, and in one file.
+    const bool one_file = turn++ % 2 == 1;
     const std::string described =
         "Job { renderer: DirectRenderer { samples: 256 }\n camera: OrthographicCamera { from: [0, 0, 3] m, to: [0, 0, 0] m, "
         "width: "
@@ -87,7 +98,8 @@ TEST(GltfExport, LaysImagesWhereTheyWere) {
         image.path + "\", interpolation: nearest }, " + placed +
         " } } },\n"
         "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: rgb(1, 1, 1) } }] } }";
-    Exported exported = export_job(folder, described, "out.gltf");
+    Exported exported = export_job(folder, described, one_file ? "out.glb" : "o#u t%20.gltf");
+    EXPECT_EQ(exported.beside.size(), one_file ? 0u : 2u);
     ASSERT_TRUE(exported.back.job) << exported.back.told() << exported.text;
     const Ref<Job> before = load_job_text(described, "test.etd");
     exported.back.job->outputs.clear();
@@ -111,6 +123,91 @@ TEST(GltfExport, TellsWhatItCannotExpress) {
           .told;
   for (const char* words : {"Torus", "an environment is left out", "curved shapes become triangles", "a map like CheckerMap",
                             "media do not scatter in glTF"})
+    EXPECT_NE(told.find(words), std::string::npos) << words << " in " << told;
+}
+
+// What is written beside it has no name of a file that is read, and is not there before all is known to be well.
+TEST(GltfExport, LeavesTheFilesThatAreRead) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "elsewhere");
+  folder.write("elsewhere/a.png", "far");
+  folder.write("out-a.png", "near");
+  const Ref<Job> described = load_job_text(
+      job("Box { shader: Lambertian { color: ImageMap { file: \"elsewhere/a.png\" } } }, Box { shader: Lambertian { "
+          "color: ImageMap { file: \"out-a.png\" } } }"),
+      "test.etd", folder.path());
+  std::filesystem::create_directory(folder / "there");
+  folder.write("there/out-a.png", "another");
+  note_input(folder / "there/out-a.png");
+  folder.write("there/out-data1.bin", "a buffer");
+  note_input(folder / "there/out-data1.bin");
+  Exporting exporting(folder / "there/out.gltf");
+  exporter_of("out.gltf")->write(*described, exporting);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "there"), {}), 2);
+  exporting.write_files();
+  EXPECT_EQ(read_regular_file(folder / "there/out-a.png"), "another");
+  EXPECT_EQ(read_regular_file(folder / "there/out-data1.bin"), "a buffer");
+  EXPECT_EQ(read_regular_file(folder / "there/out-1-a.png"), "far");
+  EXPECT_EQ(read_regular_file(folder / "there/out-out-a.png"), "near");
+  EXPECT_GT(read_regular_file(folder / "there/out-data2.bin").size(), 8u);
+}
+
+TEST(GltfExport, HoldsWhatAnImportHolds) {
+  const TemporaryFolder folder;
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Ref<Job> described =
+      load_job_text(job("Instance { scene: BvhScene { objects: [Import { file: \"a.obj\" }] } }"), "test.etd", folder.path());
+  read_imports(*described);
+  Exporting exporting(folder / "out.gltf");
+  EXPECT_NE(exporter_of("out.gltf")->write(*described, exporting).find("\"meshes\""), std::string::npos);
+  // A file that is not there is told where it is named.
+  const Ref<Job> without = load_job_text(job("Import { file: \"none.obj\" }"), "test.etd", folder.path());
+  try {
+    read_imports(*without);
+    FAIL() << "read without a file";
+  } catch (const Error& error) {
+    EXPECT_GT(error.location.line, 0);
+    EXPECT_NE(std::string(error.what()).find("none.obj"), std::string::npos) << error.what();
+  }
+}
+
+// A weak lamp is one all the same: no studio's lights are added.
+TEST(GltfExport, KeepsWeakLamps) {
+  const TemporaryFolder folder;
+  export_job(folder, job("Box { shader: wood, emission: DiffuseEmission { radiance: rgb(0.2, 0.1, 0.05) } }"), "out.glb");
+  Importing importing(folder / "out.glb", {}, {});
+  importer_of("out.glb")->import(importing);
+  EXPECT_TRUE(importing.is_lit.value_or(false));
+}
+
+TEST(GltfExport, KeepsThePartsOfPrincipledOrSaysSo) {
+  const TemporaryFolder folder;
+  const Exported kept = export_job(
+      folder,
+      job("Box { shader: Principled { base_color: 0.5, base_weight: 0.5, geometry_opacity: 0.25, fuzz_weight: 0.5, "
+          "thin_film_weight: 0.5 } }, Sphere { shader: Principled { transmission_weight: 1, transmission_color: 0.125 } }"),
+      "out.gltf");
+  const std::string back = write_description(*kept.back.job);
+  const auto after = [&](const std::string& words) {
+    const size_t at = back.find(words);
+    return at == std::string::npos ? -1 : std::stod(back.substr(at + words.size()));
+  };
+  EXPECT_NEAR(after(" base_color: rgb("), 0.25, 1e-3) << back;
+  EXPECT_NEAR(after("fuzz_color: rgb("), 0.5, 1e-3) << back;
+  EXPECT_NEAR(after("transmission_color: rgb("), 0.125, 1e-3) << back;
+  EXPECT_EQ(after(" opacity: "), 0.25) << back;
+  EXPECT_EQ(after("thin_film_weight: "), 0.5) << back;
+  const std::string told =
+      export_job(
+          folder,
+          job("Box { shader: Principled { transmission_weight: 0.5, transmission_color: rgb(1, 0.2, 0.3), coat_weight: 1, "
+              "coat_color: rgb(1, 0.5, 0.5), subsurface_weight: 0.5 } }, Sphere { shader: Dielectric { ior: 1.5, "
+              "roughness: 0.2, roughness_v: 0.1 } }"),
+          "out.gltf")
+          .told;
+  for (const char* words : {"'transmission_color' of Principled is left out", "the index of a clear coat is 1.5",
+                            "'coat_color' of Principled is left out", "a clear coat darkens nothing",
+                            "'subsurface_weight' of Principled is left out", "'roughness_v' is left out"})
     EXPECT_NE(told.find(words), std::string::npos) << words << " in " << told;
 }
 

@@ -20,6 +20,7 @@ Exported export_job(const TemporaryFolder& folder, const std::string& job) {
   const std::string path = folder / "out.xml";
   Exporting exporting(path);
   result.text = exporter_of(path)->write(*described, exporting);
+  exporting.write_files();
   result.notes = exporting.notes();
   folder.write("out.xml", result.text);
   result.back = import_file(path);
@@ -45,7 +46,7 @@ TEST(MitsubaExport, MakesTheSamePictureWhenReadBack) {
       "Rectangle { corner: [-4, -1, 4] m, edge_u: [8, 0, 0] m, edge_v: [0, 0, -8] m, sides: front, shader: Lambertian { color: "
       "CheckerMap { first: 0.1, second: rgb(0.9, 0.5, 0.2), repeat: [5, 3, 1] } } }",
       // Metals, glass, plastic, holes; a box, a cylinder, a disc, triangles.
-      "Environment { emission: DiffuseEmission { radiance: rgb(1, 0.9, 0.7) } },"
+      "Environment { emission: EnvironmentEmission { radiance: rgb(0.5, 0.45, 0.35), scale: 2 } },"
       "Box { size: [1, 2, 1] m, centre: [1.5, 0, 0] m, shader: LossyPlastic { color: 0.5, roughness: 0.2 } },"
       "Cylinder { caps: false, height: 2 m, radius: 0.5 m, transform: rotate(40 deg, \"x\"), shader: MaskShader { opacity: "
       "0.4, shader: "

@@ -14,6 +14,7 @@ Exported exported(const Ref<Job>& job, const std::string& path) {
   Exporting exporting(path);
   Exported result;
   result.text = exporter_of(path)->write(*job, exporting);
+  exporting.write_files();
   for (const Error& note : exporting.notes()) result.told += note.what() + std::string("\n");
   return result;
 }

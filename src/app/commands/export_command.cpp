@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/scene_options.h"
+#include "components/scenes/import.h"
 #include "etendue/exporter.h"
 #include "files/output_files.h"
 #include "files/whole_file.h"
@@ -26,6 +27,7 @@ int write(const ExportOptions& options) {
   }
   const Ref<Job> job = options.load();
   note_inputs_of(*job);
+  read_imports(*job);
   OutputFiles files;
   files.add(options.output, at);
   files.raise();
@@ -34,6 +36,10 @@ int write(const ExportOptions& options) {
   const std::vector<Error> notes = exporting.notes();
   if (options.import.strict && !notes.empty()) throw Errors(notes);
   for (const Error& note : notes) warn(note.what(), note.location);
+  // What lies beside comes first: the file that names it is never there without it.
+  for (const std::string& file : exporting.files_beside()) files.add(file, at);
+  files.raise();
+  exporting.write_files();
   write_whole_file(options.output, text);
   return exit_status::done;
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "etendue/exporter.h"
+#include "files/input_files.h"
 #include "files/regular_file.h"
 #include "files/whole_file.h"
 
@@ -32,9 +33,16 @@ std::vector<Error> Exporting::notes() const {
   return all;
 }
 
-std::string Exporting::write_beside(const std::string& what, const std::string& ending, const std::string& bytes) {
-  const std::string name = fmt::format("{}-{}{}.{}", stem_, what, ++numbers_[what], ending);
-  write_whole_file((fs::path(folder_) / name).string(), bytes);
+bool Exporting::is_free(const std::string& path) const { return !taken_paths_.contains(path) && input_at(path).empty(); }
+
+std::string Exporting::write_beside(const std::string& what, const std::string& ending, std::string bytes) {
+  std::string name, path;
+  do {
+    name = fmt::format("{}-{}{}.{}", stem_, what, ++numbers_[what], ending);
+    path = (fs::path(folder_) / name).string();
+  } while (!is_free(path));
+  taken_paths_.insert(path);
+  beside_.push_back({path, std::move(bytes), {}});
   return name;
 }
 
@@ -42,17 +50,38 @@ std::string Exporting::copy_beside(const std::string& path) {
   std::error_code error;
   const fs::path here = fs::weakly_canonical(fs::absolute(folder_.empty() ? fs::path(".") : fs::path(folder_)), error);
   const fs::path from = fs::weakly_canonical(fs::absolute(path), error);
+  note_input(from.string());
   const fs::path relative = from.lexically_relative(here);
   if (!relative.empty() && *relative.begin() != "..") return relative.generic_string();
   std::string& name = copied_[from.string()];
-  if (name.empty()) {
-    // Two files of one name in two folders stay two.
-    const std::string last = from.filename().string();
+  if (!name.empty()) return name;
+  try {
+    require_regular_file(from.string());
+  } catch (const Error& reason) {
+    throw Error(fmt::format("cannot read '{}': {}", path, reason.what()));
+  }
+  // Two files of one name in two folders stay two.
+  const std::string last = from.filename().string();
+  std::string target;
+  do {
     const int number = numbers_["copy of " + last]++;
     name = number == 0 ? fmt::format("{}-{}", stem_, last) : fmt::format("{}-{}-{}", stem_, number, last);
-    write_whole_file((here / name).string(), read_regular_file(from.string()));
-  }
+    target = (fs::path(folder_) / name).string();
+  } while (!is_free(target));
+  taken_paths_.insert(target);
+  beside_.push_back({target, {}, from.string()});
   return name;
+}
+
+std::vector<std::string> Exporting::files_beside() const {
+  std::vector<std::string> all;
+  for (const Beside& file : beside_) all.push_back(file.path);
+  return all;
+}
+
+void Exporting::write_files() const {
+  for (const Beside& file : beside_)
+    write_whole_file(file.path, file.source.empty() ? file.bytes : read_regular_file(file.source));
 }
 
 std::string Exporting::name_for(const Component& part) {

@@ -1,6 +1,11 @@
 // Import: what a file of another program holds, as an object of a scene.
 
+#include "import.h"
+
+#include <unordered_set>
+
 #include "components/importers/permissions.h"
+#include "describe/expansion.h"
 #include "etendue/importer.h"
 
 #include "etendue/render/job.h"
@@ -33,6 +38,28 @@ class Import final : public Scene {
     Scene::prepare();
   }
 
+  /// The file's objects become those of this, not prepared.
+  void read_objects() {
+    const std::string path = file.resolved();
+    if (file.empty()) fail("file", "a file is needed");
+    const Ref<Importer> importer = importer_of(path);
+    if (!importer) fail("file", "'" + path + "' is of no format that is imported");
+    ImportOptions options = import_permissions();
+    options.time = time;
+    Importing importing(path, options);
+    const Ref<Component> imported = import_by(*importer, importing);
+    if (options.strict && !importing.notes().empty()) throw Errors(importing.notes());
+    for (const Error& note : importing.notes()) warn(note.what(), note.location);
+    const Ref<Job> job = ref_cast<Job>(imported);
+    const Ref<Scene> scene = job ? job->scene : ref_cast<Scene>(imported);
+    if (!scene) fail("file", "'" + path + "' holds nothing that can be seen");
+    objects.clear();
+    for (const Ref<SceneObject>& object : scene->objects)
+      if (!object->infinite() || object->delta()) objects.push_back(object);
+    if (objects.size() < scene->objects.size())
+      warn("what lies at infinity in '" + path + "' is left out", location_of("file"));
+  }
+
   FilePath file;
   double time = 0;
 
@@ -43,29 +70,22 @@ class Import final : public Scene {
   }
 
  private:
-  void read() {
-    const std::string path = file.resolved();
-    if (file.empty()) fail("file", "a file is needed");
-    const Ref<Importer> importer = importer_of(path);
-    if (!importer) fail("file", "'" + path + "' is of no format that is imported");
-    ImportOptions options = import_permissions();
-    options.time = time;
-    Importing importing(path, options);
-    const Ref<Component> imported = importer->import(importing);
-    if (options.strict && !importing.notes().empty()) throw Errors(importing.notes());
-    for (const Error& note : importing.notes()) warn(note.what(), note.location);
-    const Ref<Job> job = ref_cast<Job>(imported);
-    const Ref<Scene> scene = job ? job->scene : ref_cast<Scene>(imported);
-    if (!scene) fail("file", "'" + path + "' holds nothing that can be seen");
-    over_ = ref_cast<Scene>(Registry::instance().create(imported_structure));
-    objects.clear();
-    for (const Ref<SceneObject>& object : scene->objects) {
-      prepare_tree(*object);
-      if (!object->infinite() || object->delta()) objects.push_back(object);
+  /// What concerns the file as a whole, such as that there is none, is told where it is named.
+  Ref<Component> import_by(const Importer& importer, Importing& importing) const {
+    try {
+      return importer.import(importing);
+    } catch (const Error& error) {
+      if (error.location.line > 0) throw;
+      const std::string what = error.what(), path = file.resolved();
+      fail("file", what.find(path) == std::string::npos ? "'" + path + "': " + what : what);
     }
-    if (objects.size() < scene->objects.size())
-      warn("what lies at infinity in '" + path + "' is left out", location_of("file"));
-    read_ = path;
+  }
+
+  void read() {
+    read_objects();
+    over_ = ref_cast<Scene>(Registry::instance().create(imported_structure));
+    for (const Ref<SceneObject>& object : objects) prepare_tree(*object);
+    read_ = file.resolved();
     read_at_ = time;
   }
 
@@ -89,4 +109,24 @@ class Import final : public Scene {
 }();
 
 }  // namespace
+
+void read_imports(const Component& root) {
+  std::unordered_set<const Component*> seen{&root};
+  std::vector<const Component*> left{&root};
+  while (!left.empty()) {
+    const Component& part = *left.back();
+    left.pop_back();
+    const auto visit = [&](const Component* c) {
+      if (c && seen.insert(c).second) left.push_back(c);
+    };
+    for (Component* inner : components_of(part)) {
+      if (auto* import = dynamic_cast<Import*>(inner); import && !seen.contains(inner)) {
+        import->read_objects();
+        for (const Ref<SceneObject>& object : import->objects) visit(object.get());
+      }
+      visit(inner);
+    }
+  }
+}
+
 }  // namespace etendue

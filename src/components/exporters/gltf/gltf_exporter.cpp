@@ -18,7 +18,19 @@ void append_word(std::string& to, std::uint32_t word) {
 
 }  // namespace
 
+std::string as_uri(const std::string& name) {
+  std::string uri;
+  for (const char c : name)
+    if ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+        std::string_view("-._~/").find(c) != std::string_view::npos)
+      uri += c;
+    else
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return uri;
+}
+
 std::string Writer::write(bool binary) {
+  binary_ = binary;
   document_["asset"] = {{"version", "2.0"}, {"generator", "Etendue"}};
   document_["scene"] = 0;
   Json roots = nodes_of(*job.scene);
@@ -33,7 +45,7 @@ std::string Writer::write(bool binary) {
   buffer_.resize((buffer_.size() + 3) / 4 * 4);
   if (!buffer_.empty()) {
     document_["buffers"] = Json::array({Json{{"byteLength", buffer_.size()}}});
-    if (!binary) document_["buffers"][0]["uri"] = exporting.write_beside("data", "bin", buffer_);
+    if (!binary) document_["buffers"][0]["uri"] = as_uri(exporting.write_beside("data", "bin", std::move(buffer_)));
   }
   if (!binary) return document_.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
   std::string text = document_.dump(-1, ' ', false, Json::error_handler_t::replace), all = "glTF";
@@ -59,7 +71,8 @@ class GltfExporter final : public Exporter {
  public:
   static void describe(Description<GltfExporter>& d) {
     d.summary(
-        "Writes models of glTF 2.0: .gltf with a buffer and images beside it, or .glb in one file. Shapes become triangles, "
+        "Writes models of glTF 2.0: .gltf with a buffer and images beside it, or .glb, which holds all of them. Shapes become "
+        "triangles, "
         "surfaces the nearest of its metallic and rough materials with their extensions; environments and media are noted.",
         "The Khronos Group 2021, glTF 2.0 Specification");
   }

@@ -5,34 +5,12 @@
 #include <filesystem>
 #include <numbers>
 
+#include "files/regular_file.h"
 #include "writer.h"
 
 namespace etendue::gltf_export {
 
 namespace {
-
-constexpr float at_d_line = 587.6f;  // [nm] where indices are told
-
-Json& child(Json& of, const char* name) {
-  Json& inner = of[name];
-  if (inner.is_null()) inner = Json::object();
-  return inner;
-}
-Json& metal(Json& m) { return child(m, "pbrMetallicRoughness"); }
-
-std::array<double, 3> clamped(std::array<double, 3> rgb) {
-  for (double& x : rgb) x = std::clamp(x, 0.0, 1.0);
-  return rgb;
-}
-Json with_alpha(const std::array<double, 3>& rgb) { return {rgb[0], rgb[1], rgb[2], 1.0}; }
-
-/// Whether a map colours what it is multiplied with.
-bool colored(const Component& of, const char* member) {
-  const Ref<Component> map = part_of(of, member);
-  const Color c = map ? constant_of(*map) : nullptr;
-  if (!map || !c) return bool(map);
-  return std::ranges::any_of(rgb_of(c, ColorUse::reflectance), [](double x) { return std::abs(x - 1) > 1e-3; });
-}
 
 /// What a metal reflects of light straight on.
 std::array<double, 3> reflected(const Color& ior) {
@@ -48,6 +26,26 @@ std::array<double, 3> reflected(const Color& ior) {
 }
 
 }  // namespace
+
+Json& child(Json& of, const char* name) {
+  Json& inner = of[name];
+  if (inner.is_null()) inner = Json::object();
+  return inner;
+}
+Json& metal(Json& m) { return child(m, "pbrMetallicRoughness"); }
+
+std::array<double, 3> clamped(std::array<double, 3> rgb) {
+  for (double& x : rgb) x = std::clamp(x, 0.0, 1.0);
+  return rgb;
+}
+Json with_alpha(const std::array<double, 3>& rgb) { return {rgb[0], rgb[1], rgb[2], 1.0}; }
+
+bool colored(const Component& of, const char* member) {
+  const Ref<Component> map = part_of(of, member);
+  const Color c = map ? constant_of(*map) : nullptr;
+  if (!map || !c) return bool(map);
+  return std::ranges::any_of(rgb_of(c, ColorUse::reflectance), [](double x) { return std::abs(x - 1) > 1e-3; });
+}
 
 void Writer::extend(Json& m, const char* extension, Json content) {
   child(m, "extensions");
@@ -106,6 +104,20 @@ Writer::Look Writer::look_of(const Component& map, ColorUse use) {
   return {{0.5, 0.5, 0.5}, std::nullopt};
 }
 
+Json Writer::image_entry(const std::string& file, const std::string& ending) {
+  if (!binary_) return {{"uri", as_uri(exporting.copy_beside(file))}};
+  std::string bytes;
+  try {
+    bytes = read_regular_file(file);
+  } catch (const Error& reason) {
+    throw Error(fmt::format("cannot read '{}': {}", file, reason.what()));
+  }
+  document_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes.size()}});
+  buffer_ += bytes;
+  buffer_.resize((buffer_.size() + 3) / 4 * 4);  // the numbers that follow stay aligned
+  return {{"bufferView", document_["bufferViews"].size() - 1}, {"mimeType", ending == ".png" ? "image/png" : "image/jpeg"}};
+}
+
 // Our coordinates of a texel are shift + R(angle) (scale * uv), glTF's the same of coordinates that count v downwards, where a
 // turn has the other sense; what the two shifts differ by follows.
 std::optional<Json> Writer::texture(const Component& image, double scale_u, double scale_v, double angle, double shift_u,
@@ -127,7 +139,7 @@ std::optional<Json> Writer::texture(const Component& image, double scale_u, doub
   if (known == 0) {
     constexpr int clamp = 33071, mirror = 33648, repeated = 10497, filter_nearest = 9728, filter_linear = 9729;
     const int continued = wrap == "mirror" ? mirror : (wrap == "clamp" || wrap == "black" ? clamp : repeated);
-    document_["images"].push_back({{"uri", exporting.copy_beside(file)}});
+    document_["images"].push_back(image_entry(file, ending));
     document_["samplers"].push_back(
         {{"wrapS", continued}, {"wrapT", continued}, {"magFilter", nearest ? filter_nearest : filter_linear}});
     document_["textures"].push_back(
@@ -183,7 +195,8 @@ void Writer::emission(Json& m, const SceneObject& o, const Component& e) {
   Look light = look(e, "radiance", ColorUse::radiance);
   double most = 0;
   for (double& x : light.factor) most = std::max(most, x = std::max(0.0, x * strength_of(o, e)));
-  if (most > 1) {
+  // The importer takes it for a lamp, not for a bright screen, by the extension, however weak it is.
+  if (most > 0) {
     for (double& x : light.factor) x /= most;
     extend(m, "KHR_materials_emissive_strength", {{"emissiveStrength", most}});
   }
@@ -209,32 +222,11 @@ void Writer::absorption(Json& m, const Component& v) {
           {"attenuationColor", {std::exp(-a[0] / most), std::exp(-a[1] / most), std::exp(-a[2] / most)}}});
 }
 
-void Writer::glass(Json& m, const Component& s, bool thin) {
-  metal(m) = {{"metallicFactor", 0}, {"roughnessFactor", std::sqrt(std::max(0.0, thin ? 0.0 : scalar(s, "roughness", 0)))}};
-  if (colored(s, "transmission_tint"))
-    metal(m)["baseColorFactor"] = with_alpha(clamped(look(s, "transmission_tint", ColorUse::reflectance).factor));
-  if (colored(s, "reflection_tint")) exporting.inexact("the colour of a glass's reflections is left out", &s);
-  extend(m, "KHR_materials_transmission", {{"transmissionFactor", 1}});
-  const Color ior = color_of(s, "ior"), outside = thin ? nullptr : color_of(s, "exterior");
-  const double index = double(ior->at(at_d_line, ColorUse::coefficient)) /
-                       (outside ? double(outside->at(at_d_line, ColorUse::coefficient)) : 1.0);
-  extend(m, "KHR_materials_ior", {{"ior", index}});
-  if (index < 1) exporting.inexact("an index of refraction below that around is 1 in glTF", &s);
-  if (thin) exporting.inexact("light between the two faces of a pane is as glTF's thin walls have it", &s);
-  if (!thin) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
-  if (!thin && ior->varies()) {
-    // KHR_materials_dispersion: 20 over the Abbe number (n_d - 1) / (n_F - n_C).
-    const double spread = double(ior->at(486.1f, ColorUse::coefficient)) - double(ior->at(656.3f, ColorUse::coefficient));
-    if (spread > 0 && index > 1) extend(m, "KHR_materials_dispersion", {{"dispersion", 20 * spread / (index - 1)}});
-  }
-}
-
-void Writer::holes(Json& m, const Component& mask) {
-  const Ref<Component> opacity = part_of(mask, "opacity");
-  const double left = scalar(mask, "opacity", 1);
+void Writer::holes(Json& m, const Component& of, const char* member) {
+  const double left = scalar(of, member, 1);
   Json& factor = metal(m)["baseColorFactor"];
   if (factor.is_null()) factor = with_alpha({1, 1, 1});
-  factor[3] = std::clamp(left, 0.0, 1.0);
+  factor[3] = factor[3].get<double>() * std::clamp(left, 0.0, 1.0);
   m["alphaMode"] = "BLEND";
 }
 
@@ -248,7 +240,7 @@ void Writer::surface(Json& m, const Component& s) {
   const auto root = [&](const char* member) { return std::sqrt(std::max(0.0, scalar(s, member, 0.1))); };
   if (type == "MaskShader" || type == "NormalMapShader" || type == "BumpShader") {
     if (const Ref<Component> inner = part_of(s, "shader")) surface(m, *inner);
-    if (type == "MaskShader") holes(m, s);
+    if (type == "MaskShader") holes(m, s, "opacity");
     if (type == "BumpShader") exporting.inexact("bumps by heights are left out: glTF has maps of normals", &s);
     if (type == "NormalMapShader") {
       Json t;
@@ -262,6 +254,10 @@ void Writer::surface(Json& m, const Component& s) {
     }
     return;
   }
+  if (s.class_info().find("roughness_v") && part_of(s, "roughness_v"))
+    exporting.inexact("a surface that is less rough along one direction is as rough as along u: 'roughness_v' is left out", &s);
+  if (s.class_info().find("distribution") && word_of(s, "distribution") == "beckmann")
+    exporting.inexact("the facets of a rough surface are GGX's in glTF", &s);
   metal(m)["metallicFactor"] = 0;
   if (type == "Lambertian" || type == "OrenNayar") {
     base("color");
@@ -285,28 +281,7 @@ void Writer::surface(Json& m, const Component& s) {
     extend(m, "KHR_materials_ior", {{"ior", scalar(s, "ior", 1.5)}});
     exporting.inexact("light between the layers of a plastic is as glTF's dielectrics have it", &s);
   } else if (type == "Principled") {
-    base("base_color");
-    metal(m)["metallicFactor"] = scalar(s, "base_metalness", 0);
-    metal(m)["roughnessFactor"] = scalar(s, "specular_roughness", 0.5);
-    if (const double ior = scalar(s, "specular_ior", 1.5); ior != 1.5) extend(m, "KHR_materials_ior", {{"ior", ior}});
-    const Look tint = look(s, "specular_color", ColorUse::reflectance);
-    extend(m, "KHR_materials_specular",
-           {{"specularFactor", scalar(s, "specular_weight", 1)}, {"specularColorFactor", clamped(tint.factor)}});
-    if (const double clear = scalar(s, "transmission_weight", 0); clear > 0) {
-      extend(m, "KHR_materials_transmission", {{"transmissionFactor", clear}});
-      if (!truth_of(s, "thin_walled")) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
-    }
-    if (const double coat = scalar(s, "coat_weight", 0); coat > 0)
-      extend(m, "KHR_materials_clearcoat",
-             {{"clearcoatFactor", coat}, {"clearcoatRoughnessFactor", scalar(s, "coat_roughness", 0)}});
-    if (scalar(s, "fuzz_weight", 0) > 0)
-      extend(m, "KHR_materials_sheen",
-             {{"sheenColorFactor", clamped(look(s, "fuzz_color", ColorUse::reflectance).factor)},
-              {"sheenRoughnessFactor", scalar(s, "fuzz_roughness", 0.5)}});
-    for (const char* rest :
-         {"subsurface_weight", "thin_film_weight", "base_diffuse_roughness", "specular_roughness_anisotropy"})
-      if (s.class_info().find(rest) && scalar(s, rest, 0) > 0)
-        exporting.inexact(fmt::format("'{}' of Principled is left out", rest), &s);
+    principled(m, s);
   } else if (type == "DisneyPrincipled") {
     base("base_color");
     metal(m)["metallicFactor"] = scalar(s, "metallic", 0);

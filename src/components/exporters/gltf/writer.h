@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <initializer_list>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +20,19 @@
 namespace etendue::gltf_export {
 
 using Json = nlohmann::ordered_json;
+
+/// A file's name as a URI reference: all but letters, digits and what never means anything in one as percents (RFC 3986).
+std::string as_uri(const std::string& name);
+
+constexpr float at_d_line = 587.6f;  // [nm] where indices are told
+
+/// An object in another one, made if it is not there; of a material that of metal and roughness.
+Json& child(Json& of, const char* name);
+Json& metal(Json& material);
+std::array<double, 3> clamped(std::array<double, 3> rgb);
+Json with_alpha(const std::array<double, 3>& rgb);
+/// Whether a map colours what it is multiplied with.
+bool colored(const Component& of, const char* member);
 
 class Writer {
  public:
@@ -42,12 +57,17 @@ class Writer {
   std::optional<size_t> mesh(const SceneObject&, bool& placed);
   size_t accessor(const void* data, size_t bytes, size_t count, int component_type, const char* type, int target);
 
+  // bodies.cpp
+  void glass(Json& m, const Component& shader, bool thin);
+  void principled(Json& m, const Component& shader);
+  void principled_base(Json& m, const Component& shader, double clear);
+  void note_left_out(const Component& shader, std::initializer_list<const char*> members);
+
   // materials.cpp
   /// The index of what an object's shader, emission, sides and interior are in one.
   std::optional<size_t> material(const SceneObject&);
   void surface(Json& m, const Component& shader);
-  void glass(Json& m, const Component& shader, bool thin);
-  void holes(Json& m, const Component& mask);
+  void holes(Json& m, const Component& of, const char* member);
   void emission(Json& m, const SceneObject&, const Component& emission);
   void absorption(Json& m, const Component& interior);
   /// The mean over wavelengths as a number; what is no constant is noted, and `otherwise`.
@@ -59,12 +79,15 @@ class Writer {
   };
   Look look(const Component& of, const char* member, ColorUse);
   Look look_of(const Component& map, ColorUse);
+  /// An image's entry: in a .glb its bytes are in the buffer, otherwise its file is named.
+  Json image_entry(const std::string& file, const std::string& ending);
   std::optional<Json> texture(const Component& image, double scale_u, double scale_v, double angle, double shift_u,
                               double shift_v);
   void extend(Json& m, const char* extension, Json content);
 
   const Job& job;
   Exporting& exporting;
+  bool binary_ = false;
   Json document_;
   std::string buffer_;
   size_t made_nodes_ = 0;

@@ -136,12 +136,22 @@ void Writer::light(Node n, const char* name, const SceneObject& o, const Compone
   map(n, name, e, "radiance", ColorUse::radiance, uv);
 }
 
+/// The radiance of an EnvironmentEmission that is the same from everywhere, before its scale; null: it is not.
+static Color constant_environment(const Component& emission) {
+  const Ref<Component> map = part_of(emission, "radiance");
+  return map ? constant_of(*map) : nullptr;
+}
+
 bool Writer::light_source(const SceneObject& o, const Transform& placed) {
   const std::string& type = class_of(o);
   if (type != "Point" && type != "Distant" && type != "Environment") return false;
   const Ref<Component> e = part_of(o, "emission");
   if (!e) return true;
   const std::string& kind = class_of(*e);
+  const auto note_illuminance = [&] {
+    if (number_of(*e, "illuminance") > 0)
+      exporting.inexact("the illuminance of an environment is left out: it is as strong as its scale says", e.get());
+  };
   if (type == "Point") {
     const std::vector<double> p = numbers_of(o, "position");
     if (kind == "SpotEmission" && !part_of(*e, "picture")) {
@@ -168,6 +178,7 @@ bool Writer::light_source(const SceneObject& o, const Transform& placed) {
     const DoublePoint3 from = placed(DoublePoint3{}), to = placed(DoublePoint3{d[0], d[1], d[2]});
     value(n, "vector", "direction", fmt::format("{} {} {}", to.x - from.x, to.y - from.y, to.z - from.z));
   } else if (kind == "EnvironmentEmission" && !word_of(*e, "file").empty()) {
+    note_illuminance();
     Node n = plugin(scene_, "emitter", "envmap");
     text(n, "filename", exporting.copy_beside(word_of(*e, "file")));
     number(n, "scale", number_of(*e, "scale"));
@@ -176,6 +187,10 @@ bool Writer::light_source(const SceneObject& o, const Transform& placed) {
       exporting.inexact("the rows of an environment lie half a texel apart in Mitsuba", e.get());
   } else if (kind == "DiffuseEmission") {
     light(plugin(scene_, "emitter", "constant"), "radiance", o, *e, Uv::as_is);
+  } else if (const Color c = kind == "EnvironmentEmission" ? constant_environment(*e) : nullptr) {
+    note_illuminance();
+    const double scale = number_of(*e, "scale");
+    spectrum(plugin(scene_, "emitter", "constant"), "radiance", scale == 1 ? c : scaled_spectrum(scale, c), ColorUse::radiance);
   } else {
     exporting.inexact(fmt::format("Mitsuba has no environment like {}: it is left out", kind), e.get());
   }

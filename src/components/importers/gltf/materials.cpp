@@ -46,7 +46,9 @@ const Material& Materials::get(std::optional<size_t> material, bool colored, boo
   Material made;
   made.made = make_surface(importing_, surface, at());
   made.uv_set = uv_set_.value_or(0);
-  made.lamp = !surface.unlit && std::ranges::any_of(surface.emission.value, [](double x) { return x > 1; });
+  // A strength is given to lamps alone; without it what shines no more than white may be a screen.
+  const bool strong = material && has_extension(document_.element("materials", *material), "KHR_materials_emissive_strength");
+  made.lamp = !surface.unlit && std::ranges::any_of(surface.emission.value, [&](double x) { return x > (strong ? 0.0 : 1.0); });
   return made_[key] = std::move(made);
 }
 

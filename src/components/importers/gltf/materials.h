@@ -12,7 +12,7 @@ namespace etendue::gltf {
 struct Material {
   MadeSurface made;
   size_t uv_set = 0;
-  bool lamp = false;  ///< it shines more than a display's white
+  bool lamp = false;  ///< it shines more than a display's white, or has a strength
 };
 
 /// Whether an extension of materials is read, or changes nothing that a path tracer shows.

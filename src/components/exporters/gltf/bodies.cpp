@@ -1,0 +1,113 @@
+// Transparent bodies, and those of Principled: what glTF has for each of their members, and a note of each that it has not.
+
+#include <algorithm>
+#include <cmath>
+
+#include "writer.h"
+
+namespace etendue::gltf_export {
+
+void Writer::glass(Json& m, const Component& s, bool thin) {
+  metal(m) = {{"metallicFactor", 0}, {"roughnessFactor", std::sqrt(std::max(0.0, thin ? 0.0 : scalar(s, "roughness", 0)))}};
+  Look tint;
+  for (const char* member : {"transmission_tint", "color"})
+    if (s.class_info().find(member) && colored(s, member)) {
+      const Look l = look(s, member, ColorUse::reflectance);
+      for (size_t i = 0; i < 3; ++i) tint.factor[i] *= l.factor[i];
+      if (l.texture && tint.texture) exporting.inexact("a second texture of a pane's colour is left out", &s);
+      if (l.texture && !tint.texture) tint.texture = l.texture;
+    }
+  metal(m)["baseColorFactor"] = with_alpha(clamped(tint.factor));
+  if (tint.texture) metal(m)["baseColorTexture"] = *tint.texture;
+  if (colored(s, "reflection_tint")) exporting.inexact("the colour of a glass's reflections is left out", &s);
+  extend(m, "KHR_materials_transmission", {{"transmissionFactor", 1}});
+  const Color ior = color_of(s, "ior"), outside = thin ? nullptr : color_of(s, "exterior");
+  const double index = double(ior->at(at_d_line, ColorUse::coefficient)) /
+                       (outside ? double(outside->at(at_d_line, ColorUse::coefficient)) : 1.0);
+  extend(m, "KHR_materials_ior", {{"ior", index}});
+  if (index < 1) exporting.inexact("an index of refraction below that around is 1 in glTF", &s);
+  if (thin) exporting.inexact("light between the two faces of a pane is as glTF's thin walls have it", &s);
+  if (!thin) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
+  if (!thin && ior->varies()) {
+    // KHR_materials_dispersion: 20 over the Abbe number (n_d - 1) / (n_F - n_C).
+    const double spread = double(ior->at(486.1f, ColorUse::coefficient)) - double(ior->at(656.3f, ColorUse::coefficient));
+    if (spread > 0 && index > 1) extend(m, "KHR_materials_dispersion", {{"dispersion", 20 * spread / (index - 1)}});
+  }
+}
+
+void Writer::note_left_out(const Component& s, std::initializer_list<const char*> members) {
+  const Ref<Component> plain = s.class_info().create();
+  for (const char* member : members) {
+    const Ref<Component> map = part_of(s, member);
+    const Color usual = color_of(*part_of(*plain, member), "value"), c = map ? constant_of(*map) : nullptr;
+    if (!map || !usual || (c && rgb_of(c, ColorUse::reflectance) == rgb_of(usual, ColorUse::reflectance))) continue;
+    exporting.inexact(fmt::format("'{}' of {} is left out", member, class_of(s)), &s);
+  }
+}
+
+// Light that goes through has the base's colour in glTF; of what is nothing but clear that is transmission_color.
+void Writer::principled_base(Json& m, const Component& s, double clear) {
+  const double metalness = scalar(s, "base_metalness", 0);
+  const bool all_clear = clear >= 1 && metalness <= 0;
+  Look base = look(s, all_clear ? "transmission_color" : "base_color", ColorUse::reflectance);
+  const double weight = all_clear ? 1 : scalar(s, "base_weight", 1);
+  for (double& x : base.factor) x *= weight;
+  metal(m) = {{"baseColorFactor", with_alpha(clamped(base.factor))},
+              {"metallicFactor", metalness},
+              {"roughnessFactor", scalar(s, "specular_roughness", 0.5)}};
+  if (base.texture) metal(m)["baseColorTexture"] = *base.texture;
+  if (clear > 0 && !all_clear) {
+    const Look through = look(s, "transmission_color", ColorUse::reflectance);
+    if (through.factor != base.factor || through.texture != base.texture)
+      exporting.inexact("'transmission_color' of Principled is left out: light has its base's colour", &s);
+  }
+}
+
+void Writer::principled(Json& m, const Component& s) {
+  const double clear = scalar(s, "transmission_weight", 0);
+  principled_base(m, s, clear);
+  if (const double ior = scalar(s, "specular_ior", 1.5); ior != 1.5) extend(m, "KHR_materials_ior", {{"ior", ior}});
+  const Look tint = look(s, "specular_color", ColorUse::reflectance);
+  const double specular = scalar(s, "specular_weight", 1);
+  if (specular > 1) exporting.inexact("a 'specular_weight' above 1 is 1 in glTF", &s);
+  Json shine{{"specularFactor", std::clamp(specular, 0.0, 1.0)}, {"specularColorFactor", clamped(tint.factor)}};
+  if (tint.texture) shine["specularColorTexture"] = *tint.texture;
+  extend(m, "KHR_materials_specular", std::move(shine));
+  if (clear > 0) {
+    const bool thin = truth_of(s, "thin_walled");
+    extend(m, "KHR_materials_transmission", {{"transmissionFactor", clear}});
+    if (!thin) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
+    // KHR_materials_dispersion: 20 over the Abbe number.
+    if (const double amount = number_of(s, "transmission_dispersion_scale"); amount > 0 && !thin)
+      extend(m, "KHR_materials_dispersion",
+             {{"dispersion", 20 * amount / number_of(s, "transmission_dispersion_abbe_number")}});
+  }
+  if (const double coat = scalar(s, "coat_weight", 0); coat > 0) {
+    extend(m, "KHR_materials_clearcoat",
+           {{"clearcoatFactor", coat}, {"clearcoatRoughnessFactor", scalar(s, "coat_roughness", 0)}});
+    if (number_of(s, "coat_ior") != 1.5) exporting.inexact("the index of a clear coat is 1.5 in glTF", &s);
+    note_left_out(s, {"coat_color", "coat_roughness_anisotropy"});
+    if (number_of(s, "coat_darkening") > 0) exporting.inexact("a clear coat darkens nothing in glTF", &s);
+  }
+  if (const double weight = scalar(s, "fuzz_weight", 0); weight > 0) {
+    Look fuzz = look(s, "fuzz_color", ColorUse::reflectance);
+    for (double& x : fuzz.factor) x *= weight;
+    Json sheen{{"sheenColorFactor", clamped(fuzz.factor)}, {"sheenRoughnessFactor", scalar(s, "fuzz_roughness", 0.5)}};
+    if (fuzz.texture) sheen["sheenColorTexture"] = *fuzz.texture;
+    extend(m, "KHR_materials_sheen", std::move(sheen));
+  }
+  if (const double film = scalar(s, "thin_film_weight", 0); film > 0) {
+    const double thickness = scalar(s, "thin_film_thickness", 500);  // [nm], as in glTF
+    extend(m, "KHR_materials_iridescence",
+           {{"iridescenceFactor", film},
+            {"iridescenceIor", number_of(s, "thin_film_ior")},
+            {"iridescenceThicknessMinimum", thickness},
+            {"iridescenceThicknessMaximum", thickness}});
+  }
+  note_left_out(s, {"subsurface_weight", "base_diffuse_roughness", "specular_roughness_anisotropy"});
+  const Ref<Component> opacity = part_of(s, "geometry_opacity");
+  const Color there = opacity ? constant_of(*opacity) : nullptr;
+  if (!there || there->at(at_d_line, ColorUse::coefficient) < 1) holes(m, s, "geometry_opacity");
+}
+
+}  // namespace etendue::gltf_export
