@@ -5,6 +5,7 @@
 
 #include "etendue/scene.h"
 #include "etendue/shader.h"  // objects own shaders
+#include "geometry/sound_ray.h"
 #include "primitives.h"
 
 namespace etendue {
@@ -30,12 +31,11 @@ class Mailbox {
 /// a plane is at a place just beside it. (The smallest float is 1e-45, the largest number of these 1e45 * 1e38.)
 struct CellRay {
   double origin[3], direction[3], inverse[3];
-  bool finite = true;  ///< others are in no cell
-  explicit CellRay(const Ray& ray) {
+  bool sound;  ///< others are in no cell
+  explicit CellRay(const Ray& ray) : sound(squares_are_floats(ray)) {
     for (int k = 0; k < 3; ++k) {
       origin[k] = double(ray.origin[k]);
       direction[k] = double(ray.direction[k]);
-      finite &= std::isfinite(origin[k]) && std::isfinite(direction[k]);
       if (direction[k] == 0) direction[k] = 1e-60;
       inverse[k] = 1 / direction[k];
     }

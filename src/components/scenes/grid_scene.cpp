@@ -23,7 +23,7 @@ class GridScene final : public CellScene<GridScene> {
   void walk(const Ray& ray, const float& limit, const Visit& visit) const {
     if (offsets_.empty()) return;
     const CellRay r(ray);
-    if (!r.finite) return;
+    if (!r.sound) return;
     double entry = 0, exit = double(limit);
     for (int k = 0; k < 3; ++k) {
       const double t0 = (box_.low[k] - r.origin[k]) * r.inverse[k], t1 = (box_.high[k] - r.origin[k]) * r.inverse[k];

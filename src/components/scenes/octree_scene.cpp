@@ -25,7 +25,7 @@ class OctreeScene final : public CellScene<OctreeScene> {
   void walk(const Ray& ray, const float& limit, const Visit& visit) const {
     if (nodes_.empty()) return;
     const CellRay r(ray);
-    if (!r.finite) return;
+    if (!r.sound) return;
     double entry[3], exit[3];
     unsigned mirrored = 0;  // axes along which the ray goes down: seen in a mirror, it goes up
     for (int k = 0; k < 3; ++k) {
