@@ -2,8 +2,8 @@
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { effect } from "@preact/signals";
-import UPlot from "uplot";
-import { brief } from "../model/numbers.ts";
+import type UPlot from "uplot";
+import { errorPlot } from "../parts/error_plot.ts";
 import { errorCourse, progress } from "../model/state.ts";
 import { percent } from "../model/numbers.ts";
 import { isDark } from "../theme.ts";
@@ -38,23 +38,5 @@ export function ErrorCurve(): JSX.Element {
 }
 
 function make(parent: HTMLElement, dark: boolean): UPlot {
-  const ink = dark ? "#aab4be" : "#4d5863";
-  const grid = { stroke: dark ? "#ffffff14" : "#00000014", width: 1 };
-  const axis = { stroke: ink, grid, ticks: grid, font: "11px system-ui", size: 34 };
-  return new UPlot(
-    {
-      width: Math.max(200, parent.clientWidth),
-      height: 150,
-      legend: { show: false },
-      cursor: { y: false },
-      scales: { x: { time: false, distr: 3, log: 10 }, y: { distr: 3, log: 10 } },
-      axes: [
-        { ...axis, size: 28, values: (_u, v) => v.map((x) => (x === null ? "" : `${brief(x, 2)} s`)) },
-        { ...axis, size: 52, values: (_u, v) => v.map((y) => (y === null ? "" : `${brief(y, 2)} %`)) },
-      ],
-      series: [{}, { stroke: dark ? "#7cc0ff" : "#0b65b8", width: 1.6, points: { show: false } }],
-    },
-    [[], []],
-    parent,
-  );
+  return errorPlot(parent, dark, 150, [{ stroke: dark ? "#7cc0ff" : "#0b65b8", width: 1.6, points: { show: false } }], [[], []]);
 }

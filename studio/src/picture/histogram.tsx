@@ -1,30 +1,19 @@
 // How much of the picture has what brightness: red, green and blue over powers of two.
-import { computed, useSignal, useSignalEffect } from "@preact/signals";
+import { computed, useSignalEffect } from "@preact/signals";
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
 import { texts } from "../texts.ts";
 import { isDark } from "../theme.ts";
+import { useCounted } from "./counted.ts";
 import { histogram, type Histogram } from "./film.ts";
-import { falseColor, falseRange, pixelsVersion, shownFilm, stops } from "./store.ts";
+import { falseColor, falseRange, stops } from "./store.ts";
 
 const width = 240;
 const height = 72;
 
 export function HistogramView(): JSX.Element {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const counted = useSignal<Histogram | null>(null);
-  const last = useRef({ at: 0, timer: 0 });
-  useSignalEffect(() => {
-    void pixelsVersion.value;
-    const now = shownFilm.value;
-    if (!now) return;
-    clearTimeout(last.current.timer);
-    const wait = Math.max(0, last.current.at + 300 - performance.now());
-    last.current.timer = window.setTimeout(() => {
-      last.current.at = performance.now();
-      counted.value = histogram(now);
-    }, wait);
-  });
+  const counted = useCounted(histogram);
   useSignalEffect(() => {
     const h = counted.value;
     const context = canvas.current?.getContext("2d");

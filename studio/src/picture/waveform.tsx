@@ -1,26 +1,16 @@
 // The waveform beside the histogram: which column of the picture has what brightness.
-import { useSignal, useSignalEffect } from "@preact/signals";
+import { useSignalEffect } from "@preact/signals";
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
 import { texts } from "../texts.ts";
 import { isDark } from "../theme.ts";
+import { useCounted } from "./counted.ts";
 import { waveform, type Waveform } from "./scope.ts";
-import { pixelsVersion, shownFilm, stops } from "./store.ts";
+import { stops } from "./store.ts";
 
 export function WaveformView(): JSX.Element {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const counted = useSignal<Waveform | null>(null);
-  const last = useRef({ at: 0, timer: 0 });
-  useSignalEffect(() => {
-    void pixelsVersion.value;
-    const now = shownFilm.value;
-    if (!now) return;
-    clearTimeout(last.current.timer);
-    last.current.timer = window.setTimeout(() => {
-      last.current.at = performance.now();
-      counted.value = waveform(now);
-    }, Math.max(0, last.current.at + 300 - performance.now()));
-  });
+  const counted = useCounted(waveform);
   useSignalEffect(() => {
     const w = counted.value;
     const context = canvas.current?.getContext("2d");

@@ -2,8 +2,9 @@
 import { signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import UPlot from "uplot";
-import { brief, percent } from "../model/numbers.ts";
+import type UPlot from "uplot";
+import { percent } from "../model/numbers.ts";
+import { errorPlot } from "../parts/error_plot.ts";
 import { renders } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { isDark } from "../theme.ts";
@@ -65,22 +66,6 @@ function make(parent: HTMLElement, dark: boolean, all: Course[]): UPlot {
     const known = new Map(course);
     return times.map((s) => (known.has(s) ? (known.get(s) as number) * 100 : null));
   });
-  const grid = { stroke: dark ? "#ffffff14" : "#00000014", width: 1 };
-  const axis = { stroke: dark ? "#aab4be" : "#4d5863", grid, ticks: grid, font: "11px system-ui" };
-  return new UPlot(
-    {
-      width: Math.max(200, parent.clientWidth),
-      height: 190,
-      legend: { show: false },
-      cursor: { y: false },
-      scales: { x: { time: false, distr: 3, log: 10 }, y: { distr: 3, log: 10 } },
-      axes: [
-        { ...axis, size: 28, values: (_u, v) => v.map((x) => (x === null ? "" : `${brief(x, 2)} s`)) },
-        { ...axis, size: 52, values: (_u, v) => v.map((y) => (y === null ? "" : `${brief(y, 2)} %`)) },
-      ],
-      series: [{}, ...all.map((course, i) => ({ stroke: lineColors[i % lineColors.length] as string, width: 1.8, points: { show: course.length === 1 }, spanGaps: true }))],
-    },
-    [times, ...rows],
-    parent,
-  );
+  const lines = all.map((course, i) => ({ stroke: lineColors[i % lineColors.length] as string, width: 1.8, points: { show: course.length === 1 }, spanGaps: true }));
+  return errorPlot(parent, dark, 190, lines, [times, ...rows]);
 }
