@@ -172,17 +172,6 @@ Bounds3 Transform::operator()(const Bounds3& b) const {
   return result;
 }
 
-Vector3 Transform::error_bound(const Point3& p, const Vector3& error) const {
-  // Three products, three sums and the rounding of the matrix itself: five roundings at most meet in one term.
-  constexpr float g = rounding_bound(5);
-  const auto row = [&](size_t r) {
-    const float a = std::abs(m_[4 * r]), b = std::abs(m_[4 * r + 1]), c = std::abs(m_[4 * r + 2]);
-    return g * (a * std::abs(p.x) + b * std::abs(p.y) + c * std::abs(p.z) + std::abs(m_[4 * r + 3])) +
-           (1 + g) * (a * error.x + b * error.y + c * error.z);
-  };
-  return {row(0), row(1), row(2)};
-}
-
 AnimatedTransform::AnimatedTransform(std::vector<Key> keys) : keys_(std::move(keys)) {
   if (keys_.empty()) throw Error("an animated transform needs at least one key");
   still_ = keys_.front().transform;

@@ -84,11 +84,12 @@ inline void carry_out(const Transform& transform, SurfacePoint& p) {
   p.position = transform(inside);
   const Normal3 n = transform(p.normal);
   const float stretch = length(Vector3(n));
+  const bool flat = p.shading_normal == p.normal;
   p.normal = Normal3(Vector3(n) / stretch);
-  p.shading_normal = normalize(transform(p.shading_normal));
+  p.shading_normal = flat ? p.normal : normalize(transform(p.shading_normal));
   p.dpdu = transform(p.dpdu);
   p.dpdv = transform(p.dpdv);
-  const Vector3 back = transform.inverse().error_bound(p.position);
+  const Vector3 back = transform.error_bound_back(p.position);
   p.error = p.error / stretch + 2 * along(p.normal, transform.error_bound(inside, back));
 }
 

@@ -71,10 +71,21 @@ class Transform {
     return {i[0] * v.x + i[1] * v.y + i[2] * v.z, i[4] * v.x + i[5] * v.y + i[6] * v.z, i[8] * v.x + i[9] * v.y + i[10] * v.z};
   }
 
-  /// A bound of the absolute rounding error of transforming p, itself known to within `error`.
-  Vector3 error_bound(const Point3& p, const Vector3& error = {}) const;
+  /// A bound of the absolute rounding error of transforming p, itself known to within `error`; and of bringing p back.
+  Vector3 error_bound(const Point3& p, const Vector3& error = {}) const { return bound(m_, p, error); }
+  Vector3 error_bound_back(const Point3& p) const { return bound(inverse_, p, {}); }
 
  private:
+  static Vector3 bound(const Matrix& m, const Point3& p, const Vector3& error) {
+    // Three products, three sums and the rounding of the matrix itself: five roundings at most meet in one term.
+    constexpr float g = rounding_bound(5);
+    const auto row = [&](size_t r) {
+      const float a = std::abs(m[4 * r]), b = std::abs(m[4 * r + 1]), c = std::abs(m[4 * r + 2]);
+      return g * (a * std::abs(p.x) + b * std::abs(p.y) + c * std::abs(p.z) + std::abs(m[4 * r + 3])) +
+             (1 + g) * (a * error.x + b * error.y + c * error.z);
+    };
+    return {row(0), row(1), row(2)};
+  }
   static DoublePoint3 times(const DoubleMatrix& m, const DoublePoint3& p) {
     return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
             m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
