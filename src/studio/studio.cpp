@@ -179,6 +179,7 @@ void Studio::answer() {
 }
 
 void Studio::answer(const Task& task) {
+  const bool ended_before = goodbye_;
   Json reply = {{"id", nullptr}, {"ok", false}};
   try {
     Json request;
@@ -192,6 +193,7 @@ void Studio::answer(const Task& task) {
     if (id != request.end() &&
         (id->is_number() || (id->is_string() && id->get_ref<const std::string&>().size() <= largest_echo)))
       reply["id"] = *id;
+    if (goodbye_) throw RequestError("ending", "the program is about to end");
     const Call call{*this, *task.from, request, reply["id"]};
     const Request* found = find_request(call.text("do"));
     if (settings_.read_only && !found->read_only)
@@ -208,6 +210,9 @@ void Studio::answer(const Task& task) {
     task.from->send(written(reply));
   } catch (const std::exception&) {  // no memory for it: the page will ask again
   }
+  if (!goodbye_ || ended_before) return;
+  broadcast({{"event", "goodbye"}});
+  if (on_shutdown) on_shutdown();
 }
 
 std::vector<Error> errors_at_hand() {
@@ -228,8 +233,7 @@ std::vector<Error> errors_at_hand() {
 
 void Studio::shutdown(bool discard) {
   discarded_ = discard;
-  broadcast({{"event", "goodbye"}});
-  if (on_shutdown) on_shutdown();
+  goodbye_ = true;
 }
 
 std::shared_ptr<Render> Studio::valid_render() {

@@ -142,6 +142,7 @@ class Studio {
   int movement = 0;  ///< counts movements of cameras: all steps of one are one step of undo
   Queue& queue() { return queue_; }
   Tasks& tasks() { return checks_; }
+  /// Ends the program once the request at hand is answered.
   void shutdown(bool discard);
   void wake_viewer();
 
@@ -204,6 +205,8 @@ class Studio {
   bool viewer_woken_ = false;
   std::atomic<bool> ending_{false};
   std::atomic<bool> discarded_{false};  ///< a page gave up what is not saved
+  /// A page asked for the end: its own answer is the last. Of the thread that answers.
+  bool goodbye_ = false;
   Queue queue_;
   Tasks checks_;
   std::thread answerer_, viewer_;

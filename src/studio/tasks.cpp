@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 
 #include "etendue/core/error.h"
@@ -23,8 +24,9 @@ Tasks::~Tasks() {
 
 void Tasks::sweep() {
   running_.remove_if([](Running& r) {
-    if (r.done) r.thread.join();
-    return r.done.load();
+    if (!r.told) return false;
+    r.thread.join();
+    return true;
   });
 }
 
@@ -32,7 +34,8 @@ int Tasks::work(const std::string& title, std::function<Json(const Work&)> what)
   constexpr size_t most = 2;
   const std::lock_guard lock(guard_);
   sweep();
-  if (running_.size() >= most) throw Error("two tasks are running already: wait until one is done, or end it");
+  if (size_t(std::ranges::count_if(running_, [](const Running& r) { return !r.over; })) >= most)
+    throw Error("two tasks are running already: wait until one is done, or end it");
   Running& entry = running_.emplace_back();
   entry.number = next_++;
   entry.thread = std::thread([this, &entry, title, what = std::move(what)] {
@@ -70,8 +73,9 @@ int Tasks::work(const std::string& title, std::function<Json(const Work&)> what)
     }
     last["text"] = text;
     last["fraction"] = 1;
+    entry.over = true;
     tell_(last);
-    entry.done = true;
+    entry.told = true;
   });
   return entry.number;
 }
@@ -79,7 +83,7 @@ int Tasks::work(const std::string& title, std::function<Json(const Work&)> what)
 void Tasks::end(int number) {
   const std::lock_guard lock(guard_);
   for (Running& r : running_)
-    if (r.number == number && !r.done) {
+    if (r.number == number && !r.over) {
       r.ended = true;
       return;
     }

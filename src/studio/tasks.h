@@ -39,7 +39,9 @@ class Tasks {
  private:
   struct Running {
     int number = 0;
-    std::atomic<bool> ended{false}, done{false};
+    std::atomic<bool> ended{false};  ///< it is to give up
+    std::atomic<bool> over{false};   ///< it has no more to do: whoever hears its last event finds it so
+    std::atomic<bool> told{false};   ///< and has said so: its thread may be waited for by who holds what `tell` needs
     std::thread thread;
   };
   void sweep();

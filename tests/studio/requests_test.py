@@ -181,6 +181,16 @@ class Requests(unittest.TestCase):
                 time.sleep(0.1)
         self.assertTrue(studio.alive())
 
+    def test_a_word_to_end_is_heard_whenever_it_comes(self):
+        # Also between the end of the program and its new beginning, where one got lost.
+        for pause in (0, 0.002, 0.01, 0.05):
+            studio = self.open()
+            with studio.page() as page:
+                self.assertTrue(page.ask("begin_again")["ok"], "the answer comes before the end")
+                time.sleep(pause)
+                studio.process.terminate()
+                self.assertIsNotNone(studio.process.wait(20))
+
 
 if __name__ == "__main__":
     unittest.main()

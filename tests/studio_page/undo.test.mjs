@@ -71,7 +71,8 @@ test(`${wanted} random edits are undone to the first byte`, { timeout: 1500000 }
   for (const comment of scene.match(/#.*/g)) assert.ok(changed.includes(comment), `${comment} is still there`);
   const count = () => page.evaluate(() => studio.state.document.undo_count);
   const steps = await count();
-  assert.ok(steps >= 400, `${steps} steps of undo`);
+  // Quick edits of one member are one step.
+  assert.ok(steps >= 0.8 * wanted, `${steps} steps of undo`);
   await page.locator("[role=tree]").focus();
   for (let left = steps; left > 0; left = await count()) {
     await page.keyboard.press("Control+z");

@@ -27,6 +27,9 @@ namespace fs = std::filesystem;
 /// Where a program that begins again finds the port and the token that its pages know.
 constexpr const char* again_variable = "ETENDUE_STUDIO_AGAIN";
 
+/// The signal by which the program tells itself to end: not that of others, who want no new beginning.
+constexpr int to_itself = SIGUSR1;
+
 /// The page: beside the program as it is built, or as it is installed.
 std::string page_file() {
   std::error_code error;
@@ -66,14 +69,13 @@ std::vector<std::string> own_arguments() {
   std::vector<char*> list;
   for (std::string& a : arguments) list.push_back(a.data());
   list.push_back(nullptr);
-  // A word to end that nobody has heard yet was for this program, not the next one.
-  sigset_t ends, none;
+  // A signal that waits would wait for the next program: its own is taken; one to end ends this program here.
+  sigset_t own_end, none;
   sigemptyset(&none);
-  sigemptyset(&ends);
-  sigaddset(&ends, SIGINT);
-  sigaddset(&ends, SIGTERM);
+  sigemptyset(&own_end);
+  sigaddset(&own_end, to_itself);
   const timespec at_once{};
-  while (sigtimedwait(&ends, nullptr, &at_once) > 0) continue;
+  while (sigtimedwait(&own_end, nullptr, &at_once) > 0) continue;
   pthread_sigmask(SIG_SETMASK, &none, nullptr);
   execv("/proc/self/exe", list.data());
   throw Error("the program could not begin again");
@@ -110,6 +112,7 @@ int serve(studio::StudioSettings settings, studio::ServerSettings server_setting
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, to_itself);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
 
@@ -119,20 +122,22 @@ int serve(studio::StudioSettings settings, studio::ServerSettings server_setting
   else
     studio.begin(file);
   studio::Server server(studio, std::move(server_settings));
-  studio.on_shutdown = [&] { kill(getpid(), SIGTERM); };
+  studio.on_shutdown = [&] { kill(getpid(), to_itself); };
+  bool by_others = false;
   std::thread waiter([&] {
     int signal = 0;
     sigwait(&signals, &signal);
+    by_others = signal != to_itself;
     server.stop();
   });
   fmt::print("{}\n", server.address());
   std::fflush(stdout);
   if (browser && !again) open_browser(server.address());
   server.run();
-  kill(getpid(), SIGTERM);  // in case it ended by itself
+  kill(getpid(), to_itself);  // in case it ended by itself
   waiter.join();
   if (const std::string aside = studio.end(); !aside.empty()) fmt::print(stderr, "What was not saved is in {}\n", aside);
-  if (studio.begin_again) begin_again(server.port_and_token(), studio.document().file());
+  if (studio.begin_again && !by_others) begin_again(server.port_and_token(), studio.document().file());
   return exit_status::done;
 }
 

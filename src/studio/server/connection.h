@@ -34,7 +34,10 @@ struct Server::Members {
   std::list<std::weak_ptr<Visitor>> visitors;  ///< who has not shown a token yet or only fetches the page, oldest first
   std::set<std::shared_ptr<Page>> pages;
   std::chrono::steady_clock::time_point next_login{};
+  bool ending = false;
+  asio::steady_timer farewell{context};  ///< runs while pages are told what they have not heard yet
 
+  void end();
   void accept();
   bool knows(const http::request<http::string_body>&) const;
   http::response<http::string_body> answer(const http::request<http::string_body>&);
@@ -48,6 +51,7 @@ inline constexpr size_t header = 8 << 10, body = 4 << 10;   ///< [bytes]
 inline constexpr size_t message = 32 << 20;                 ///< of a page: a text may be large [bytes]
 inline constexpr size_t unsent = 64 << 20;                  ///< words for a page that does not read them [bytes]
 inline constexpr int unanswered = 64;                       ///< requests of a page
+inline constexpr auto farewell = std::chrono::seconds(2);   ///< for what pages are still to hear at the end
 }  // namespace limits
 
 /// A connection before it is a page's: one request at a time.
@@ -70,6 +74,8 @@ class Page : public Browser, public std::enable_shared_from_this<Page> {
  public:
   Page(beast::tcp_stream stream, Server::Members& server) : socket_(std::move(stream)), server_(server) {}
   void begin(http::request<http::string_body>);
+  /// Says goodbye when all words are sent.
+  void finish();
   void end();
 
   // Of the studio's threads.
@@ -90,7 +96,7 @@ class Page : public Browser, public std::enable_shared_from_this<Page> {
   std::map<int, std::shared_ptr<const Frame>> shown_;  // the frames that were sent last, by slots
   int last_slot_ = 0;
   int unanswered_ = 0;
-  bool writing_ = false, reading_ = false, lost_ = false;
+  bool writing_ = false, reading_ = false, lost_ = false, finishing_ = false, closing_ = false;
 };
 
 }  // namespace etendue::studio

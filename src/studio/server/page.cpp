@@ -23,6 +23,12 @@ void Page::begin(http::request<http::string_body> request) {
   });
 }
 
+void Page::finish() {
+  if (!socket_.is_open()) return lost();
+  finishing_ = true;
+  write();
+}
+
 void Page::end() {
   beast::error_code ignored;
   beast::get_lowest_layer(socket_).socket().close(ignored);
@@ -33,6 +39,7 @@ void Page::lost() {
   server_.studio.leave(*this);
   end();
   server_.pages.erase(shared_from_this());
+  if (server_.ending && server_.pages.empty()) server_.farewell.cancel();
 }
 
 void Page::read() {
@@ -41,7 +48,7 @@ void Page::read() {
   socket_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, size_t) {
     self->reading_ = false;
     if (error) return self->lost();
-    if (!self->socket_.got_text()) {  // pages send words only
+    if (!self->socket_.got_text() || self->finishing_) {  // pages send words only, and at the end too late
       self->buffer_.consume(self->buffer_.size());
       return self->read();
     }
@@ -83,6 +90,10 @@ void Page::write() {
   if (!words_.empty()) {
     socket_.text(true);
     next = asio::buffer(*words_.front());
+  } else if (finishing_) {
+    if (!std::exchange(closing_, true))
+      socket_.async_close(websocket::close_code::going_away, [self = shared_from_this()](beast::error_code) { self->lost(); });
+    return;
   } else {
     // Slots in turns, so that one which always has something new does not hold up the others.
     const auto frames = server_.studio.frames(*this);

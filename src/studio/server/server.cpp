@@ -111,7 +111,7 @@ http::response<http::string_body> Server::Members::answer(const http::request<ht
 
 void Server::Members::accept() {
   acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
-    if (error == asio::error::operation_aborted) return;
+    if (error == asio::error::operation_aborted || ending) return;
     if (!error) {
       visitors.remove_if([](const auto& v) { return v.expired(); });
       if (visitors.size() >= limits::visitors) {  // whoever stood there longest without a word goes
@@ -130,9 +130,23 @@ void Server::Members::accept() {
     // The system has no more files, perhaps: not at once again.
     auto timer = std::make_shared<asio::steady_timer>(context, std::chrono::milliseconds(100));
     timer->async_wait([this, timer](beast::error_code stopped) {
-      if (!stopped) accept();
+      if (!stopped && !ending) accept();
     });
   });
+}
+
+void Server::Members::end() {
+  if (std::exchange(ending, true)) return;
+  beast::error_code ignored;
+  acceptor.close(ignored);
+  for (const auto& v : visitors)
+    if (const auto visitor = v.lock()) visitor->close();
+  // Whoever does not take what it is told is left.
+  farewell.expires_after(limits::farewell);
+  farewell.async_wait([this](beast::error_code) { context.stop(); });
+  const auto all = pages;  // `finish` may take one out
+  for (const auto& page : all) page->finish();
+  if (pages.empty()) farewell.cancel();
 }
 
 void Visitor::read() {
@@ -147,7 +161,7 @@ void Visitor::read() {
 void Visitor::close() { stream_.close(); }
 
 void Visitor::have(beast::error_code error) {
-  if (error) return close();
+  if (error || server_.ending) return close();
   http::request<http::string_body> request = parser_->release();
   auto response = std::make_shared<http::response<http::string_body>>();
   try {
@@ -221,6 +235,8 @@ void Server::run() {
   }
 }
 
-void Server::stop() { m->context.stop(); }
+void Server::stop() {
+  asio::post(m->context, [members = m.get()] { members->end(); });
+}
 
 }  // namespace etendue::studio

@@ -28,7 +28,7 @@ class Server {
   std::string address() const;
   /// "7007 TOKEN": what a server needs to be found where this one was.
   std::string port_and_token() const;
-  /// Serves until `stop`.
+  /// Serves until `stop`; before it returns, pages hear what they have been told, for a moment at most.
   void run();
   /// From any thread, or a signal handler's thread.
   void stop();
