@@ -10,10 +10,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <functional>
 #include <utility>
 
 #include "contained_file.h"
 #include "etendue/core/error.h"
+#include "gzip.h"
 #include "input_files.h"
 
 namespace etendue {
@@ -45,23 +47,44 @@ void read_all(RegularFile& file, char* to) {
   if (file.read_some(to, file.size()) < file.size()) throw Error("it became shorter while it was read");
 }
 
-/// A file in memory that holds what lies in a container.
-int unpacked(const ContainedFile& contained) {
-  const std::string bytes = contained.unpack(contained.container, contained.name);
+/// A file in memory alone that holds what `fill` writes to it.
+int file_in_memory(const std::function<void(int)>& fill) {
   const int descriptor = ::memfd_create("contained", MFD_CLOEXEC);
   if (descriptor < 0) refuse(errno);
-  for (size_t done = 0; done < bytes.size();) {
-    const ssize_t written = ::write(descriptor, bytes.data() + done, bytes.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      const int reason = errno;
-      ::close(descriptor);
-      refuse(reason);
-    }
-    done += size_t(written);
+  try {
+    fill(descriptor);
+  } catch (...) {
+    ::close(descriptor);
+    throw;
   }
   ::lseek(descriptor, 0, SEEK_SET);
   return descriptor;
+}
+
+int unpacked(const ContainedFile& contained) {
+  const std::string bytes = contained.unpack(contained.container, contained.name);
+  return file_in_memory([&](int file) { write_to(file, bytes.data(), bytes.size()); });
+}
+
+int opened(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (descriptor < 0) refuse(errno);
+  return descriptor;
+}
+
+int unpacked_gzip(const std::string& path) {
+  const int packed = opened(path);
+  try {
+    struct stat status{};
+    if (::fstat(packed, &status) != 0) refuse(errno);
+    require_regular(status);
+    const int descriptor = file_in_memory([&](int file) { unpack_gzip(packed, file); });
+    ::close(packed);
+    return descriptor;
+  } catch (...) {
+    ::close(packed);
+    throw;
+  }
 }
 
 }  // namespace
@@ -89,8 +112,8 @@ RegularFile::RegularFile(const std::string& path) : path_(path) {
   // Looked at before it is opened, for opening a device may do something; and after, for it may have been exchanged.
   require_regular_file(path);
   const auto contained = contained_file(path);
-  const int descriptor = contained ? unpacked(*contained) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (descriptor < 0) refuse(errno);
+  const bool in_memory = contained || named_gzip(path);
+  const int descriptor = contained ? unpacked(*contained) : in_memory ? unpacked_gzip(path) : opened(path);
   file_.reset(::fdopen(descriptor, "rb"));
   if (!file_) {
     const int reason = errno;
@@ -101,7 +124,7 @@ RegularFile::RegularFile(const std::string& path) : path_(path) {
   if (::fstat(descriptor, &status) != 0) refuse(errno);
   require_regular(status);
   size_ = std::uint64_t(status.st_size);
-  if (contained) path_ = fmt::format("/proc/self/fd/{}", descriptor);
+  if (in_memory) path_ = fmt::format("/proc/self/fd/{}", descriptor);
 }
 
 std::string RegularFile::path_to_open() const { return path_; }

@@ -3,8 +3,8 @@
 #include "etendue/importer.h"
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
+
+#include "files/gzip.h"
 
 namespace etendue {
 
@@ -24,10 +24,8 @@ std::vector<Ref<Importer>> all_importers() {
 }  // namespace
 
 Ref<Importer> importer_of(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  if (ending.size() < 2) return nullptr;
-  ending.erase(0, 1);
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string ending = ending_of_contents(path);
+  if (ending.empty()) return nullptr;
   for (Ref<Importer>& importer : all_importers())
     if (std::ranges::count(importer->extensions(), ending)) return importer;
   return nullptr;

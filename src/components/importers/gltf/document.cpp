@@ -7,17 +7,12 @@
 
 #include "data_uri.h"
 #include "files/contained_file.h"
+#include "files/gzip.h"
 #include "files/regular_file.h"
 #include "primitive.h"
 
 namespace etendue::gltf {
 namespace {
-
-std::string ending_of(const std::string& path) {
-  std::string ending = path.substr(std::min(path.size(), path.find_last_of('.') + 1));
-  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
-}
 
 std::map<std::string, Converter>& converters() {
   static auto* all = new std::map<std::string, Converter>;
@@ -76,7 +71,7 @@ std::shared_ptr<const Document> Document::open(const std::string& path, const Im
   const Importing own(path, {});
   const Importing& importing = given ? *given : own;
   auto document = std::make_shared<Document>();
-  if (const auto converter = converters().find(ending_of(path)); converter != converters().end()) {
+  if (const auto converter = converters().find(ending_of_contents(path)); converter != converters().end()) {
     require_regular_file(path);
     document->own_bytes_ = converter->second(path, importing);
     document->read_container(path, &document->own_bytes_);

@@ -86,8 +86,6 @@ void Directives::include_file(bool import) {
   if (++included_ > most_included) throw Error(fmt::format("more than {} files are included", most_included), at);
   Source source;
   source.path = r.importing.file(name, at, sources_.back().folder);
-  if (source.path.ends_with(".gz"))
-    throw Error("compressed files are not read: unpack it with gunzip and take .gz from its name", at);
   std::error_code error;
   for (const Source& outer : sources_)
     if (std::filesystem::equivalent(outer.path, source.path, error)) throw Error(fmt::format("'{}' includes itself", name), at);

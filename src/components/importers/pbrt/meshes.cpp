@@ -102,8 +102,6 @@ Shape ply_mesh(Reader& reader, const Parameters& p) {
   const std::string named = p.text("filename");
   if (named.empty()) throw Error(fmt::format("{} needs 'filename'", p.of), p.at);
   const std::string path = reader.importing.file(named, p.place("filename"), p.folder);
-  if (path.ends_with(".gz"))
-    throw Error("compressed PLY files are not read: unpack it with gunzip and take .gz from its name", p.place("filename"));
   if (p.has("displacement")) {
     const Ref<Component> inner = reader.make("TriangleMesh", p.at);
     set_member(*inner, "file", FilePath{path, {}}, p.place("filename"));

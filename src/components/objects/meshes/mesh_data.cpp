@@ -5,6 +5,7 @@
 #include <map>
 
 #include "etendue/describe/component.h"
+#include "files/gzip.h"
 #include "files/regular_file.h"
 #include "files/text_encoding.h"
 #include "polygon_triangulation.h"
@@ -40,8 +41,7 @@ bool register_mesh_format(const std::vector<std::string>& endings, ReadPart read
 
 MeshData read_mesh(const std::string& path, const std::string& part) {
   try {
-    std::string ending = path.substr(std::min(path.size(), path.find_last_of('.') + 1));
-    for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string ending = ending_of_contents(path);
     const auto other = formats().find(ending);
     if (other != formats().end() && (!part.empty() || ending != "obj")) return other->second(path, part);
     if (!part.empty()) throw Error("files of this format have no parts");
