@@ -224,6 +224,34 @@ TEST(MitsubaMedium, AGridStandsInTheWorldAndNotInItsObject) {
     EXPECT_EQ(placement.as<Transform>()->exact(), expected.exact());
 }
 
+TEST(MitsubaSurface, TheTwoSidesOfTwosided) {
+  const auto grey = [](const char* value) {
+    return std::string("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"") + value + "\"/></bsdf>";
+  };
+  for (const auto& [turn, expected] : {std::pair("0", 0.8), std::pair("180", 0.2)}) {
+    const std::string shape = std::string("<shape type=\"rectangle\"><transform name=\"to_world\"><rotate y=\"1\" angle=\"") +
+                              turn + "\"/><translate z=\"5\"/></transform><bsdf type=\"twosided\">" + grey("0.2") +
+                              grey("0.8") + "</bsdf></shape><emitter type=\"constant\"/>";
+    EXPECT_NEAR(seen(import_text(scene(sensor() + integrator() + shape))).y, expected, 3e-3) << turn;
+  }
+}
+
+TEST(MitsubaLight, AProjectorsPictureKeepsItsShape) {
+  const TemporaryFolder folder;
+  test::write_image(folder.write("map.exr", ""), {8, 2, 3, NumberType::single}, std::vector<float>(size_t(8 * 2 * 3), 1.0f));
+  const std::string light =
+      "<emitter type=\"projector\"><float name=\"fov\" value=\"90\"/><texture name=\"irradiance\" type=\"bitmap\">"
+      "<string name=\"filename\" value=\"map.exr\"/></texture></emitter>";
+  // Mitsuba's own numbers, 256 samples: the whole picture is as bright on a wall across the axis.
+  for (const auto& [target, expected] : {std::pair("0 0 5", 0.02), std::pair("4 1 5", 0.02), std::pair("0 2 5", 0.0)}) {
+    const std::string view =
+        std::string("<float name=\"fov\" value=\"1\"/><transform name=\"to_world\"><lookat origin=\"0 0 0\" target=\"") +
+        target + "\" up=\"0 1 0.01\"/></transform>";
+    EXPECT_NEAR(seen(import_text(folder, scene(sensor(view) + integrator() + wall(matt("0.5")) + light)), 64).y, expected, 2e-4)
+        << target;
+  }
+}
+
 TEST(MitsubaSurface, IndicesByName) {
   const Imported i = import_text(scene(sensor() + integrator() +
                                        wall("<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"diamond\"/></bsdf>") +

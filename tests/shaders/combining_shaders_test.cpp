@@ -78,6 +78,30 @@ TEST(MixShader, OfLambertiansIsTheLambertianOfTheMean) {
             0.8f);
 }
 
+TEST(TwoSidedShader, IsEachOfItsPartsFromItsSide) {
+  const Ref<Shader> a = create<Shader>("Lambertian", {{"color", 0.2}}), b = create<Shader>("PhongShader", {{"color", 0.8}});
+  const Ref<Shader> both = create<Shader>("TwoSidedShader", {{"front", a}, {"back", b}});
+  const SurfacePoint p = on_square();
+  const Wavelengths w = test::wavelengths();
+  Arena arena;
+  const Scatter* const whole = both->bind(p, w, arena);
+  for (const double side : {0.0, 180.0}) {
+    const Scatter* const part = (side == 0 ? a : b)->bind(p, w, arena);
+    const Frame frame(p.normal);
+    const Vector3 out = at_angle(frame, side + 30), in = at_angle(frame, side + 50, 2.1), behind = at_angle(frame, side + 150);
+    EXPECT_GT(part->evaluate(out, in)[0], 0);
+    EXPECT_EQ(whole->evaluate(out, in)[0], part->evaluate(out, in)[0]);
+    EXPECT_EQ(whole->density(out, in), part->density(out, in));
+    EXPECT_EQ(whole->evaluate(out, behind)[0], 0);
+    EXPECT_EQ(whole->albedo(out)[0], part->albedo(out)[0]);
+    const auto sample = whole->sample(out, 0.3f, {0.2f, 0.7f}), own = part->sample(out, 0.3f, {0.2f, 0.7f});
+    ASSERT_TRUE(sample && own);
+    EXPECT_EQ(sample->direction.x, own->direction.x);
+  }
+  const Ref<Shader> glass = create<Shader>("Dielectric", {});
+  EXPECT_THROW(create<Shader>("TwoSidedShader", {{"front", a}, {"back", glass}}), Error);
+}
+
 TEST(MixShader, KeepsTheAdjointOfPartsWithOtherNormals) {
   const Ref<Shader> phong = create<Shader>("PhongShader", {{"exponent", 8.0}});
   const Ref<Shader> mix = create<Shader>("MixShader", {{"first", phong}, {"second", bumped(phong)}, {"amount", 0.6}});

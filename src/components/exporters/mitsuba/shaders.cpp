@@ -139,6 +139,9 @@ void Writer::bsdf(Node parent, const Component& s, bool both_sides, Uv uv) {
     scalar_map(n, "weight", s, "amount", uv);
     inner(n, "first");
     inner(n, "second");
+  } else if (type == "TwoSidedShader") {  // `parent` is a "twosided" already, unless the front alone is seen
+    inner(parent, "front");
+    if (both_sides) inner(parent, "back");
   } else if (type == "BumpShader") {
     Node n = plugin(parent, "bumpmap");
     map(n, "arbitrary", s, "height", ColorUse::coefficient, uv);

@@ -41,6 +41,7 @@ class Converter {
   // sensors, films, integrators
   void place(Component& camera, const Element& sensor);
   Ref<Component> camera(const Element& sensor);
+  std::string axis_of(const Element& e);
   void set_view(Component& camera, const Element& sensor);
   void set_shutter(Component& camera, const Element& sensor);
   Ref<Component> image(const Element* film);

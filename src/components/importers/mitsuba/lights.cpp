@@ -7,6 +7,7 @@
 
 #include "converter.h"
 #include "etendue/describe/color.h"
+#include "etendue/film/image_tools.h"
 
 namespace etendue::mitsuba {
 
@@ -127,7 +128,17 @@ Ref<Component> Converter::projector(const Element& e) {
   set(*emission, "picture", light_of(*picture, Uv::from_top));
   set_member(*emission, "fov", e.number("fov", 46.79), e.location_of("fov"));
   set_member(*emission, "scale", e.number("scale", 1) * std::numbers::pi, e.at);
-  inexact(e, "a projector's picture is taken for a square; it ends at its edges instead of being repeated");
+  const std::string axis = axis_of(e);
+  if (axis == "diagonal")
+    importing_.inexact("a projector's angle is measured across its picture's width, not its diagonal",
+                       e.location_of("fov_axis"));
+  set_member(*emission, "fov_axis", axis == "diagonal" ? "width" : axis, e.location_of("fov_axis"));
+  if (picture->type == "bitmap")
+    if (const auto file =
+            importing_.optional_file(picture->string("filename", ""), picture->location_of("filename"), picture->folder)) {
+      const Image image = read_image(*file);  // once more, for its size alone
+      set_member(*emission, "aspect", double(image.width) / double(image.height), picture->at);
+    }
   Ref<Component> object = make("Point", e);
   set_member(*object, "emission", emission, e.at);
   set_transform(*object, e.transform(), e.location_of("to_world"));

@@ -85,8 +85,17 @@ Ref<Component> Converter::camera(const Element& e) {
   return camera;
 }
 
+/// The side that an angle of view is measured across, as it is called here.
+std::string Converter::axis_of(const Element& e) {
+  const std::string axis = e.string("fov_axis", "x");
+  static const std::vector<std::string> axes = {"x", "y", "diagonal", "smaller", "larger"};
+  if (std::ranges::find(axes, axis) == axes.end())
+    throw Error(fmt::format("there is no axis '{}'{}", axis, suggestion(axis, axes)), e.location_of("fov_axis"));
+  return axis == "x" ? "width" : axis == "y" ? "height" : axis;
+}
+
 void Converter::set_view(Component& camera, const Element& e) {
-  std::string axis = e.string("fov_axis", "x");
+  std::string axis = axis_of(e);
   const double fov = e.number("fov", 0);
   Location at = e.location_of("fov");
   const bool by_length = !e.has("fov");
@@ -103,11 +112,8 @@ void Converter::set_view(Component& camera, const Element& e) {
     set_member(camera, "focal_length", focal_length / 1000, at);  // of a film whose diagonal is that of 36 x 24 mm, as there
     axis = "diagonal";
   }
-  static const std::vector<std::string> axes = {"x", "y", "diagonal", "smaller", "larger"};
-  if (std::ranges::find(axes, axis) == axes.end())
-    throw Error(fmt::format("there is no axis '{}'{}", axis, suggestion(axis, axes)), e.location_of("fov_axis"));
   if (!by_length) set_member(camera, "fov", fov, at);
-  set_member(camera, "fov_axis", axis == "x" ? "width" : (axis == "y" ? "height" : axis.c_str()), e.location_of("fov_axis"));
+  set_member(camera, "fov_axis", axis, e.location_of("fov_axis"));
   const double x = e.number("principal_point_offset_x", 0), y = e.number("principal_point_offset_y", 0);
   if (x != 0 || y != 0)
     set_member(camera, "principal_point", Numbers{{-x, -y}, 1, Dimension::none}, e.location_of("principal_point_offset_x"));

@@ -76,7 +76,13 @@ Converter::Surface Converter::make_surface(const Element& e, Uv uv, const std::s
   if (type == "twosided") {
     const std::vector<const Element*> inner = e.all("bsdf");
     if (inner.empty()) throw Error("'twosided' needs a bsdf", e.at);
-    if (inner.size() > 1) inexact(e, "both sides look like the first bsdf of 'twosided'");
+    if (inner.size() > 1) {
+      Ref<Component> shader = make("TwoSidedShader", e, name);
+      set_member(*shader, "front", surface(*inner[0], uv).shader, inner[0]->at);
+      set_member(*shader, "back", surface(*inner[1], uv).shader, inner[1]->at);
+      if (inner.size() > 2) inexact(*inner[2], "a surface has two sides: the third bsdf of 'twosided' is left out");
+      return {shader, true};
+    }
     if (!inner.front()->id.empty() || name.empty()) return {surface(*inner.front(), uv).shader, true};
     const Reading reading(*inner.front());
     return {make_surface(*inner.front(), uv, name).shader, true};
