@@ -29,6 +29,17 @@ TEST(PbrtMedium, AbsorbsByBeer) {
       std::exp(-0.9375), 0.01);
 }
 
+TEST(PbrtMedium, ShinesByItsAbsorption) {
+  // A medium that only absorbs and emits shows Le (1 - exp(-absorption x distance)): here of 2 m.
+  const std::string sphere =
+      "AttributeBegin\nMaterial \"interface\" MediumInterface \"m\" \"\" Translate 0 0 5 Shape \"sphere\"\nAttributeEnd\n";
+  const std::string medium =
+      "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.25 .25 .25] \"rgb sigma_s\" [0 0 0] \"float "
+      "scale\" 2 "
+      "\"rgb Le\" [1 1 1] \"float Lescale\" 3\n";
+  EXPECT_NEAR(seen(import_text(v4(medium + sphere)), 65536).y, 3 * (1 - std::exp(-1.0)), 0.02);
+}
+
 /// What a matt rectangle from (-1, -1) to (1, 1) shows at a place, in light of 1 from everywhere.
 Xyz at(const TemporaryFolder& folder, const std::string& before, const std::string& texture, double x, double y) {
   char place[100];

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "reader.h"
 
 namespace etendue::pbrt {
@@ -23,6 +25,24 @@ constexpr Measured measured[] = {
     {"Spectralon", {11.6, 20.4, 14.9}, {0.00, 0.00, 0.00}}, {"Wholemilk", {2.55, 3.21, 3.77}, {0.0011, 0.0024, 0.014}},
 };
 
+/// Light that a medium sends out, per distance: pbrt's Le is a radiance, and what the medium adds is that times its absorption.
+void set_emission_of_medium(Reader& reader, Component& medium, const Parameters& p, const Color& absorption) {
+  const Parameter* const given = p.find("Le");
+  if (!given) return;
+  const double scale = p.number("Lescale", 1) * reader.exposure;
+  if (scale < 0) throw Error("the scale of a medium's light must not be negative", p.place("Lescale"));
+  const Color light = spectrum_of(reader, p, *given, Use::light);
+  constexpr int first = 360, last = 830, step = 5;  // [nm]
+  std::vector<float> wavelengths, values;
+  for (int nm = first; nm <= last; nm += step) {
+    wavelengths.push_back(float(nm));
+    values.push_back(float(scale * double(light->at(float(nm), ColorUse::radiance)) *
+                           double(absorption->at(float(nm), ColorUse::coefficient))));
+  }
+  if (std::ranges::any_of(values, [](float v) { return v != 0; }))
+    set_member(medium, "emission", table_spectrum(std::move(wavelengths), std::move(values)), given->at);
+}
+
 void homogeneous(Reader& reader, const std::string& name, const Parameters& p) {
   const Location at = p.at;
   const Ref<Component> medium = reader.make("HomogeneousVolume", at, name);
@@ -43,13 +63,11 @@ void homogeneous(Reader& reader, const std::string& name, const Parameters& p) {
         given ? spectrum_of(reader, p, *given, Use::coefficient) : rgb_color("srgb", otherwise[0], otherwise[1], otherwise[2]);
     return scale == 1 ? color : scaled_spectrum(scale, color);
   };
-  set_member(*medium, "absorption", coefficient("sigma_a", a), at);
+  const Color absorption = coefficient("sigma_a", a);
+  set_member(*medium, "absorption", absorption, at);
   set_member(*medium, "scattering", coefficient("sigma_s", s), at);
   set_member(*medium, "anisotropy", p.number("g", 0), at);
-  if (p.has("Le")) {
-    p.ignore({"Lescale"});
-    reader.importing.inexact("the light that a medium emits is left out", p.place("Le"));
-  }
+  set_emission_of_medium(reader, *medium, p, absorption);
   reader.media[name] = medium;
 }
 
@@ -73,12 +91,17 @@ void grid(Reader& reader, const std::string& name, Parameters& p) {
            : v3  ? rgb_color("srgb", otherwise[0], otherwise[1], otherwise[2])
                  : flat_spectrum(1);
   };
-  set_member(*medium, "absorption", coefficient("sigma_a", {0.0011, 0.0024, 0.014}), at);
+  const Color absorption = coefficient("sigma_a", {0.0011, 0.0024, 0.014});
+  set_member(*medium, "absorption", absorption, at);
   set_member(*medium, "scattering", coefficient("sigma_s", {2.55, 3.21, 3.77}), at);
   set_member(*medium, "anisotropy", p.number("g", 0), at);
-  if (const Parameter* light = p.first_of({"Le", "temperature", "Lescale"})) {
+  const Parameter* const scales = p.find("Lescale");
+  if (const Parameter* light = p.find("temperature"); light || (scales && scales->numbers.size() > 1)) {
     p.ignore({"Le", "temperature", "Lescale", "temperatureoffset", "temperaturescale"});
-    reader.importing.inexact("the light that a medium emits is left out", light->at);
+    reader.importing.inexact("the light of a medium that is not emitted in proportion to its density is left out",
+                             light ? light->at : scales->at);
+  } else {
+    set_emission_of_medium(reader, *medium, p, absorption);
   }
   const DoublePoint3 p0 = p.point("p0", {0, 0, 0}), p1 = p.point("p1", {1, 1, 1});
   const DoubleVector3 size{p1.x - p0.x, p1.y - p0.y, p1.z - p0.z};
