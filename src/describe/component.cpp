@@ -1,10 +1,14 @@
 #include "etendue/describe/component.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <cstdio>
 #include <mutex>
 #include <set>
 #include <unordered_set>
 
+#include "etendue/describe/read_ahead.h"
 #include "etendue/describe/registry.h"
 #include "expansion.h"
 #include "guard.h"
@@ -32,6 +36,34 @@ void Component::fail(std::string_view member, const std::string& message) const 
   throw Error(who + ": " + message, location_of(member));
 }
 
+namespace {
+
+/// Files are read by all threads at the same time; the rest of preparing is one after the other.
+void read_ahead(Component& root) {
+  std::unordered_set<const Component*> seen{&root};
+  std::vector<Component*> left{&root};
+  std::vector<ReadsAhead*> readers;
+  while (!left.empty()) {
+    Component* const c = left.back();
+    left.pop_back();
+    if (auto* const reader = dynamic_cast<ReadsAhead*>(c)) readers.push_back(reader);
+    for (Component* const part : components_of(*c))
+      if (seen.insert(part).second) left.push_back(part);
+  }
+  if (readers.size() < 2) return;
+  tbb::parallel_for(size_t(0), readers.size(), [&](size_t i) {
+    // Who waits for tasks of its own must not begin to read another file, which might be the one it is reading.
+    tbb::this_task_arena::isolate([&] {
+      try {
+        readers[i]->read_ahead();
+      } catch (...) {  // `prepare` will say it
+      }
+    });
+  });
+}
+
+}  // namespace
+
 void prepare_tree(Component& root) {
   // Depth-first with a stack of its own: nothing here needs more room for a longer chain.
   struct Step {
@@ -45,6 +77,7 @@ void prepare_tree(Component& root) {
     if (seen.insert(&c).second) way.push_back({&c, components_of(c)});
   };
   root.before_prepare();
+  read_ahead(root);
   visit(root);
   while (!way.empty()) {
     Step& step = way.back();

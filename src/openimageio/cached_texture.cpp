@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <map>
 
 #include "etendue/core/error.h"
+#include "files/shared_contents.h"
 #include "image_cache.h"
 #include "linear_input.h"
 #include "refuse.h"
@@ -81,23 +81,21 @@ OIIO::ImageCache& image_cache() {
 
 std::shared_ptr<const CachedTexture> CachedTexture::open(const std::string& path, const std::string& transfer,
                                                          const std::string& channel) {
-  static std::mutex mutex;
-  static auto& known = *new std::map<std::string, std::weak_ptr<const CachedTexture>>;
-  const std::lock_guard lock(mutex);
+  static auto& known = *new SharedContents<std::string, bool, CachedTexture>;
   const std::string key = linear_image_key(path, transfer, channel);
-  if (std::shared_ptr<const CachedTexture> there = known[key].lock()) return there;
-  const auto texture = std::make_shared<CachedTexture>();
-  try {
-    texture->read(key);
-  } catch (const Error& e) {
-    // OpenImageIO's messages name our key; the path is what the user knows.
-    std::string reason = e.what();
-    for (size_t at; (at = reason.find(key)) != std::string::npos;) reason.replace(at, key.size(), path);
-    image_cache().invalidate(OIIO::ustring(key));
-    refuse(std::move(reason));
-  }
-  known[key] = texture;
-  return texture;
+  return known.get(key, true, [&]() -> std::shared_ptr<const CachedTexture> {
+    const auto texture = std::make_shared<CachedTexture>();
+    try {
+      texture->read(key);
+    } catch (const Error& e) {
+      // OpenImageIO's messages name our key; the path is what the user knows.
+      std::string reason = e.what();
+      for (size_t at; (at = reason.find(key)) != std::string::npos;) reason.replace(at, key.size(), path);
+      image_cache().invalidate(OIIO::ustring(key));
+      refuse(std::move(reason));
+    }
+    return texture;
+  });
 }
 
 void CachedTexture::read_header(const OIIO::ImageSpec& spec) {

@@ -4,6 +4,7 @@
 #include "components/maps/image_texture.h"
 #include "components/maps/rgb_source.h"
 #include "etendue/describe/color.h"
+#include "etendue/describe/read_ahead.h"
 #include "etendue/object_map.h"
 #include "images/linear_image.h"
 #include "images/udim_files.h"
@@ -19,7 +20,7 @@ enum class Interpolation : std::uint8_t { nearest, bilinear };
 //
 // An RGB value becomes a spectrum at each lookup. That is not the spectrum between those of the texels, as the fit
 // is not linear, but it has the colour between theirs, which is what an image says.
-class ImageMap final : public ObjectMap, public RgbSource {
+class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
  public:
   static void describe(Description<ImageMap>& d) {
     d.summary("An image file over the surface coordinates: its lower left corner is at (0, 0), its upper right one at (1, 1).")
@@ -49,6 +50,12 @@ class ImageMap final : public ObjectMap, public RgbSource {
     if (!(std::isfinite(repeat.x) && std::isfinite(repeat.y))) fail("repeat", "must be finite numbers");
     if (file.empty()) fail("file", "an image file is needed");
     load(file.resolved());
+    ahead_.clear();
+  }
+
+  void read_ahead() override {
+    if (!file.empty())
+      for (const UdimFile& f : files_of(file.resolved())) ahead_.push_back(ImageTexture::open(f.path, transfer, channel));
   }
 
   Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse use) const override {
@@ -78,10 +85,13 @@ class ImageMap final : public ObjectMap, public RgbSource {
   Vector2 repeat{1, 1};
 
  private:
+  static std::vector<UdimFile> files_of(const std::string& path) {
+    return path.find(udim_mark) != std::string::npos ? udim_files(path) : std::vector<UdimFile>{{0, 0, path}};
+  }
   void load(const std::string& path) {
     tiles_.clear();
     tiled_ = path.find(udim_mark) != std::string::npos;
-    const std::vector<UdimFile> files = tiled_ ? udim_files(path) : std::vector<UdimFile>{{0, 0, path}};
+    const std::vector<UdimFile> files = files_of(path);
     if (files.empty()) fail("file", "there is no file '" + path + "' with a number from 1001 to 9999 for " + udim_mark);
     for (const UdimFile& f : files) {
       try {
@@ -146,6 +156,7 @@ class ImageMap final : public ObjectMap, public RgbSource {
 
   const RgbSpace* space_ = nullptr;
   bool tiled_ = false;
+  std::vector<std::shared_ptr<const ImageTexture>> ahead_;
   std::vector<std::shared_ptr<const ImageTexture>> tiles_;  // the only one, or that of square (u, v) at 10 v + u
 };
 

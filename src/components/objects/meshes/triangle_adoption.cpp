@@ -19,7 +19,7 @@ constexpr size_t remembered_planes = 1 << 16;
 
 }  // namespace
 
-void TriangleObject::make_shareable(MeshData& mesh) {
+void make_shareable(MeshData& mesh) {
   for (Normal3& n : mesh.normals) n = unit_or_zero(n);
   mesh.positions.push_back({});
 }

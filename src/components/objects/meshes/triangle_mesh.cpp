@@ -1,10 +1,9 @@
 // TriangleMesh: triangles from a file or a list, which may change their shape.
 
-#include <filesystem>
-#include <map>
-
+#include "etendue/describe/read_ahead.h"
 #include "geometry/own_centre.h"
 #include "geometry/triangle_test.h"
+#include "mesh_files.h"
 #include "triangle_object.h"
 
 namespace etendue {
@@ -24,7 +23,7 @@ void append_normals(std::span<const Point3> positions, std::span<const std::arra
 
 }  // namespace
 
-class TriangleMesh final : public TriangleObject {
+class TriangleMesh final : public TriangleObject, public ReadsAhead {
   FilePath file;
   std::string part;
   std::vector<DoublePoint3> positions;
@@ -81,18 +80,21 @@ class TriangleMesh final : public TriangleObject {
             Effect::rebuild);
   }
 
+  void read_ahead() override {
+    if (!file.empty()) ahead_ = mesh_from_file(file.resolved(), part, moves());
+  }
+
   void prepare() override {
     std::shared_ptr<const MeshData> mesh;
-    const bool moves = !motion_files.empty() || !motion_positions.empty();
     if (!file.empty()) {
       if (!positions.empty() || !triangles.empty() || !normals.empty() || !uvs.empty() || !colors.empty() ||
           !face_colors.empty())
         fail("file", "a mesh comes from a file or from lists, not from both");
-      mesh = from_file("file", file, part, moves);
+      mesh = from_file("file", file, moves());
     } else {
       if (!part.empty()) fail("part", "a part is that of a file, and there is none");
       MeshData own = listed();
-      if (!moves) drop(own);
+      if (!moves()) drop(own);
       make_shareable(own);
       mesh = std::make_shared<const MeshData>(std::move(own));
     }
@@ -115,6 +117,7 @@ class TriangleMesh final : public TriangleObject {
       attributes_.push_back({attribute_number(a.name), a.width, a.values.data(), false});
     for (const VertexAttribute& a : mesh->face_attributes)
       attributes_.push_back({attribute_number(a.name), a.width, a.values.data(), true});
+    ahead_ = nullptr;
     adopt(std::move(mesh), std::move(motion));
   }
 
@@ -142,42 +145,14 @@ class TriangleMesh final : public TriangleObject {
     bool of_faces;
   };
 
-  /// What a file holds; as long as some mesh uses it, and the file is the same, it is read once. `whole`: with the triangles
-  /// that cannot be used, for at another key they may have an area.
-  std::shared_ptr<const MeshData> from_file(const char* member, const FilePath& path, const std::string& which,
-                                            bool whole) const {
-    struct Known {
-      std::filesystem::file_time_type written;
-      std::uintmax_t size = 0;
-      std::weak_ptr<const MeshData> mesh;
-    };
-    static std::mutex mutex;
-    static auto* all = new std::map<std::tuple<std::string, std::string, bool>, Known>;
-    const std::string name = path.resolved();
-    const std::tuple key(name, which, whole);
-    std::error_code none;  // what is wrong with the file, reading it tells
-    const auto written = std::filesystem::last_write_time(name, none);
-    const auto size = std::filesystem::file_size(name, none);
-    const std::lock_guard lock(mutex);
-    static size_t many = 64;  // when there are twice as many as were kept, some may be nobody's
-    if (all->size() > many) {
-      std::erase_if(*all, [](const auto& entry) { return entry.second.mesh.expired(); });
-      many = 2 * all->size() + 64;
-    }
-    if (const auto known = all->find(key);
-        known != all->end() && known->second.written == written && known->second.size == size)
-      if (auto mesh = known->second.mesh.lock()) return mesh;
+  std::shared_ptr<const MeshData> from_file(const char* member, const FilePath& path, bool whole) const {
     try {
-      MeshData mesh = read_mesh(name, which);
-      if (!whole) drop_unusable(mesh, "'" + name + "'");
-      make_shareable(mesh);
-      auto made = std::make_shared<const MeshData>(std::move(mesh));
-      (*all)[key] = {written, size, made};
-      return made;
+      return mesh_from_file(path.resolved(), part, whole);
     } catch (const Error& error) {
       fail(member, error.what());
     }
   }
+  bool moves() const { return !motion_files.empty() || !motion_positions.empty(); }
 
   /// Takes out the triangles that cannot be used; `later`: the positions at all keys but the first.
   void drop(MeshData& mesh, std::span<const Point3> later = {}) const {
@@ -230,7 +205,7 @@ class TriangleMesh final : public TriangleObject {
       }
     }
     for (const FilePath& path : motion_files) {
-      const std::shared_ptr<const MeshData> key = from_file("motion_files", path, part, true);
+      const std::shared_ptr<const MeshData> key = from_file("motion_files", path, true);
       if (key->positions.size() != n + 1)
         fail("motion_files", "'" + path.resolved() + "' has " + std::to_string(key->positions.size() - 1) +
                                  " vertices, the first key " + std::to_string(n));
@@ -323,6 +298,7 @@ class TriangleMesh final : public TriangleObject {
     return mesh;
   }
 
+  std::shared_ptr<const MeshData> ahead_;
   std::vector<Attribute> attributes_;
 };
 

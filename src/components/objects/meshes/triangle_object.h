@@ -15,6 +15,9 @@ namespace etendue {
 
 class EmbreeTriangles;
 
+/// Makes normals unit vectors, or zero, and appends the position that Embree asks for behind the last.
+void make_shareable(MeshData&);
+
 /// Where the corners of triangles are at several times. Between these they move in straight lines; before the first and
 /// after the last they rest.
 struct MeshMotion {
@@ -60,7 +63,6 @@ class TriangleObject : public SceneObject, public NumberedParts {
   /// The same, shared with other objects: normals are unit vectors or zero, and the positions have one more at the end, which
   /// Embree asks for. With a motion, positions and normals are those of the motion.
   void adopt(std::shared_ptr<const MeshData>, MeshMotion = {});
-  static void make_shareable(MeshData&);
   /// The corners of a triangle among those that were adopted, in the order in which u and v mean them.
   const std::array<std::uint32_t, 3>& corner_indices(std::uint32_t primitive) const { return mesh_.triangles[primitive]; }
 
