@@ -6,6 +6,9 @@
 Needs Linux' `perf`. One thread renders each scene for --samples samples per pixel; `perf` looks every millisecond of the
 processor's time at the function at work, and functions are put together by their names: the first row of GROUPS that matches
 counts. What is inlined counts where it was inlined to, so `loop` has what the compiler drew into the path tracer.
+
+With --waves build/benchmarks/etendue_waves (built with ETENDUE_BENCHMARKS) there are two columns more: the time of the paths' rays, and of
+all, over that of the same rays in a bare Embree, measured in one run.
 """
 import argparse
 import collections
@@ -55,6 +58,17 @@ def profile(program, scene, samples, folder):
     return shares, used.seconds
 
 
+def over_bare_rays(waves, program, scene, samples, folder):
+    """The time of a scene's rays, and of all, over that of the same rays among bare triangles."""
+    converted = folder / "scene.etd"
+    processes.run([program, "convert", str(scene.file), "--allow-path", str(scene.folder), "-o", str(converted)])
+    # Not by processes.run: what it says counts. Warnings of the scene's files are no news here.
+    said = subprocess.run([waves, str(converted), str(samples), "3", str(scene.folder), str(scene.file.parent)], capture_output=True,
+                          text=True, check=True).stdout
+    rays, everything = re.search(r"to the bare rays one by one: ([\d.]+) the rays, ([\d.]+) all", said).groups()
+    return rays, everything
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     here = pathlib.Path(__file__).resolve().parent
@@ -62,16 +76,21 @@ def main():
     parser.add_argument("--scenes", type=pathlib.Path, help="the folder of Bitterli's scenes")
     parser.add_argument("--only", action="append", help="a scene's name; may be repeated")
     parser.add_argument("--samples", type=int, default=32)
+    parser.add_argument("--waves", help="the program that measures bare rays: build/benchmarks/etendue_waves")
     options = parser.parse_args()
     columns = [name for name, _ in GROUPS] + ["libm", "other", "other libraries", "system"]
-    print("| scene | s | " + " | ".join(columns) + " |\n|" + "---|" * (len(columns) + 2))
+    more = ["rays over bare ones", "all over bare rays"] if options.waves else []
+    print("| scene | s | " + " | ".join(columns + more) + " |\n|" + "---|" * (len(columns + more) + 2))
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         for scene in peer_scenes.scenes(folder, options.scenes):
             if options.only and scene.name not in options.only:
                 continue
             shares, seconds = profile(options.program, scene, options.samples, folder)
-            print(f"| {scene.name} | {seconds:.1f} | " + " | ".join(f"{shares[c]:.0f}" for c in columns) + " |", flush=True)
+            cells = [f"{shares[c]:.0f}" for c in columns]
+            if options.waves:
+                cells += over_bare_rays(options.waves, options.program, scene, 2, folder)
+            print(f"| {scene.name} | {seconds:.1f} | " + " | ".join(cells) + " |", flush=True)
 
 
 if __name__ == "__main__":

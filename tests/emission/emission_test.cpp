@@ -2,6 +2,7 @@
 
 #include "etendue/emission_shader.h"
 
+#include "components/emission/texel_distribution.h"
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
 #include "support/component_test_support.h"
@@ -183,6 +184,41 @@ TEST(EnvironmentEmission, DensityIsThatOfTheSamples) {
     ++counts[size_t(y * width + x)];
   }
   EXPECT_GT(test::chi_square(counts, expected), 1e-3);
+}
+
+// Evenly spaced numbers fall into each texel in proportion to its weight, one more or less: wide rows, whose search goes
+// through several nodes, with texels and whole rows that weigh nothing.
+TEST(TexelDistribution, EvenNumbersFallByWeight) {
+  constexpr size_t columns = 1500, rows = 3;
+  std::vector<float> weights;
+  test::Random random(12);
+  for (size_t i = 0; i < columns * rows; ++i)
+    weights.push_back(i / columns == 1 || (i % columns > 400 && i % columns < 700) ? 0 : random() < 0.01f ? 50 : random());
+  TexelDistribution d;
+  d.build(weights, columns, {1, 5, 2});
+  std::array<double, rows> sums{};
+  for (size_t i = 0; i < weights.size(); ++i) sums[i / columns] += double(weights[i]);
+  EXPECT_NEAR(d.total(), sums[0] + 2 * sums[2], 1e-9 * d.total());
+  constexpr size_t count = 100000;
+  for (const size_t y : {size_t(0), size_t(2)}) {
+    const double share = (y == 0 ? 1 : 2) * sums[y] / d.total();
+    std::vector<size_t> met(columns);
+    for (size_t k = 0; k < count; ++k) {
+      const float u = (float(k) + 0.5f) / float(count);
+      const TexelDistribution::Choice c = d.choose({u, y == 0 ? 0.01f : 0.99f});
+      ASSERT_EQ(c.y, y);
+      ASSERT_TRUE(c.within.x >= 0 && c.within.x < 1);
+      ++met[c.x];
+    }
+    double worst = 0, worst_density = 0;
+    for (size_t x = 0; x < columns; ++x) {
+      const double part = double(weights[y * columns + x]) / sums[y], density = part * share / (y == 0 ? 1 : 2);
+      worst = std::max(worst, std::abs(double(met[x]) - part * count));
+      worst_density = std::max(worst_density, std::abs(double(d.density(x, y)) - density));
+    }
+    EXPECT_LE(worst, 1.1) << y;
+    EXPECT_LE(worst_density, 1e-6) << y;
+  }
 }
 
 TEST(EnvironmentEmission, NothingThatShinesIsMissed) {

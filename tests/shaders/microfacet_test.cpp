@@ -5,6 +5,7 @@
 #include "components/shaders/microfacet/microfacet.h"
 
 #include "components/shaders/fresnel.h"
+#include "components/shaders/microfacet/rgb_reflectance.h"
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
 #include "support/component_test_support.h"
@@ -209,6 +210,28 @@ TEST(Conductor, OfThreeChannelsReflectsTheirColourAtEachAngle) {
   }
   EXPECT_THROW(create<Shader>("Conductor", {{"index", "rgb"}, {"rgb_n", std::vector<double>{1, 0, 1}}}), Error);
   EXPECT_THROW(create<Shader>("Conductor", {{"index", "rgb"}, {"rgb_k", std::vector<double>{1, -1, 1}}}), Error);
+}
+
+// What is tabulated by angles against the same found for each of them, which the test before holds to the equations.
+TEST(Conductor, OfThreeChannelsIsTabulatedWithinItsBound) {
+  test::Random random(6);
+  const RgbSpace& space = rgb_space("srgb");
+  float worst = 0;
+  for (const auto& [n, k] : {std::pair{Vector3{0.200438f, 0.924033f, 1.10221f}, Vector3{3.91295f, 2.45285f, 2.14219f}},
+                             std::pair{Vector3{1.44f, 0.86f, 0.60f}, Vector3{7.74f, 6.40f, 5.39f}},
+                             std::pair{Vector3{0.05f, 3, 1}, Vector3{9, 0, 0.1f}}}) {
+    const RgbReflectance table(space, n, k);
+    for (int i = 0; i < 4000; ++i) {
+      const float u = random(), cosine = i % 2 ? u : u * u * u;  // more of them near grazing angles
+      const Wavelengths w = test::wavelengths(380 + 400 * random());
+      const Spectrum wanted = table.spectrum_of(fresnel_conductor(cosine, table.n(), table.k())).evaluate(w),
+                     found = table.reflectance(cosine, w);
+      for (int l = 0; l < spectrum_size; ++l) worst = std::max(worst, std::abs(found[l] - wanted[l]));
+    }
+    EXPECT_EQ(table.reflectance(1, test::wavelengths())[0],
+              table.spectrum_of(fresnel_conductor(1, table.n(), table.k())).evaluate(test::wavelengths())[0]);
+  }
+  EXPECT_LE(worst, 2 * RgbReflectance::tolerance);  // the bound is held in the middle of cells
 }
 
 TEST(Dielectric, RoughAndCompensatedLosesNothing) {

@@ -91,7 +91,9 @@ class EnvironmentEmission final : public EmissionShader {
   Spectrum radiance(const SurfacePoint& p, const Vector3&, const Wavelengths& w) const override {
     const Vector3 towards = p.object_position - Point3{};
     if (!image_.rgb.empty()) {
-      const std::array<float, 3> rgb = look_up(place(towards));
+      const Point2 at = place(towards);
+      prefetch_density(at);  // a path that came here by itself asks for it next
+      const std::array<float, 3> rgb = look_up(at);
       return rgb_spectrum(*space_, factor_ * rgb[0], factor_ * rgb[1], factor_ * rgb[2], image_use(), w);
     }
     if (constant_map_) return map->color(p, w, ColorUse::radiance) * factor_;
@@ -132,6 +134,7 @@ class EnvironmentEmission final : public EmissionShader {
   DirectionSample sample_incident(Point2 u) const override {
     if (!(texels_.total() > 0)) return {};
     const auto [x, y, within, density] = texels_.choose(u);
+    prefetch_texels(int(x), int(y), within);
     const float phi = 2 * pi * (float(x) + within.x) / float(image_.width);
     const float cosine = float(lerp(double(within.y), row_cosines_[y], row_cosines_[y + 1]));
     const float sine = safe_sqrt((1 - cosine) * (1 + cosine));
@@ -139,10 +142,8 @@ class EnvironmentEmission final : public EmissionShader {
   }
   float incident_density(const Vector3& towards) const override {
     if (!(texels_.total() > 0)) return 0;
-    const Point2 p = place(towards);
-    const int x = std::min(int(p.x * float(image_.width)), image_.width - 1);
-    const int y = clamp_row(int(row_at(p.y) + 0.5f));
-    return texels_.density(size_t(x), size_t(y));
+    const auto [x, y] = texel_at(place(towards));
+    return texels_.density(x, y);
   }
 
   FilePath file;
@@ -205,6 +206,25 @@ class EnvironmentEmission final : public EmissionShader {
     for (size_t i = 0; i < 3; ++i) rgb[i] = etendue::lerp(fy, etendue::lerp(fx, a[i], b[i]), etendue::lerp(fx, c[i], d[i]));
     return rgb;
   }
+  /// Column and row of the texel that a place lies in.
+  std::pair<size_t, size_t> texel_at(Point2 p) const {
+    return {size_t(std::min(int(p.x * float(image_.width)), image_.width - 1)), size_t(clamp_row(int(row_at(p.y) + 0.5f)))};
+  }
+
+  // The image lies in memory that is not near, and what is looked up in it is known well before it is needed: of a sampled
+  // direction the surface answers first.
+  void prefetch_density(Point2 at) const {
+    const auto [x, y] = texel_at(at);
+    texels_.prefetch(x, y);
+  }
+  /// What `look_up` will look at, of a direction in a texel.
+  void prefetch_texels(int x, int y, Point2 within) const {
+    const int left = within.x < 0.5f ? std::max(x - 1, 0) : x;
+    const int above = within.y < 0.5f ? std::max(y - 1, 0) : y;
+    __builtin_prefetch(texel(left, above));
+    __builtin_prefetch(texel(left, clamp_row(above + 1)));
+  }
+
   const float* texel(int x, int y) const { return image_.rgb.data() + (size_t(y) * size_t(image_.width) + size_t(x)) * 3; }
 
   /// Given what a factor of 1 gives [lx].

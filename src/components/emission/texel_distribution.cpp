@@ -1,29 +1,60 @@
 #include "texel_distribution.h"
 
 #include <algorithm>
-#include <bit>
+#include <limits>
 
 #include "etendue/core/math.h"
 
 namespace etendue {
 
-// A power of two, so that the products and quotients with which a number finds its place in the guide are exact.
-size_t TexelDistribution::guides_for(size_t count) { return std::bit_floor(std::max<size_t>(count / 4, 1)); }
+TexelDistribution::Searched::Node::Node() { std::fill_n(cumulative, fanout, std::numeric_limits<float>::infinity()); }
 
-void TexelDistribution::make_guide(const float* cumulative, size_t count, std::uint32_t* guide, size_t guides) {
-  size_t i = 0;
-  for (size_t k = 0; k < guides; ++k) {
-    const float low = float(k) / float(guides);
-    while (i + 1 < count && !(cumulative[i] > low)) ++i;
-    guide[k] = std::uint32_t(i);
+TexelDistribution::Searched::Searched(size_t lists, size_t count)
+    : count_(count), lowest_nodes_((count + fanout - 1) / fanout) {
+  for (size_t nodes = lowest_nodes_; nodes > 1;) {
+    nodes = (nodes + fanout - 1) / fanout;
+    levels_.insert(levels_.begin(), nodes);
+    upper_nodes_ += nodes;
+  }
+  upper_.resize(lists * upper_nodes_);
+  lowest_.resize(lists * lowest_nodes_);
+}
+
+void TexelDistribution::Searched::set(size_t list, size_t i, float cumulative) {
+  lowest_[list * lowest_nodes_ + i / fanout].cumulative[i % fanout] = cumulative;
+  size_t behind = (list + 1) * upper_nodes_;  // the end of the level at hand
+  for (size_t level = levels_.size(); level-- > 0;) {
+    i /= fanout;
+    upper_[behind - levels_[level] + i / fanout].cumulative[i % fanout] = cumulative;  // of the last that is set below
+    behind -= levels_[level];
   }
 }
 
+size_t TexelDistribution::Searched::find(size_t list, float& u) const {
+  const auto next = [&](const Node& node) {
+    int below = 0;
+    for (size_t i = 0; i < fanout; ++i) below += node.cumulative[i] <= u;
+    return size_t(below);
+  };
+  const Node* level = upper_.data() + list * upper_nodes_;
+  size_t place = 0;  // the node of the level at hand, and lastly the thing
+  for (size_t k = 0; k < levels_.size(); ++k) {
+    const size_t below = k + 1 < levels_.size() ? levels_[k + 1] : lowest_nodes_;
+    // Rounding can make the whole sum less than 1, and u no less than that: then it is the last.
+    place = std::min(place * fanout + next(level[place]), below - 1);
+    level += levels_[k];
+  }
+  const size_t i = std::min(place * fanout + next(lowest_[list * lowest_nodes_ + place]), count_ - 1);
+  const float low = i == 0 ? 0 : at(list, i - 1), high = at(list, i);
+  u = high > low ? clamp((u - low) / (high - low), 0, one_minus_epsilon) : 0.5f;
+  return i;
+}
+
 void TexelDistribution::build(const std::vector<float>& weights, size_t width, const std::vector<double>& measures) {
-  width_ = width;
   measures_.assign(measures.begin(), measures.end());
   const size_t height = measures.size();
-  columns_.resize(width * height);
+  columns_ = Searched(height, width);
+  rows_ = Searched(1, height);
   std::vector<double> row_sums(height);
   total_ = 0;
   for (size_t y = 0; y < height; ++y) {
@@ -31,38 +62,20 @@ void TexelDistribution::build(const std::vector<float>& weights, size_t width, c
     for (size_t x = 0; x < width; ++x) row += double(weights[y * width + x]);
     for (size_t x = 0; x < width; ++x) {
       sum += double(weights[y * width + x]);
-      columns_[y * width + x] = row > 0 ? float(sum / row) : float(x + 1) / float(width);
+      columns_.set(y, x, row > 0 ? float(sum / row) : float(x + 1) / float(width));
     }
     row_sums[y] = row * measures[y];
     total_ += row_sums[y];
   }
-  rows_.resize(height);
   double sum = 0;
   for (size_t y = 0; y < height; ++y) {
     sum += row_sums[y];
-    rows_[y] = total_ > 0 ? float(sum / total_) : float(y + 1) / float(height);
+    rows_.set(0, y, total_ > 0 ? float(sum / total_) : float(y + 1) / float(height));
   }
-  row_guide_.resize(guides_for(height));
-  make_guide(rows_.data(), height, row_guide_.data(), row_guide_.size());
-  const size_t guides = guides_for(width);
-  column_guides_.resize(guides * height);
-  for (size_t y = 0; y < height; ++y) make_guide(&columns_[y * width], width, &column_guides_[y * guides], guides);
-}
-
-/// An interval of the cumulative distribution; u becomes the uniform place in it.
-size_t TexelDistribution::Guided::find(float& u) const {
-  const size_t k = std::min(size_t(u * float(guides)), guides - 1);
-  const size_t first = guide[k], last = k + 1 < guides ? guide[k + 1] : count - 1;
-  const size_t i = std::min(size_t(std::upper_bound(cumulative + first, cumulative + last + 1, u) - cumulative), count - 1);
-  const float low = i == 0 ? 0 : cumulative[i - 1], high = cumulative[i];
-  u = high > low ? clamp((u - low) / (high - low), 0, one_minus_epsilon) : 0.5f;
-  return i;
 }
 
 TexelDistribution::Choice TexelDistribution::choose(Point2 u) const {
-  const size_t y = Guided{rows_.data(), rows_.size(), row_guide_.data(), row_guide_.size()}.find(u.y);
-  const size_t guides = guides_for(width_);
-  const size_t x = Guided{&columns_[y * width_], width_, &column_guides_[y * guides], guides}.find(u.x);
+  const size_t y = rows_.find(0, u.y), x = columns_.find(y, u.x);
   return {x, y, u, density(x, y)};
 }
 

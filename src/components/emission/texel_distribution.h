@@ -1,7 +1,7 @@
 #pragma once
 // A choice among the texels of an image: by row, then within the row.
 
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 #include "etendue/core/vector.h"
@@ -19,7 +19,9 @@ class TexelDistribution {
   /// The sum of weights times measures; 0: there is nothing to choose.
   double total() const { return total_; }
   /// Probability over measure, per texel: that with which `choose` gives it, rounding included.
-  float density(size_t x, size_t y) const { return share(rows_.data(), y) * share(&columns_[y * width_], x) / measures_[y]; }
+  float density(size_t x, size_t y) const { return rows_.share(0, y) * columns_.share(y, x) / measures_[y]; }
+  /// Asks the processor to fetch what `density` will look at.
+  void prefetch(size_t x, size_t y) const { columns_.prefetch(y, x); }
 
   struct Choice {
     size_t x, y;
@@ -29,25 +31,37 @@ class TexelDistribution {
   Choice choose(Point2 u) const;
 
  private:
-  /// Cumulative probabilities of `count` things, and where to begin looking in them: entry k of the guide is the first that
-  /// exceeds k / size (Chen & Asau 1974, "On generating random variates from an empirical distribution"). A search among
-  /// thousands waits for memory at most of its steps; from there it is one or two.
-  struct Guided {
-    const float* cumulative;
-    size_t count;
-    const std::uint32_t* guide;
-    size_t guides;
-    size_t find(float& u) const;
-  };
-  static float share(const float* cumulative, size_t i) { return cumulative[i] - (i == 0 ? 0 : cumulative[i - 1]); }
-  static void make_guide(const float* cumulative, size_t count, std::uint32_t* guide, size_t guides);
-  static size_t guides_for(size_t count);
+  /// Cumulative probabilities of several lists of things, as many in each, in nodes of sixteen: a line of memory. Above them
+  /// lie nodes of the last of each sixteen, and so on up to one node (a B-tree). Of a large image only the lowest nodes are too
+  /// many to stay near, so a search waits for memory once, and in no node does it branch.
+  class Searched {
+   public:
+    Searched() = default;
+    Searched(size_t lists, size_t count);
+    /// Of thing i of a list; to be set in order.
+    void set(size_t list, size_t i, float cumulative);
+    /// The first thing whose cumulative probability exceeds u, which becomes the uniform place in it.
+    size_t find(size_t list, float& u) const;
+    /// The probability of one.
+    float share(size_t list, size_t i) const { return at(list, i) - (i == 0 ? 0 : at(list, i - 1)); }
+    void prefetch(size_t list, size_t i) const { __builtin_prefetch(&lowest_[list * lowest_nodes_ + i / fanout]); }
 
-  size_t width_ = 0;
+   private:
+    static constexpr size_t fanout = 16;
+    struct alignas(64) Node {
+      Node();
+      float cumulative[fanout];  ///< infinite behind the end
+    };
+    float at(size_t list, size_t i) const { return lowest_[list * lowest_nodes_ + i / fanout].cumulative[i % fanout]; }
+
+    size_t count_ = 0, lowest_nodes_ = 0, upper_nodes_ = 0;  ///< nodes: of each list
+    std::vector<size_t> levels_;                             ///< nodes of those above the lowest, from the top
+    std::vector<Node> upper_, lowest_;
+  };
+
   double total_ = 0;
-  std::vector<float> rows_, columns_;  ///< cumulative: of rows, and in each row of its texels
-  std::vector<float> measures_;        ///< of a texel, by row
-  std::vector<std::uint32_t> row_guide_, column_guides_;
+  Searched rows_, columns_;      ///< rows, and in each row (a list) its texels
+  std::vector<float> measures_;  ///< of a texel, by row
 };
 
 }  // namespace etendue

@@ -2,40 +2,39 @@
 
 #include <fmt/format.h>
 
-#include "components/shaders/fresnel.h"
+#include <memory>
+
 #include "components/shaders/reflectance.h"
 #include "components/shaders/tangent_frame.h"
 #include "etendue/core/warp.h"
-#include "etendue/describe/color.h"
 #include "etendue/scatter_model.h"
 #include "etendue/transport/medium_stack.h"
+#include "rgb_reflectance.h"
 #include "roughness.h"
 
 namespace etendue {
 namespace {
 
-/// A conductor's index over that of what is in front of it.
-struct RelativeIndex {
-  Spectrum n, k;
-  const RgbSpace* space = nullptr;  ///< not null: n and k hold those of red, green and blue
+/// What a boundary reflects at the path's wavelengths.
+struct BoundaryReflectance {
+  Spectrum n, k;                        ///< the conductor's index over that of what is in front of it
+  const RgbReflectance* rgb = nullptr;  ///< not null: only that of three channels is known,
+  bool in_vacuum = true;                ///< and in front of it is nothing; otherwise n and k hold red's, green's and blue's
   Wavelengths wavelengths{};
 
-  Spectrum reflectance(float cosine) const { return seen(fresnel_conductor(cosine, n, k)); }
-  Spectrum mean_reflectance() const { return seen(mean_fresnel_conductor(n, k)); }
+  Spectrum at(float cosine) const {
+    return rgb && in_vacuum ? rgb->reflectance(cosine, wavelengths) : seen(fresnel_conductor(cosine, n, k));
+  }
+  Spectrum mean() const { return rgb && in_vacuum ? rgb->mean_reflectance(wavelengths) : seen(mean_fresnel_conductor(n, k)); }
 
  private:
-  // Renderers of three channels take Fresnel's reflectance of each for the colour of what is reflected, and that is what such
-  // numbers were chosen for. So the colour becomes a spectrum, at each angle, and not the index, of which it is no linear
-  // function.
-  Spectrum seen(const Spectrum& r) const {
-    return space ? rgb_coefficients(*space, r[0], r[1], r[2]).evaluate(wavelengths) : r;
-  }
+  Spectrum seen(const Spectrum& reflected) const { return rgb ? rgb->spectrum_of(reflected).evaluate(wavelengths) : reflected; }
 };
 
 class PolishedConductor final : public ScatterModel<PolishedConductor> {
  public:
-  PolishedConductor(const SurfacePoint& p, const RelativeIndex& index, Spectrum tint)
-      : ScatterModel(p, specular_reflection), index_(index), tint_(tint) {
+  PolishedConductor(const SurfacePoint& p, const BoundaryReflectance& boundary, Spectrum tint)
+      : ScatterModel(p, specular_reflection), boundary_(boundary), tint_(tint) {
     has_choice_ = false;
   }
 
@@ -43,17 +42,17 @@ class PolishedConductor final : public ScatterModel<PolishedConductor> {
   float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
   bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
     s.in = {-out.x, -out.y, out.z};
-    s.value = tint_ * index_.reflectance(std::abs(out.z));
+    s.value = tint_ * boundary_.at(std::abs(out.z));
     s.density = 1;
     s.lobe = specular_reflection;
     return true;
   }
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    return (which & specular_reflection) ? tint_ * index_.reflectance(std::abs(out.z)) : Spectrum();
+    return (which & specular_reflection) ? tint_ * boundary_.at(std::abs(out.z)) : Spectrum();
   }
 
  private:
-  RelativeIndex index_;
+  BoundaryReflectance boundary_;
   Spectrum tint_;
 };
 
@@ -66,16 +65,17 @@ class PolishedConductor final : public ScatterModel<PolishedConductor> {
 class RoughConductor final : public ScatterModel<RoughConductor> {
  public:
   RoughConductor(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution,
-                 const RelativeIndex& index, Spectrum tint, bool multiple)
+                 const BoundaryReflectance& boundary, Spectrum tint, bool multiple)
       : ScatterModel(p, frame, glossy_reflection),
         distribution_(distribution),
         multiple_reflection_(distribution),
-        index_(index),
+        boundary_(boundary),
         tint_(tint) {
-    const Spectrum mean = index.mean_reflectance();
-    if (multiple) multiple_ = multiple_reflection_.factor(mean);
-    multiple_over_single_ = multiple_.average() / std::max(mean.average(), 1e-6f);
     has_choice_ = multiple;
+    if (!multiple) return;
+    const Spectrum mean = boundary.mean();
+    multiple_ = multiple_reflection_.factor(mean);
+    multiple_over_single_ = multiple_.average() / std::max(mean.average(), 1e-6f);
   }
 
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
@@ -83,14 +83,16 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
   }
   float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
     if (!(out.z * in.z > 0)) return 0;
-    return density(out, in, reflection_half_vector(out, in), probability_of_multiple(multiple_reflection_.missing(out)));
+    const float multiple = has_choice_ ? probability_of_multiple(multiple_reflection_.missing(out)) : 0;
+    return density(out, in, reflection_half_vector(out, in), multiple);
   }
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
     if (!(out.z * in.z > 0)) return {};
     const Vector3 m = reflection_half_vector(out, in);
+    Spectrum value = boundary_.at(std::abs(dot(out, m))) * (distribution_.D(m) * distribution_.visibility(out, in));
+    if (!has_choice_) return {tint_ * value, density(out, in, m, 0)};
     const float missing = multiple_reflection_.missing(out);
-    Spectrum value = index_.reflectance(std::abs(dot(out, m))) * (distribution_.D(m) * distribution_.visibility(out, in));
-    if (has_choice_) value += multiple_ * multiple_reflection_.value(missing, multiple_reflection_.missing(in));
+    value += multiple_ * multiple_reflection_.value(missing, multiple_reflection_.missing(in));
     return {tint_ * value, density(out, in, m, probability_of_multiple(missing))};
   }
 
@@ -111,7 +113,7 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
     if (!(which & glossy_reflection)) return {};
     const float missing = multiple_reflection_.missing(out);
-    return tint_ * (index_.reflectance(distribution_.typical_cosine(out)) * (1 - missing) + multiple_ * missing);
+    return tint_ * (boundary_.at(distribution_.typical_cosine(out)) * (1 - missing) + multiple_ * missing);
   }
 
  private:
@@ -126,7 +128,7 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
 
   MicrofacetDistribution distribution_;
   MultipleReflection multiple_reflection_;
-  RelativeIndex index_;
+  BoundaryReflectance boundary_;
   Spectrum tint_, multiple_;  ///< multiple_: light scattered more than once, over that for F = 1
   float multiple_over_single_ = 0;
 };
@@ -165,11 +167,12 @@ class Conductor final : public Shader {
   }
 
   void prepare() override {
-    space_ = index == Index::rgb ? &rgb_space(color_space) : nullptr;
-    for (int i = 0; i < 3 && space_; ++i) {
+    for (int i = 0; i < 3 && index == Index::rgb; ++i) {
       if (!(rgb_n[i] > 0 && rgb_n[i] < 100)) fail("rgb_n", "each must be more than 0 and less than 100");
       if (!(rgb_k[i] >= 0 && rgb_k[i] < 100)) fail("rgb_k", "each must be at least 0 and less than 100");
     }
+    rgb_ = {};
+    if (index == Index::rgb) rgb_ = std::make_unique<RgbReflectance>(rgb_space(color_space), rgb_n, rgb_k);
     if (!ior) fail("ior", "an index of refraction is needed");
     const Color k = ior->imaginary();
     for (float lambda = wavelength_low; lambda <= wavelength_high; lambda += 5) {
@@ -188,16 +191,11 @@ class Conductor final : public Shader {
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     const Spectrum tint = reflectance_at(*color, p, w);
     if (tint.black()) return nullptr;
-    RelativeIndex relative = own_index(w);
-    if (const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr) {
-      const Spectrum around = MediumStack::index(outside, w), n = space_ ? Spectrum(around.average()) : around;
-      relative.n = relative.n / n;
-      relative.k = relative.k / n;
-    }
+    const BoundaryReflectance boundary = boundary_of(p, w);
     const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
-    if (d.smooth()) return arena.make<PolishedConductor>(p, relative, tint);
+    if (d.smooth()) return arena.make<PolishedConductor>(p, boundary, tint);
     const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
-    return arena.make<RoughConductor>(p, frame, d, relative, tint, multiple_scattering);
+    return arena.make<RoughConductor>(p, frame, d, boundary, tint, multiple_scattering);
   }
   Lobes possible_lobes() const override {
     const Color x = roughness->constant(), y = roughness_v ? roughness_v->constant() : x;
@@ -217,23 +215,28 @@ class Conductor final : public Shader {
   std::string color_space = "srgb";
 
  private:
-  RelativeIndex own_index(const Wavelengths& w) const {
-    RelativeIndex own;
-    if (space_) {
-      own.space = space_;
-      own.wavelengths = w;
-      for (int i = 0; i < spectrum_size; ++i) {
-        own.n.set(i, rgb_n[std::min(i, 2)]);
-        own.k.set(i, rgb_k[std::min(i, 2)]);
-      }
-      return own;
+  BoundaryReflectance boundary_of(const SurfacePoint& p, const Wavelengths& w) const {
+    const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr;
+    BoundaryReflectance boundary;
+    if (rgb_) {
+      boundary.rgb = rgb_.get();
+      boundary.wavelengths = w;
+      boundary.in_vacuum = !outside;
+      if (!outside) return boundary;
+      boundary.n = rgb_->n();
+      boundary.k = rgb_->k();
+    } else {
+      boundary.n = ior->evaluate(w, ColorUse::coefficient);
+      if (const Color imaginary = ior->imaginary()) boundary.k = imaginary->evaluate(w, ColorUse::coefficient);
     }
-    own.n = ior->evaluate(w, ColorUse::coefficient);
-    if (const Color imaginary = ior->imaginary()) own.k = imaginary->evaluate(w, ColorUse::coefficient);
-    return own;
+    if (!outside) return boundary;
+    const Spectrum around = MediumStack::index(outside, w), n = rgb_ ? Spectrum(around.average()) : around;
+    boundary.n = boundary.n / n;
+    boundary.k = boundary.k / n;
+    return boundary;
   }
 
-  const RgbSpace* space_ = nullptr;
+  std::unique_ptr<const RgbReflectance> rgb_;
 };
 
 const Register<Conductor> registered;

@@ -138,6 +138,9 @@ class Dielectric final : public Shader {
     require_reflectance(*this, "transmission_tint", transmission_tint);
     require_roughness(*this, roughness, roughness_v);
     if (!rotation) fail("rotation", "a map or a number is needed");
+    constexpr Lobes smooth = specular_reflection | specular_transmission, rough = glossy_reflection | glossy_transmission;
+    lobes_ = everywhere(roughness, 0) && (!roughness_v || everywhere(roughness_v, 0)) ? smooth : smooth | rough;
+    tinted_ = !everywhere(reflection_tint, 1) || !everywhere(transmission_tint, 1);
   }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
@@ -146,7 +149,7 @@ class Dielectric final : public Shader {
     if (exterior) eta = eta / exterior->evaluate(w, ColorUse::coefficient);
     if (outside) eta = eta / MediumStack::index(outside, w);
     BoundaryTint tint;
-    if (tinted()) tint = {reflectance_at(*reflection_tint, p, w), reflectance_at(*transmission_tint, p, w)};
+    if (tinted_) tint = {reflectance_at(*reflection_tint, p, w), reflectance_at(*transmission_tint, p, w)};
     const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
     if (!RoughDielectric::smooth(d, eta)) {
       const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
@@ -155,13 +158,10 @@ class Dielectric final : public Shader {
     const bool varies = eta.minimum() != eta.maximum();
     return arena.make<DielectricScatter>(p, eta, varies, varies && !w.single(), tint);
   }
-  Lobes possible_lobes() const override {
-    constexpr Lobes smooth = specular_reflection | specular_transmission, rough = glossy_reflection | glossy_transmission;
-    return everywhere(roughness, 0) && (!roughness_v || everywhere(roughness_v, 0)) ? smooth : smooth | rough;
-  }
+  Lobes possible_lobes() const override { return lobes_; }
   Spectrum interior_index(const Wavelengths& w) const override { return ior->evaluate(w, ColorUse::coefficient); }
   /// Rough, it loses up to a hundredth at some angles: tables are as exact as that.
-  bool lossless() const override { return !(possible_lobes() & glossy_lobes) && !tinted(); }
+  bool lossless() const override { return !(possible_lobes() & glossy_lobes) && !tinted_; }
 
   Color ior = flat_spectrum(1.5f), exterior;
   Ref<ObjectMap> reflection_tint = constant(1.0f), transmission_tint = constant(1.0f);
@@ -179,7 +179,10 @@ class Dielectric final : public Shader {
                          std::to_string(int(lambda)) + " nm");
     }
   }
-  bool tinted() const { return !everywhere(reflection_tint, 1) || !everywhere(transmission_tint, 1); }
+
+  // What its maps allow, which is asked at every vertex and every boundary of a path.
+  Lobes lobes_ = specular_reflection | specular_transmission;
+  bool tinted_ = false;
 };
 
 const Register<Dielectric> registered;

@@ -1,0 +1,57 @@
+#pragma once
+// The rays of a path tracer as it asks for them, in its order.
+
+#include <cstdint>
+#include <vector>
+
+#include "etendue/render/job.h"
+#include "etendue/render/process.h"
+#include "etendue/render/renderer.h"
+#include "etendue/scene.h"
+
+namespace etendue::waves {
+
+/// A ray of a path, and what met it.
+struct RecordedRay {
+  Ray ray;
+  Hit hit;
+  std::uint32_t path = 0;
+  std::uint32_t depth = 0;  ///< how many rays of its kind the path asked for before it
+  bool shadow = false, found = false;
+};
+
+/// A scene that notes what it is asked, and asks another that is prepared already.
+class RecordingScene final : public Scene {
+ public:
+  static void describe(Description<RecordingScene>& d) { d.summary("Notes the rays that another scene is asked for."); }
+
+  Ref<Scene> asked;
+  mutable std::vector<RecordedRay> rays;
+  mutable std::uint32_t path = 0, nearest_so_far = 0, shadows_so_far = 0;
+
+  void begin_path(std::uint32_t number) const {
+    path = number;
+    nearest_so_far = shadows_so_far = 0;
+  }
+
+  bool nearest(const Ray& ray, Hit& hit) const override {
+    const bool found = asked->nearest(ray, hit);
+    rays.push_back({ray, found ? hit : Hit{}, path, nearest_so_far++, false, found});
+    return found;
+  }
+  bool any(const Ray& ray) const override {
+    const bool found = asked->any(ray);
+    rays.push_back({ray, {}, path, shadows_so_far++, true, found});
+    return found;
+  }
+  // Probes for what lies in one place are no rays of the path.
+  void all(const Ray& ray, HitList& list) const override { asked->all(ray, list); }
+
+ protected:
+  void build(std::span<const SceneObject* const>) override {}
+};
+
+/// The thread's time [s], which does not count what others take of the machine.
+double thread_seconds();
+
+}  // namespace etendue::waves
