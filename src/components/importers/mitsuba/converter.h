@@ -42,6 +42,7 @@ class Converter {
   void place(Component& camera, const Element& sensor);
   Ref<Component> camera(const Element& sensor);
   void set_view(Component& camera, const Element& sensor);
+  void set_clip(Component& camera, const Element& sensor);
   void set_shutter(Component& camera, const Element& sensor);
   Ref<Component> image(const Element* film);
   Ref<Component> filter(const Element& film);
