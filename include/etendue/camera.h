@@ -20,6 +20,7 @@ struct LensSample {
   float density = 0;     ///< [1/sr] at the scene point; a pinhole: distance^2 / cos (a delta in area, converted)
   float importance = 0;  ///< W_e [1/(m^2 sr)] of the connection, normalized as `Camera::importance`
   Point2 film;           ///< where on the film light from the point arrives
+  float nearest = 0;     ///< [m] from the lens: what is nearer does not stand in the way (Camera::Reach)
 };
 
 /// A ray that a camera sends, and what its light counts.
@@ -63,10 +64,17 @@ class Camera : public Component {
   /// asked about are relative to it. Set by the Job before the camera is prepared.
   DoublePoint3 world_centre;
 
+  /// What is seen along a ray lies so far from its lens point [m]. A camera may leave out what is nearer than a plane across
+  /// its axis, or farther than another: for its own rays, and light on its way to the lens, such things are not there. All
+  /// other light knows of them: they cast shadows, and mirrors show them.
+  struct Reach {
+    float nearest = 0, farthest = infinity;
+  };
+
   /// Told by the Job before rendering: the size of the whole picture in pixels.
   virtual void set_film(int width, int height) = 0;
   /// The ray that brings light to a film point through a lens point given by `lens` (two uniform numbers), as far as it is a
-  /// matter of geometry. The ray's cone covers a pixel.
+  /// matter of geometry. The ray's cone covers a pixel. It begins and ends where its `reach` does.
   virtual Ray ray(Point2 film, Point2 lens, float time) const = 0;
   /// The same with what real lenses do to light: it may be held back (false: the sample is black, and counts), weakened, and go
   /// ways of its own for each wavelength (Wavelengths::drop_secondary; the factor belongs into the weight). By default `ray`,
@@ -83,7 +91,7 @@ class Camera : public Component {
   /// The film point a ray from the scene ends at, if it meets lens and film; the ray is given as one the camera could
   /// have sent (from the lens outward).
   virtual std::optional<Point2> film_point(const Ray&) const = 0;
-  /// A lens point seen from a point of the scene; empty when light from there cannot reach the film.
+  /// A lens point seen from a point of the scene; empty when light from there cannot reach the film, or it is out of reach.
   /// `importance` is then without what depends on wavelengths; light is multiplied by `lens_weight`, too.
   virtual std::optional<LensSample> sample_lens(const Point3& from, float time, Point2 u) const = 0;
   /// What the lens leaves of light of these wavelengths that comes by a sample of `sample_lens`.
@@ -92,6 +100,10 @@ class Camera : public Component {
   /// and projected solid angle is 1 for the whole film (per steradian alone for a pinhole, per area for parallel rays).
   virtual float importance(const Ray&) const = 0;
   virtual CameraDensity density(const Ray&) const = 0;
+  /// Of a ray from the lens, or one that the camera sent.
+  virtual Reach reach(const Ray&) const { return {}; }
+  /// Where on the lens a ray begins that the camera sent.
+  Point3 lens_point(const Ray& sent) const { return sent.origin - reach(sent).nearest * sent.direction; }
 };
 
 }  // namespace etendue

@@ -31,7 +31,7 @@ bool comes_near(const Ray& ray, const Bounds3& box, float slack) {
   const float radius = length(box.diagonal()) / 2, along = dot(to, ray.direction), distance = length(to);
   if (distance <= radius) return true;
   const float across = std::sqrt(std::max(distance * distance - along * along, 0.0f));
-  return along > 0 && across <= radius + slack * along;
+  return along > 0 && along - radius <= ray.maximum && across <= radius + slack * along;
 }
 
 /// The camera looks past everything there is.
@@ -60,12 +60,15 @@ void sees_nothing(const Job& job, std::vector<SceneWarning>& list) {
   const Ray middle =
       camera.ray({0.5f * float(job.image->width), 0.5f * float(job.image->height)}, {0.5f, 0.5f}, camera.shutter_open);
   const Point3 c = all.centre();
+  const Camera::Reach reach = camera.reach(middle);
+  const bool clips = reach.nearest > 0 || reach.farthest < infinity;
   list.push_back(
       {"sees nothing",
        fmt::format("the camera sees none of the objects: it looks from ({:.4g}, {:.4g}, {:.4g}) along ({:.3g}, {:.3g}, "
-                   "{:.3g}), and they lie within {:.4g} m around ({:.4g}, {:.4g}, {:.4g}); look there with 'to'",
+                   "{:.3g}), and they lie within {:.4g} m around ({:.4g}, {:.4g}, {:.4g}); look there with 'to'{}",
                    middle.origin.x, middle.origin.y, middle.origin.z, middle.direction.x, middle.direction.y,
-                   middle.direction.z, length(all.diagonal()) / 2, c.x, c.y, c.z),
+                   middle.direction.z, length(all.diagonal()) / 2, c.x, c.y, c.z,
+                   clips ? ", or mind 'near_clip' and 'far_clip'" : ""),
        camera.location_of("to")});
 }
 

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <string_view>
 
 namespace etendue::assimp_helper {
 
@@ -69,6 +70,11 @@ bool write_all(int descriptor, const std::string& bytes) {
 void append_word(std::string& to, std::uint32_t value) { to.append(reinterpret_cast<const char*>(&value), 4); }
 
 }  // namespace
+
+std::uint64_t Glb::digest() const {
+  const std::hash<std::string_view> hash;
+  return hash(buffer_) * 0x9e3779b97f4a7c15ull + hash(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
 
 bool Glb::write(int descriptor) {
   if (!buffer_.empty()) json["buffers"] = Json::array({{{"byteLength", buffer_.size()}}});

@@ -25,6 +25,8 @@ class Glb {
   /// What could not be expressed, once for each text: the importer tells it.
   void note(const std::string&);
 
+  /// Of all that will be written.
+  std::uint64_t digest() const;
   /// To a file descriptor; false: it could not be written.
   bool write(int descriptor);
 

@@ -91,18 +91,18 @@ bool sees_nothing(const aiScene& scene, const aiCamera& camera, const aiVector3D
   return std::acos(std::clamp(cosine, -1.0, 1.0)) > std::asin(radius / distance) + double(camera.mHorizontalFOV) / 2;
 }
 
+// Its clipping planes are left out: Assimp does not tell whether the file states them.
 void add_camera(Glb& glb, const aiCamera& camera, size_t parent) {
   const std::string name = clean(camera.mName.C_Str());
   const double aspect = camera.mAspect > 0 && std::isfinite(camera.mAspect) ? double(camera.mAspect) : 4.0 / 3;
   Json made = {{"name", name}};
   if (camera.mOrthographicWidth > 0) {
     made["type"] = "orthographic";
-    made["orthographic"] = {
-        {"xmag", camera.mOrthographicWidth}, {"ymag", camera.mOrthographicWidth / aspect}, {"zfar", 1000}, {"znear", 0}};
+    made["orthographic"] = {{"xmag", camera.mOrthographicWidth}, {"ymag", camera.mOrthographicWidth / aspect}};
   } else {
     const double across = std::clamp(double(camera.mHorizontalFOV), 0.01, 3.0);
     made["type"] = "perspective";
-    made["perspective"] = {{"yfov", 2 * std::atan(std::tan(across / 2) / aspect)}, {"aspectRatio", aspect}, {"znear", 0.01}};
+    made["perspective"] = {{"yfov", 2 * std::atan(std::tan(across / 2) / aspect)}, {"aspectRatio", aspect}};
   }
   const size_t index = glb.add("cameras", made);
   add_below(

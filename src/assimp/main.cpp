@@ -15,6 +15,7 @@
 
 #include "convert.h"
 #include "limits.h"
+#include "second_reading.h"
 
 namespace {
 
@@ -26,6 +27,7 @@ int run(const std::string& path, std::vector<std::string> folders) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   folders.push_back(folder.empty() ? "." : folder);
   limit_process(size);
+  const SecondReading second;
   Assimp::Importer importer;
   importer.SetIOHandler(new FilesWithin(folders));                      // the importer deletes it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // it would make something to see of what has no mesh
@@ -42,6 +44,15 @@ int run(const std::string& path, std::vector<std::string> folders) {
   }
   Glb glb;
   convert(*scene, glb);
+  const std::uint64_t digest = glb.digest();
+  if (second.here()) {
+    second.tell(digest);
+    return 0;
+  }
+  if (second.told() != digest) {
+    std::fprintf(stderr, "it is damaged: what Assimp takes for its content is not in the file\n");
+    return 1;
+  }
   return glb.write(1) ? 0 : 1;
 }
 

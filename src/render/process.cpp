@@ -74,7 +74,7 @@ void record_camera(PathRecord& record, const Camera& camera, const Ray& ray) {
   PathRecord::Vertex v;
   v.kind = "camera";
   v.object = camera.class_info().name;
-  v.position = ray.origin;
+  v.position = camera.lens_point(ray);
   v.normal = Normal3(ray.direction);
   v.throughput = Spectrum(1.0f);
   record.vertices.push_back(std::move(v));
@@ -123,6 +123,8 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   if (record) [[unlikely]]
     record_camera(*record, camera, from.ray);
   s.value = from.weight * radiance(from.ray, sample);
+  if (Features* const features = request.observe.features; features && features->depth > 0) [[unlikely]]
+    features->depth += camera.reach(from.ray).nearest;
   weigh_parts(from.weight, request.observe);
   arena.reset();
   if (record) [[unlikely]] {

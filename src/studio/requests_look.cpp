@@ -45,7 +45,7 @@ Json pick(const Call& call) {
           {"shader", object.shader ? Json(document.id_of(*object.shader)) : Json()},
           {"position", triple(place)},
           {"normal", triple(point.normal)},
-          {"distance", hit.distance},
+          {"distance", job.camera->reach(ray).nearest + hit.distance},
           {"path", path}};
 }
 

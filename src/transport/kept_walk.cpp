@@ -96,7 +96,7 @@ void walk_from_camera(const RenderContext& context, const Ray& ray, const WalkLi
   KeptVertex& lens = kept.emplace_back();
   lens.kind = Vertex::Kind::camera;
   lens.parallel = context.camera.parallel();
-  lens.point.position = ray.origin;
+  lens.point.position = context.camera.lens_point(ray);
   lens.point.time = ray.time;
   Growing walk(context.scene, sample, ray, limits.longest);
   if (context.scene.has_interiors()) media_at(context.scene, ray.origin, ray.time, walk.media);
@@ -174,6 +174,7 @@ void note_first_surface(const Scene& scene, const Ray& camera_ray, SampleContext
     const Shader* shader = point.object->shader.get();
     if (shader && shader->possible_lobes() == pass_through) {
       crossed += hit.distance;
+      ray.maximum -= hit.distance;
       ray.origin = point.exit(ray.direction);
       hit = {};
       continue;

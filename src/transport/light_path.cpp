@@ -85,7 +85,7 @@ bool PathSpace::weigh_camera(LightPath& path, const Ray& ray) const {
   Wavelengths left = path.wavelengths;
   if (!context.camera.sample_ray(path.film, path.lens, time, left, sent)) return false;
   if (left.single() != path.wavelengths.single() || !same(sent.ray.direction, ray.direction) ||
-      squared_distance(sent.ray.origin, ray.origin) >
+      squared_distance(context.camera.lens_point(sent.ray), ray.origin) >
           1e-6 * squared_distance(path.x[path.x.size() - 2].point.position, ray.origin))
     context.camera.fail({},
                         "sends rays that depend on the wavelength, or from places that depend on the film point, which "
@@ -133,6 +133,9 @@ bool PathSpace::complete(LightPath& path) const {
   const std::optional<Point2> film = context.camera.film_point(ray);
   if (!film) return false;
   path.film = *film;
+  const Camera::Reach reach = context.camera.reach(ray);
+  const float far = distance(at(k - 1).point.position, ray.origin);
+  if (far < reach.nearest || far > reach.farthest) return false;
   at(k - 1).from_camera = double(camera_direction_density(context.camera, ray)) * path.camera_angle(k - 1);
   path.scale = at(k - 1).from_camera;
   Spectrum f = luminaire.emission->radiance(at(0).point, at(0).out, path.wavelengths);

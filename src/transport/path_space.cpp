@@ -26,8 +26,8 @@ bool is_luminaire(const PathVertex& v) { return v.point.object->luminaire() && !
 PathVertex PathSpace::lens(const LightPath& y) const {
   PathVertex v;
   v.kind = Vertex::Kind::camera;
-  v.point.position =
-      context.camera.ray({0.5f * float(context.image.width), 0.5f * float(context.image.height)}, y.lens, time).origin;
+  v.point.position = context.camera.lens_point(
+      context.camera.ray({0.5f * float(context.image.width), 0.5f * float(context.image.height)}, y.lens, time));
   v.point.time = time;
   return v;
 }
@@ -39,6 +39,11 @@ Vector3 PathSpace::camera_direction(Point2 film, const LightPath& y) const {
 bool PathSpace::follow(const PathVertex& from, const Vector3& direction, LightPath& y, PathVertex& to) const {
   const Scene& scene = context.scene;
   Ray ray = leaving_ray(from, direction);
+  if (from.kind == Vertex::Kind::camera) {
+    const Camera::Reach reach = context.camera.reach(ray);
+    ray.origin = ray(reach.nearest);
+    ray.maximum = reach.farthest - reach.nearest;
+  }
   MediumStack media;
   const bool tracks = scene.has_interiors();
   if (tracks) {
@@ -56,6 +61,7 @@ bool PathSpace::follow(const PathVertex& from, const Vector3& direction, LightPa
       settle_coincident(scene, ray, hit, to.point, media);
       if (hidden_by_priority(media, *to.point.object)) {
         cross_boundary(media, *to.point.object, to.point.normal, direction);
+        ray.maximum -= hit.distance;
         ray.origin = to.point.exit(direction);
         hit = {};
         continue;
@@ -165,7 +171,9 @@ bool PathSpace::visible(const LightPath& path, int i) const {
   if (to.kind == Vertex::Kind::camera) {
     const Vector3 way = to.point.position - from.point.position;
     ray = leaving_ray(from, normalize(way));
-    ray.maximum = length(way) * SurfacePoint::almost_there;
+    Ray seen = ray;
+    seen.direction = -ray.direction;
+    ray.maximum = (length(way) - context.camera.reach(seen).nearest) * SurfacePoint::almost_there;
   } else {
     ray = connecting_ray(from, to);
   }

@@ -38,6 +38,28 @@ TEST(MitsubaLight, RgbIsWhiteAndSpectraAreAsTheyAre) {
   EXPECT_NEAR(lamp("<spectrum name=\"radiance\" value=\"360:1, 555:1\"/>").y, 0.4654, 0.006);
 }
 
+// The wall stands at z = 5. What a file does not state is not clipped.
+TEST(MitsubaCamera, ClipsWhereTheFileSaysSo) {
+  const auto bright = [](const std::string& clip) {
+    return seen(import_text(scene(sensor("<float name=\"fov\" value=\"1\"/>" + clip) + integrator(1) +
+                                  wall("<emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter>"))),
+                64)
+        .y;
+  };
+  const auto planes = [](double nearest, double farthest) {
+    return "<float name=\"near_clip\" value=\"" + std::to_string(nearest) + "\"/><float name=\"far_clip\" value=\"" +
+           std::to_string(farthest) + "\"/>";
+  };
+  const double open = bright("");
+  EXPECT_GT(open, 0.5);
+  EXPECT_NEAR(bright(planes(4.9, 5.1)), open, 0.01 * open);
+  EXPECT_EQ(bright(planes(5.1, 100)), 0);
+  EXPECT_EQ(bright(planes(0.1, 4.9)), 0);
+  const auto told = [](const std::string& clip) { return import_text(scene(sensor(clip) + integrator())).told(); };
+  EXPECT_NE(told(planes(2, 1)).find("far_clip must be more than near_clip"), std::string::npos);
+  EXPECT_NE(told("<float name=\"near_clip\" value=\"0\"/>").find("near_clip must be more than 0"), std::string::npos);
+}
+
 TEST(MitsubaLight, ANumberWasWhiteBeforeVersion2) {
   const std::string lamp = wall("<emitter type=\"area\"><spectrum name=\"radiance\" value=\"2\"/></emitter>");
   const Xyz c = seen(import_text(seen_scene(lamp, 1, "0.5.0")), 8192);

@@ -36,7 +36,11 @@ std::vector<Case> cameras() {
                                             {"lens_radius", 0.1},
                                             {"focal_length", 0.05},
                                             {"principal_point", std::vector<double>{0.15, -0.4}}}),
-       true}};
+       true},
+      {"clipped",
+       create<Camera>("PerspectiveCamera",
+                      {{"from", from}, {"to", to}, {"up", up}, {"fov", 50.0}, {"near_clip", 0.7}, {"far_clip", 60.0}}),
+       false}};
   for (const Case& c : list) c.camera->set_film(width, height);
   return list;
 }

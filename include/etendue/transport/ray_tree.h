@@ -24,6 +24,7 @@ inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& 
     point.media = media;
     if (!media || !hidden_by_priority(*media, *point.object) || crossings == most_crossings) return true;
     cross_boundary(*media, *point.object, point.normal, ray.direction);
+    ray.maximum -= hit.distance;
     ray.origin = point.exit(ray.direction);
     ray.width = point.footprint;
   }
@@ -34,9 +35,10 @@ inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& 
 /// goes on as from a plane mirror.
 inline void go_on(const SurfacePoint& point, const ScatterSample& next, Ray& ray, MediumStack* media) {
   if (media && next.transmitted()) cross_boundary(*media, *point.object, point.normal, next.direction);
+  // What goes straight on ends where the ray did (Camera::Reach).
+  ray.maximum = next.lobe == pass_through ? ray.maximum - distance(ray.origin, point.position) : infinity;
   ray.origin = point.exit(next.direction);
   ray.direction = next.direction;
-  ray.maximum = infinity;
   ray.width = point.footprint;
 }
 

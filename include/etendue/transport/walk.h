@@ -98,7 +98,7 @@ class Walk {
     for (; crossings_ <= most_crossings; found = scene.nearest(ray, hit), ++crossings_) {
       if (tracks_)
         if (const Medium medium = medium_in(media)) {
-          const float reach = found ? hit.distance : infinity;
+          const float reach = found ? hit.distance : ray.maximum;
           if (only_weakened) {
             listener.through(medium, reach);
             throughput *= transmittance(medium, ray, reach, sample.wavelengths, numbers);
@@ -262,6 +262,7 @@ class Walk {
   void cross() {
     if (tracks_) cross_boundary(media, *vertex.point.object, vertex.point.normal, ray.direction);
     crossed += hit.distance;
+    ray.maximum -= hit.distance;  // that of a camera may end (Camera::Reach)
     ray.origin = vertex.point.exit(ray.direction);
     ray.width = vertex.point.footprint;
   }

@@ -66,6 +66,7 @@ class CameraTrial {
     trial.expect(cosine > 0 && cosine < 1.001f, "importance times a cosine is the product of the densities",
                  [&] { return fmt::format("{}: that cosine would be {}", where(), cosine); });
     check_lens(ray);
+    check_reach(ray);
   }
 
   void check_lens(const Ray& ray) {
@@ -80,6 +81,9 @@ class CameraTrial {
     Ray back = ray;
     back.origin = s->lens;
     back.direction = -s->direction;
+    const float nearest = camera_.reach(back).nearest;
+    trial.expect(std::abs(s->nearest - nearest) <= 1e-3f * nearest && s->nearest <= s->distance * 1.001f,
+                 "lens samples reach as far as rays", where);
     const auto f = camera_.film_point(back);
     // At the film's very edge rounding decides.
     const bool inside = s->film.x > 0.1f && s->film.x < width - 0.1f && s->film.y > 0.1f && s->film.y < height - 0.1f;
@@ -92,6 +96,22 @@ class CameraTrial {
     const float importance = camera_.importance(back);
     trial.expect(std::abs(importance - s->importance) < 3e-3f * importance, "a lens sample's importance is that of its ray",
                  [&] { return fmt::format("{}: {} and {}", where(), s->importance, importance); });
+  }
+
+  /// What is seen begins and ends where its reach does, for rays and for lens samples.
+  void check_reach(const Ray& ray) {
+    const auto [nearest, farthest] = camera_.reach(ray);
+    const auto where = [&] { return fmt::format("from {} m to {} m, and a ray of {} m", nearest, farthest, ray.maximum); };
+    const float length = farthest - nearest;
+    trial.expect(nearest >= 0 && nearest < infinity && length > 0 &&
+                     (ray.maximum == length || std::abs(ray.maximum - length) < 1e-3f * farthest),
+                 "a ray is as long as its camera reaches", where);
+    const Point3 lens = camera_.lens_point(ray);
+    const auto sees = [&](float distance) {
+      return camera_.sample_lens(lens + distance * ray.direction, time_, trial.pair()).has_value();
+    };
+    trial.expect(!(nearest > 0 && sees(0.99f * nearest)) && !(farthest < infinity && sees(1.01f * farthest)),
+                 "lens samples reach as far as rays", where);
   }
 
   /// Rays that the camera did not send.
@@ -125,7 +145,7 @@ class CameraTrial {
     for (int i = trial.samples(60000); i > 0; --i) {
       const Ray ray = camera_.ray(film(), trial.pair(), time_);
       const float cosine = dot(frame.n, ray.direction), t = dot(frame.n, centre - ray.origin) / cosine;
-      by_rays.add(cosine < 0 && t > 0 && distance(ray(t), centre) < radius ? 1 : 0);
+      by_rays.add(cosine < 0 && t > 0 && t < ray.maximum && distance(ray(t), centre) < radius ? 1 : 0);
 
       const float r = radius * std::sqrt(trial.uniform()), phi = 2 * pi * trial.uniform();
       const auto s =

@@ -21,11 +21,13 @@ class OrthographicCamera final : public Camera {
         .group("View")
         .member<&OrthographicCamera::width>("width", "m", "width of what is seen; the height follows from the picture's shape",
                                             more_than(0), soft(0.01, 100), logarithmic);
+    describe_clip<&OrthographicCamera::near_clip, &OrthographicCamera::far_clip>(d);
   }
 
   std::optional<Place> place() const override { return Place{transform.written(shutter_open)(from), length(to - from)}; }
   void prepare() override {
     check_shutter(*this);
+    clip_.set(*this, near_clip, far_clip);
     placement_.set(*this, from, to, up, transform);
     update();
   }
@@ -42,8 +44,10 @@ class OrthographicCamera final : public Camera {
     r.direction = pose.forward;
     r.time = time;
     r.width = pixel_;
+    clip_.cut(r, 1);
     return r;
   }
+  Reach reach(const Ray&) const override { return clip_.reach(1); }
 
   bool has_lens() const override { return false; }
 
@@ -59,7 +63,7 @@ class OrthographicCamera final : public Camera {
   std::optional<LensSample> sample_lens(const Point3& point, float time, Point2) const override {
     const Pose pose = placement_.at(time);
     const Vector3 seen = pose.to_camera(point - pose.position);
-    if (!(seen.z > 0)) return std::nullopt;
+    if (!(seen.z > 0) || !clip_.holds(seen.z)) return std::nullopt;
     const std::optional<Point2> film = project(seen);
     if (!film) return std::nullopt;
     LensSample s;
@@ -69,6 +73,7 @@ class OrthographicCamera final : public Camera {
     s.density = 1;
     s.importance = density_;
     s.film = *film;
+    s.nearest = clip_.reach(1).nearest;
     return s;
   }
 
@@ -79,6 +84,7 @@ class OrthographicCamera final : public Camera {
   Vector3 up{0, 1, 0};
   AnimatedTransform transform;
   float width = 1;
+  float near_clip = 0, far_clip = 0;
 
  private:
   void update() {
@@ -92,6 +98,7 @@ class OrthographicCamera final : public Camera {
   }
 
   Placement placement_;
+  Clip clip_;
   float columns_ = 1, rows_ = 1;  // of the picture, in pixels
   float pixel_ = 1;               // width of one [m]
   float density_ = 1;             // 1 / area of the film [1/m^2]

@@ -55,11 +55,13 @@ class PerspectiveCamera final : public Camera {
         .member<&PerspectiveCamera::focus_distance>(
             "focus_distance", "m", "distance of the plane of sharp focus, along the axis; 0: at the point `to`", at_least(0),
             soft(0.1, 100), logarithmic, when("lens_radius"));
+    describe_clip<&PerspectiveCamera::near_clip, &PerspectiveCamera::far_clip>(d);
   }
 
   std::optional<Place> place() const override { return Place{transform.written(shutter_open)(from), length(to - from)}; }
   void prepare() override {
     check_shutter(*this);
+    clip_.set(*this, near_clip, far_clip);
     if (!(std::isfinite(principal_point.x) && std::isfinite(principal_point.y)))
       fail("principal_point", "must be finite numbers");
     if (!std::isfinite(focal_length)) fail("focal_length", "must be finite");
@@ -90,8 +92,10 @@ class PerspectiveCamera final : public Camera {
     r.direction = pose.to_world(inverse_length * direction);
     r.time = time;
     r.spread = pixel_ * inverse_length;
+    clip_.cut(r, inverse_length);
     return r;
   }
+  Reach reach(const Ray& r) const override { return clip_.reach(dot(placement_.at(r.time).forward, r.direction)); }
 
   bool has_lens() const override { return lens_radius > 0; }
 
@@ -105,7 +109,7 @@ class PerspectiveCamera final : public Camera {
     const Point2 l = lens_radius > 0 ? warp::disc(u) : Point2{};
     const Vector3 offset{lens_radius * l.x, lens_radius * l.y, 0};
     const Vector3 to_point = pose.to_camera(point - pose.position) - offset;
-    if (!(to_point.z > 0)) return std::nullopt;
+    if (!(to_point.z > 0) || !clip_.holds(to_point.z)) return std::nullopt;
     Seen seen;
     project(offset, to_point, seen);
     if (!seen.on_film) return std::nullopt;
@@ -117,6 +121,7 @@ class PerspectiveCamera final : public Camera {
     s.density = square(s.distance) * lens_density_ / cosine;
     s.importance = importance_of(cosine);
     s.film = seen.film;
+    s.nearest = clip_.reach(cosine).nearest;
     return s;
   }
 
@@ -138,6 +143,7 @@ class PerspectiveCamera final : public Camera {
   float focal_length = 0, sensor_size = 0.0432666f;  // the latter of 36 mm by 24 mm
   Vector2 principal_point{0, 0};
   float lens_radius = 0, focus_distance = 0;
+  float near_clip = 0, far_clip = 0;
 
  private:
   struct Seen {
@@ -188,6 +194,7 @@ class PerspectiveCamera final : public Camera {
   }
 
   Placement placement_;
+  Clip clip_;
   float width_ = 1, height_ = 1;            // of the picture, in pixels
   float half_width_ = 1, half_height_ = 1;  // of the film at distance 1
   float area_ = 4, pixel_ = 1;              // of the film, and width of a pixel, at distance 1

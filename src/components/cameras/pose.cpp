@@ -28,6 +28,15 @@ void Placement::set(const Camera& camera, const DoublePoint3& from, const Double
   still_ = Pose(transform_.still() * base_);
 }
 
+void Clip::set(const Camera& camera, float near_clip, float far_clip) {
+  if (!std::isfinite(near_clip)) camera.fail("near_clip", "must be finite");
+  if (std::isnan(far_clip) || (far_clip > 0 && !(far_clip > near_clip)))
+    camera.fail("far_clip", "must be more than near_clip, or 0: nothing lies between the two planes");
+  nearest_ = near_clip;
+  farthest_ = far_clip > 0 ? far_clip : infinity;
+  cuts_ = nearest_ > 0 || farthest_ < infinity;
+}
+
 void check_shutter(const Camera& camera) {
   if (!std::isfinite(camera.shutter_open)) camera.fail("shutter_open", "must be a finite time");
   if (!std::isfinite(camera.shutter_close) || camera.shutter_close < camera.shutter_open)

@@ -37,6 +37,45 @@ class Placement {
   AnimatedTransform transform_;
 };
 
+/// Two planes across a camera's axis, between which lies what it sees.
+class Clip {
+ public:
+  /// Checks and takes the members of a camera; throws at the member that is wrong.
+  void set(const Camera& camera, float near_clip, float far_clip);
+  /// Whether a point so far along the axis [m] lies between them.
+  bool holds(float depth) const { return depth >= nearest_ && depth <= farthest_; }
+  /// Along a direction under an angle of this cosine to the axis.
+  Camera::Reach reach(float cosine) const { return {nearest_ / cosine, farthest_ / cosine}; }
+  /// Lets a ray that leaves the lens begin and end there.
+  void cut(Ray& ray, float cosine) const {
+    if (!cuts_) return;
+    const auto [nearest, farthest] = reach(cosine);
+    ray.origin = ray(nearest);
+    ray.maximum = farthest - nearest;
+    ray.width += nearest * ray.spread;
+  }
+
+ private:
+  float nearest_ = 0, farthest_ = infinity;
+  bool cuts_ = false;
+};
+
+/// The members that say where they are.
+template <auto near_clip, auto far_clip, class C>
+void describe_clip(Description<C>& d) {
+  d.group("Clipping")
+      .template member<near_clip>("near_clip", "m",
+                                  "what is nearer than this, along the viewing axis, is left out of what the camera sees; it "
+                                  "casts shadows and shows in "
+                                  "mirrors all the same",
+                                  at_least(0), soft(0.001, 10), logarithmic)
+      .template member<far_clip>("far_clip", "m",
+                                 "what is farther than this, along the viewing axis, is left out in the same way, and the "
+                                 "environment seen instead; 0: "
+                                 "nothing is",
+                                 at_least(0), soft(1, 10000), logarithmic);
+}
+
 /// Throws when the shutter closes before it opens.
 void check_shutter(const Camera&);
 

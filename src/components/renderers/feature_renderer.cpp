@@ -68,7 +68,8 @@ class FeatureProcess final : public RenderProcess {
     if (feature == Feature::albedo) {  // light after all: white light, scattered
       if (scatter) value = scatter->albedo(out) * white_->evaluate(sample.wavelengths, ColorUse::radiance);
     } else {
-      value = display_colors()(color(scene, camera_ray, hit, point, distance(camera_ray.origin, point.position)));
+      value = display_colors()(
+          color(scene, camera_ray, hit, point, distance(context.camera.lens_point(camera_ray), point.position)));
       sample.wavelengths = display_colors().wavelengths;
     }
     sample.observe.light(1, value);
@@ -117,6 +118,7 @@ class FeatureProcess final : public RenderProcess {
     while (count < most && scene.nearest(ray, hit)) {
       ++count;
       scene.locate(ray, hit, point);
+      ray.maximum -= hit.distance;
       ray.origin = point.exit(ray.direction);
     }
     return count;

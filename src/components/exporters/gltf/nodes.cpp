@@ -144,12 +144,14 @@ size_t Writer::camera_node() {
   const std::string& type = class_of(c);
   const double width = number_of(*job.image, "width"), height = number_of(*job.image, "height");
   const bool parallel = type == "OrthographicCamera";
-  // Numbers that glTF asks for: the depths that a viewer shows.
-  constexpr double nearest = 0.01, farthest = 1e6;
+  // glTF asks for a near plane of a pinhole and for both of parallel rays: where nothing is clipped, so near and so far that
+  // nothing is there.
+  const double near_clip = number_of(c, "near_clip"), far_clip = number_of(c, "far_clip");
+  const double nearest = near_clip > 0 || parallel ? near_clip : (far_clip > 0 ? std::min(1e-4, far_clip / 2) : 1e-4);
   Json view;
   if (parallel) {
     const double half = number_of(c, "width") / 2;
-    view = {{"xmag", half}, {"ymag", half * height / width}, {"znear", nearest}, {"zfar", farthest}};
+    view = {{"xmag", half}, {"ymag", half * height / width}, {"znear", nearest}, {"zfar", std::max(1e7, 2 * nearest)}};
   } else {
     if (type != "PerspectiveCamera")
       exporting.inexact(fmt::format("glTF has no camera like {}: a pinhole stands for it", type), &c);
@@ -164,6 +166,7 @@ size_t Writer::camera_node() {
     if (middle.size() == 2 && (middle[0] != 0 || middle[1] != 0))
       exporting.inexact("the axis of a camera meets the middle of the picture in glTF", &c);
   }
+  if (far_clip > 0) view["zfar"] = far_clip;
   document_["cameras"].push_back(
       {{"type", parallel ? "orthographic" : "perspective"}, {parallel ? "orthographic" : "perspective", std::move(view)}});
   const std::vector<double> from = numbers_of(c, "from"), to = numbers_of(c, "to"), up = numbers_of(c, "up");

@@ -51,8 +51,10 @@ void Writer::camera(Node n) {
   } else {
     exporting.inexact(fmt::format("Mitsuba has no sensor like {}: a perspective one stands for it", class_of(c)), &c);
   }
-  number(n, "near_clip", 1e-4);
-  number(n, "far_clip", 1e7);
+  // It asks for both: where nothing is clipped here, so near and so far that nothing is there.
+  const double near_clip = number_of(c, "near_clip"), far_clip = number_of(c, "far_clip");
+  number(n, "near_clip", near_clip > 0 ? near_clip : (far_clip > 0 ? std::min(1e-4, far_clip / 2) : 1e-4));
+  number(n, "far_clip", far_clip > 0 ? far_clip : std::max(1e7, 2 * near_clip));
   transform(n, "to_world", placed);
 }
 

@@ -37,6 +37,8 @@ void Writer::camera() {
       close > open ? fmt::format(" \"float shutteropen\" {} \"float shutterclose\" {}", open, close) : "";
   if (number_of(camera, "shutter_opening") > 0 || number_of(camera, "shutter_closing") > 0)
     exporting.inexact("a shutter opens and closes at once in pbrt", &camera);
+  if (number_of(camera, "near_clip") > 0 || number_of(camera, "far_clip") > 0)
+    exporting.inexact("pbrt sees what is nearer than near_clip and farther than far_clip", &camera);
   const double aspect = double(job.image->width) / job.image->height;
   if (orthographic) {
     const double half = number_of(camera, "width") / 2;

@@ -81,6 +81,11 @@ MadeCamera make_camera(Importing& importing, const Document& document, size_t in
     } else {
       throw Error("a camera of the type '" + type.substr(0, 20) + "' is unknown");
     }
+    // All that show glTF leave out what lies before or behind these planes, and Cycles does, whose files state them.
+    const double nearest = number(view, "znear", 0), farthest = number(view, "zfar", 0);
+    if (!(nearest >= 0) || (farthest != 0 && !(farthest > nearest))) throw Error("its 'znear' and 'zfar' leave nothing to see");
+    if (nearest > 0) set_member(*made.camera, "near_clip", nearest, at);
+    if (farthest > 0) set_member(*made.camera, "far_clip", farthest, at);
     set_member(*made.camera, "from", vector(0, 0, 0), at);
     set_member(*made.camera, "to", vector(0, 0, -1), at);
     set(*made.camera, "transform", Value(without_stretch(transform), at));

@@ -43,6 +43,7 @@ class Converter {
   Ref<Component> camera(const Element& sensor);
   std::string axis_of(const Element& e);
   void set_view(Component& camera, const Element& sensor);
+  void set_clip(Component& camera, const Element& sensor);
   void set_shutter(Component& camera, const Element& sensor);
   Ref<Component> image(const Element* film);
   Ref<Component> filter(const Element& film);

@@ -70,15 +70,7 @@ Ref<Component> Converter::camera(const Element& e) {
   }
   place(*camera, e);
   set_shutter(*camera, e);
-  // Rays start at near_clip there, and end at far_clip.
-  const bool clips = camera->class_info().find("near_clip") && camera->class_info().find("far_clip");
-  for (const char* clip : {"near_clip", "far_clip"}) {
-    if (!e.has(clip)) continue;
-    if (clips)
-      set_member(*camera, clip, e.number(clip, 0), e.location_of(clip));
-    else
-      importing_.inexact("what is nearer than near_clip or farther than far_clip is seen here", e.location_of(clip));
-  }
+  set_clip(*camera, e);
   e.ignore({"focus_distance", "srf"});
   if (const Element* medium = e.nested("medium"); medium)
     importing_.inexact("a medium around the sensor is not expressed", e.location_of("medium"));
@@ -117,6 +109,23 @@ void Converter::set_view(Component& camera, const Element& e) {
   const double x = e.number("principal_point_offset_x", 0), y = e.number("principal_point_offset_y", 0);
   if (x != 0 || y != 0)
     set_member(camera, "principal_point", Numbers{{-x, -y}, 1, Dimension::none}, e.location_of("principal_point_offset_x"));
+}
+
+// Rays start at near_clip there, and end at far_clip, as here. Where a file states neither, Mitsuba leaves out what is nearer
+// than 0.01 or farther than 10000; nothing is left out here (docs/coming-from-mitsuba.md).
+void Converter::set_clip(Component& camera, const Element& e) {
+  if (!e.has("near_clip") && !e.has("far_clip")) return;
+  double nearest = e.number("near_clip", 0.01), farthest = e.number("far_clip", 1e4);
+  if (!(nearest > 0)) throw Error("near_clip must be more than 0", e.location_of("near_clip"));
+  if (!(farthest > nearest))
+    throw Error("far_clip must be more than near_clip", e.location_of(e.has("far_clip") ? "far_clip" : "near_clip"));
+  if (camera.class_info().name == "OrthographicCamera") {  // its near plane is stretched with it, but not what lies beyond
+    const double stretch = length(column(e.transform().transform.still().exact(), 2));
+    farthest += nearest * (stretch - 1);
+    nearest *= stretch;
+  }
+  if (e.has("near_clip")) set_member(camera, "near_clip", nearest, e.location_of("near_clip"));
+  if (e.has("far_clip")) set_member(camera, "far_clip", farthest, e.location_of("far_clip"));
 }
 
 void Converter::set_shutter(Component& camera, const Element& e) {

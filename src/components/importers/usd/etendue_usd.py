@@ -319,10 +319,15 @@ class Converter:
         aspect = camera.aspectRatio or 1
         if camera.projection == Gf.Camera.Perspective:
             fov = math.radians(camera.GetFieldOfView(Gf.Camera.FOVVertical))
-            made = {"type": "perspective", "perspective": {"yfov": fov, "aspectRatio": aspect, "znear": 0.01}}
+            made = {"type": "perspective", "perspective": {"yfov": fov, "aspectRatio": aspect}}
         else:
             half = camera.horizontalAperture * Gf.Camera.APERTURE_UNIT / 2
-            made = {"type": "orthographic", "orthographic": {"xmag": half, "ymag": half / aspect, "znear": 0, "zfar": 1e6}}
+            made = {"type": "orthographic", "orthographic": {"xmag": half, "ymag": half / aspect}}
+        # What the file leaves at its defaults (1 and 1000000 units) is no choice of its makers: nothing is clipped then. glTF's
+        # planes are not stretched with the camera, so they are in metres.
+        if UsdGeom.Camera(prim).GetClippingRangeAttr().HasAuthoredValue():
+            metres = UsdGeom.GetStageMetersPerUnit(self.stage)
+            made[made["type"]].update(znear=max(camera.clippingRange.min, 0) * metres, zfar=camera.clippingRange.max * metres)
         self.node(prim, place, camera=self.glb.add("cameras", dict(made, name=prim.GetName())))
 
     def light(self, prim, place, kind):
