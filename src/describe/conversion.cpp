@@ -98,7 +98,11 @@ std::int64_t to_integer(const Value& v, const Member& m, std::int64_t low, std::
 std::string to_string(const Value& v, const Member& m) {
   const auto* s = v.as<std::string>();
   if (!s) mismatch("a string", v);
-  if (!m.choices.empty()) static_cast<void>(to_choice(v, m));
+  const auto goes_on = [&](const std::string& choice) {
+    const std::string begin = beginning_of_choice(choice);
+    return !begin.empty() && s->starts_with(begin);
+  };
+  if (!m.choices.empty() && std::ranges::none_of(m.choices, goes_on)) static_cast<void>(to_choice(v, m));
   return *s;
 }
 

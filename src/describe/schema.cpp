@@ -1,9 +1,11 @@
 // Classes as JSON, and the JSON Schema of everything that can be written.
 
+#include <cctype>
 #include <cmath>
 
 #include "etendue/describe/reflection.h"
 #include "reflection_values.h"
+#include "words.h"
 
 namespace etendue {
 
@@ -94,6 +96,30 @@ Json number_schema(const Member& member) {
   return json;
 }
 
+/// Of strings: some that are open are told by what they begin with.
+void add_choices(Json& json, const std::vector<std::string>& choices) {
+  Json closed = Json::array(), all = Json::array();
+  for (const std::string& choice : choices) {
+    const std::string begin = beginning_of_choice(choice);
+    if (begin.empty()) {
+      closed.push_back(choice);
+      continue;
+    }
+    std::string pattern = "^";
+    for (const char c : begin) {
+      if (!std::isalnum(static_cast<unsigned char>(c))) pattern += '\\';
+      pattern += c;
+    }
+    all.push_back({{"pattern", pattern}});
+  }
+  if (all.empty()) {
+    if (!closed.empty()) json["enum"] = closed;
+    return;
+  }
+  all.push_back({{"enum", closed}});
+  json["anyOf"] = all;
+}
+
 /// The value itself.
 Json plain_item_schema(const Member& member) {
   Json json;
@@ -103,7 +129,7 @@ Json plain_item_schema(const Member& member) {
     case Kind::number: return number_schema(member);
     case Kind::string:
       json["type"] = "string";
-      if (!member.choices.empty()) json["enum"] = member.choices;
+      add_choices(json, member.choices);
       break;
     case Kind::file: json["type"] = "string"; break;
     case Kind::choice: json["enum"] = member.choices; break;

@@ -97,4 +97,9 @@ std::string meant_choice(const std::string& given, const Member& member) {
   return general ? told(*general) : suggestion(given, member.choices);
 }
 
+std::string beginning_of_choice(const std::string& choice) {
+  constexpr std::string_view open = "…";
+  return choice.ends_with(open) ? choice.substr(0, choice.size() - open.size()) : std::string();
+}
+
 }  // namespace etendue

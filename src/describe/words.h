@@ -39,4 +39,8 @@ std::string no_member(const ClassInfo&, const std::string& given);
 /// What follows "has no choice 'x'" of a member.
 std::string meant_choice(const std::string& given, const Member&);
 
+/// Of a choice of strings that ends with "…", what all that it stands for begins with: "light." of "light.…". Empty: it stands
+/// for itself.
+std::string beginning_of_choice(const std::string& choice);
+
 }  // namespace etendue

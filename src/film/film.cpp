@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "etendue/film/splat_label.h"
 #include "film_members.h"
 #include "film_values.h"
 #include "filter_window.h"
@@ -101,7 +102,7 @@ void Film::add_tile(const ImageTile& tile) {
   FilmCounts& counts = m.step.counts;
   if (counts.samples.empty()) counts.samples.resize(format.pixels());
   if (tile.lit_ && !tile.light_.empty()) add(tile.extent_, light_list, tile.light_);
-  if (tile.lit_ && !tile.lengths_.empty()) add(tile.extent_, length_list, tile.lengths_);
+  if (tile.lit_ && !tile.lengths_.empty()) add(tile.extent_, part_list, tile.lengths_);
   if (!tile.weights_.empty()) add(tile.area_, weight_list, tile.weights_);
   if (!tile.features_.empty()) {
     add(tile.area_, feature_list, tile.features_);
@@ -137,7 +138,7 @@ void Film::add_splats(const ImageTile& tile) {
   Members& m = *members_;
   const PictureFormat& format = *m.format;
   std::vector<double>& sums = m.list(splat_list);
-  double* by_length = format.path_lengths > 0 ? m.list(length_splat_list).data() : nullptr;
+  double* parts = format.parts() > 0 ? m.list(part_splat_list).data() : nullptr;
   std::vector<double>& of_path = m.splatted;  // what the path at hand brought so far; zero but in the pixels it reached
   if (of_path.empty()) of_path.resize(format.pixels());
   std::vector<size_t> reached;
@@ -159,12 +160,16 @@ void Film::add_splats(const ImageTile& tile) {
     }
     of_path[pixel] += value.y;
     reached.push_back(pixel);
-    if (!by_length || splat.length < 1) return;
-    const auto length = size_t(std::min(splat.length, format.path_lengths)) - 1;
-    double* part = &by_length[3 * (size_t(format.path_lengths) * pixel + length)];
-    part[0] += value.x;
-    part[1] += value.y;
-    part[2] += value.z;
+    if (!parts) return;
+    const auto add_part = [&](size_t part) {
+      double* at = &parts[3 * (format.parts() * pixel + part)];
+      at[0] += value.x;
+      at[1] += value.y;
+      at[2] += value.z;
+    };
+    const SplatLabel label = SplatLabel::unpacked(splat.length);
+    if (label.length >= 1 && format.path_lengths > 0) add_part(size_t(std::min(label.length, format.path_lengths)) - 1);
+    if (label.group >= 0) add_part(size_t(format.path_lengths) + size_t(label.group));
   };
   constexpr int size = PictureFormat::table_size;
   for (const ImageTile::Splat& splat : tile.splats_) {

@@ -38,6 +38,8 @@ std::vector<Layer> add_layers(const PictureFormat& format, std::vector<std::stri
   }
   for (int length = 1; length <= format.path_lengths; ++length)
     for (const char* part : {".X", ".Y", ".Z"}) channels.push_back("length_" + std::to_string(length) + part);
+  for (const std::string& group : format.light_groups)
+    for (const char* part : {".X", ".Y", ".Z"}) channels.push_back(PictureFormat::light_prefix + group + part);
   return layers;
 }
 
@@ -93,8 +95,8 @@ Image FilmSnapshot::develop() const {
   if (v.counts.samples.empty()) return image;
 
   const bool even = v.even();
-  const auto& [light, splats, features, lengths, length_splats, weights, batches] = v.lists;
-  const size_t by_length = list_stride(length_list, format);
+  const auto& [light, splats, features, parts, part_splats, weights, batches] = v.lists;
+  const size_t all_parts = list_stride(part_list, format);
   double* out = image.values.data();
   for (int y = format.area.y0; y < format.area.y1; ++y)
     for (int x = format.area.x0; x < format.area.x1; ++x) {
@@ -115,7 +117,7 @@ Image FilmSnapshot::develop() const {
           case Layer::Source::count: *out++ = v.counts.samples[pixel]; break;
         }
       }
-      for (size_t i = 0; i < by_length; ++i) *out++ = sum(lengths, length_splats, by_length * pixel + i);
+      for (size_t i = 0; i < all_parts; ++i) *out++ = sum(parts, part_splats, all_parts * pixel + i);
     }
   return image;
 }

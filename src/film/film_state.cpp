@@ -71,7 +71,7 @@ static_assert(std::has_unique_object_representations_v<FeatureCount>, "written a
 
 /// What a state must have in common with the film that takes it.
 std::array<std::int32_t, 9> kind_of_film(const PictureFormat& f, Estimator estimator) {
-  return {f.width, f.height, f.area.x0, f.area.y0, f.area.x1, f.area.y1, int(f.wants_features), f.path_lengths, int(estimator)};
+  return {f.width, f.height, f.area.x0, f.area.y0, f.area.x1, f.area.y1, int(f.wants_features), int(f.parts()), int(estimator)};
 }
 
 constexpr size_t place_of_estimator = 8;  // in those numbers
@@ -125,7 +125,7 @@ std::vector<std::byte> Film::save_state() const {
   w.bytes.reserve(size);
   w.value(magic);
   for (const std::int32_t i : kind_of_film(*m.format, m.estimator)) w.value(i);
-  w.value(m.format->filter_hash());
+  w.value(m.format->hash());
   w.value(totals.steps);
   for (const ExactSums& sums : totals.sums) {
     w.list(sums.places());
@@ -143,7 +143,8 @@ Film::Totals Film::read_state(std::span<const std::byte> bytes) const {
   for (const std::int32_t i : kind_of_film(format, members_->estimator))
     if (r.value<std::int32_t>() != i)
       throw Error("the film's state belongs to a picture of another size, crop or layers, or to another kind of algorithm");
-  if (r.value<std::uint64_t>() != format.filter_hash()) throw Error("the film's state was made with another filter");
+  if (r.value<std::uint64_t>() != format.hash())
+    throw Error("the film's state was made with another filter, or with other light groups");
   Totals totals;
   totals.steps = r.value<std::uint32_t>();
   if (totals.steps > ExactSums::most_addends) throw Error("the film's state holds an impossible number of steps");

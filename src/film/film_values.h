@@ -15,8 +15,8 @@ enum List : std::uint8_t {
   light_list,    ///< X, Y, Z and Y^2 of samples by the filter
   splat_list,    ///< X, Y, Z of splats by the filter, and the squared Y of all splats of a sample
   feature_list,  ///< albedo, normal, depth
-  length_list,   ///< X, Y, Z for each path length
-  length_splat_list,
+  part_list,     ///< X, Y, Z for each path length, and then for each light group
+  part_splat_list,
   weight_list,  ///< what samples count for beyond their number
   batch_list,   ///< squares of steps' means, times their samples (Estimator::correlated)
   list_count
@@ -26,7 +26,7 @@ using Lists = std::array<std::vector<double>, list_count>;
 /// How many numbers a list has for each pixel.
 inline size_t list_stride(List list, const PictureFormat& format) {
   constexpr std::array<size_t, list_count> strides = {4, 4, 7, 3, 3, 1, 1};
-  return strides[list] * (list == length_list || list == length_splat_list ? size_t(format.path_lengths) : 1);
+  return strides[list] * (list == part_list || list == part_splat_list ? format.parts() : 1);
 }
 
 /// Numbers of a list that are summed in groups; a list may hold several groups side by side.
@@ -41,17 +41,17 @@ inline constexpr std::array<Plane, 11> planes = {{{light_list, 0, 3},
                                                   {feature_list, 0, 3},
                                                   {feature_list, 3, 3},
                                                   {feature_list, 6, 1},
-                                                  {length_list, 0, 3},
-                                                  {length_splat_list, 0, 3},
+                                                  {part_list, 0, 3},
+                                                  {part_splat_list, 0, 3},
                                                   {weight_list, 0, 1},
                                                   {batch_list, 0, 1}}};
 /// Squares of samples say nothing where samples are correlated.
 inline bool kept(const Plane& plane, Estimator estimator) {
   return estimator == Estimator::independent || !((plane.list == light_list || plane.list == splat_list) && plane.group == 1);
 }
-/// Groups that follow each other in a pixel: one for each path length, or one.
+/// Groups that follow each other in a pixel: one for each part of the light, or one.
 inline size_t groups_per_pixel(const Plane& plane, const PictureFormat& format) {
-  return plane.list == length_list || plane.list == length_splat_list ? size_t(format.path_lengths) : 1;
+  return plane.list == part_list || plane.list == part_splat_list ? format.parts() : 1;
 }
 
 /// What is counted, or chosen by order of pixels and samples: exact in any order of adding.

@@ -17,6 +17,13 @@ const std::vector<std::string>& known_layers() {
   return names;
 }
 
+/// Those, and light groups of whatever name.
+std::vector<std::string> offered_layers() {
+  std::vector<std::string> names = known_layers();
+  names.push_back(PictureFormat::light_prefix + std::string("…"));
+  return names;
+}
+
 }  // namespace
 
 void ImageBuffer::describe(Description<ImageBuffer>& d) {
@@ -29,8 +36,10 @@ void ImageBuffer::describe(Description<ImageBuffer>& d) {
                                   "excluded]; empty: the whole picture")
       .member<&ImageBuffer::layers>("layers", "",
                                     "further channels: of albedo, normal, depth, object (what camera paths meet first), "
-                                    "variance (of the mean of Y), samples (per pixel)",
-                                    known_layers())
+                                    "variance (of the mean of Y), samples (per pixel); light.NAME for the light of the "
+                                    "luminaires of which the object or the emission has this name, light.NAME+NAME for that "
+                                    "of several together, and then light.rest for all other light",
+                                    offered_layers())
       .member<&ImageBuffer::path_lengths>("path_lengths", "1",
                                           "further channels length_1.X, … by the number of segments of the paths that "
                                           "brought the light; the last holds all longer ones too",
@@ -63,12 +72,24 @@ void ImageBuffer::prepare() {
       fail("crop", fmt::format("[{}, {}, {}, {}] is not a rectangle within the picture of {} x {} pixels", crop[0], crop[1],
                                crop[2], crop[3], width, height));
   }
+  std::vector<std::string> light_groups;
   for (size_t i = 0; i < layers.size(); ++i) {
-    if (std::find(known_layers().begin(), known_layers().end(), layers[i]) == known_layers().end())
+    if (layers[i].starts_with(PictureFormat::light_prefix))
+      light_groups.push_back(layers[i].substr(std::string_view(PictureFormat::light_prefix).size()));
+    else if (std::find(known_layers().begin(), known_layers().end(), layers[i]) == known_layers().end())
       fail("layers", fmt::format("no layer is called '{}'{}", layers[i], suggestion(layers[i], known_layers())));
     if (std::find(layers.begin(), layers.begin() + std::ptrdiff_t(i), layers[i]) != layers.begin() + std::ptrdiff_t(i))
       fail("layers", fmt::format("'{}' is named twice", layers[i]));
   }
+  for (const std::string& group : light_groups)
+    if (group.empty())
+      fail("layers", "'light.' needs the name of a luminaire, as in 'light.lamp'");
+    else if (group == PictureFormat::rest_group)
+      fail("layers", "'light.rest' is kept by itself where there are other light groups");
+  if (light_groups.size() >= PictureFormat::most_light_groups)
+    fail("layers",
+         fmt::format("there may be {} light groups, not {}", PictureFormat::most_light_groups - 1, light_groups.size()));
+  if (!light_groups.empty()) light_groups.emplace_back(PictureFormat::rest_group);
 
   if (!filter) fail("filter", "is missing");
   const float radius = filter->radius();
@@ -95,6 +116,7 @@ void ImageBuffer::prepare() {
   format.layers = layers;
   format.wants_features = wants("albedo") || wants("normal") || wants("depth") || wants("object");
   format.path_lengths = path_lengths;
+  format.light_groups = std::move(light_groups);
   format.set_filter(std::move(table), radius);
   format.sampled_area = intersection(widened(area, format.reach()), {0, 0, width, height});
   format_ = std::make_shared<const PictureFormat>(std::move(format));

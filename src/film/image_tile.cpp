@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "etendue/film/image_tile.h"
+#include "etendue/film/splat_label.h"
 #include "film_values.h"
 #include "filter_window.h"
 #include "pixel_area.h"
@@ -76,6 +77,29 @@ bool regular(const Spectrum& s) {
   return false;
 }
 
+[[noreturn]] void refuse_groups() {
+  throw Error(
+      "this renderer does not tell which luminaires its light comes from, so that light groups (layers 'light.…' of the image) "
+      "cannot be kept");
+}
+
+/// Throws an Error when light groups are wanted and those of a sample do not add up to its colour: a renderer that tells of
+/// a part of its light only, or of none, would bring layers that are too dark.
+void require_groups(const PictureFormat& format, const Xyz& color, std::span<const Spectrum> parts,
+                    const Wavelengths& wavelengths) {
+  if (format.light_groups.empty()) return;
+  constexpr double rounding = 1e-3;
+  Xyz sum{};
+  for (size_t i = size_t(format.path_lengths); i < parts.size(); ++i) {
+    Xyz part;
+    BadKind kind;
+    if (parts[i].black() || !to_color(parts[i], wavelengths, part, kind)) continue;
+    sum = {sum.x + part.x, sum.y + part.y, sum.z + part.z};
+  }
+  const double apart = std::abs(sum.x - color.x) + std::abs(sum.y - color.y) + std::abs(sum.z - color.z);
+  if (apart > rounding * (color.x + color.y + color.z)) refuse_groups();
+}
+
 /// Also false for what is no number.
 bool ordinary(Point2 film) { return std::abs(film.x) < 1e7f && std::abs(film.y) < 1e7f; }
 
@@ -104,7 +128,7 @@ void ImageTile::begin(const ImageBuffer& image, const PixelArea& area, std::uint
   extent_ = intersection(widened(area, format_->reach()), format_->area);
   light_.assign(4 * pixels(extent_), 0);
   lit_ = false;
-  lengths_.assign(3 * size_t(format_->path_lengths) * pixels(extent_), 0);
+  lengths_.assign(3 * format_->parts() * pixels(extent_), 0);
   samples_.assign(pixels(area_), 0);
   weights_.clear();
   features_.assign(format_->wants_features ? feature_values * pixels(area_) : 0, 0);
@@ -152,8 +176,10 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
   }
   if (color.x == 0 && color.y == 0 && color.z == 0) return;
   lit_ = true;
-  if (!lengths_.empty()) [[unlikely]]
+  if (!lengths_.empty()) [[unlikely]] {
+    require_groups(*format_, color, by_length, wavelengths);
     add_lengths(film, px, py, wavelengths, weight, by_length);
+  }
   add_light(film, px, py, color, weight);
 }
 
@@ -182,7 +208,7 @@ void ImageTile::add_light(Point2 film, int px, int py, const Xyz& color, float w
 
 void ImageTile::add_lengths(Point2 film, int px, int py, const Wavelengths& wavelengths, float weight,
                             std::span<const Spectrum> by_length) {
-  const size_t count = std::min(by_length.size(), size_t(format_->path_lengths)), stride = 3 * size_t(format_->path_lengths);
+  const size_t count = std::min(by_length.size(), format_->parts()), stride = 3 * format_->parts();
   for (size_t length = 0; length < count; ++length) {
     if (by_length[length].black()) continue;
     Xyz color;
@@ -239,6 +265,7 @@ void ImageTile::splat(Point2 film, int px, int py, std::uint32_t sample, const S
   BadKind kind = BadKind::not_a_number;
   if (!to_color(value, wavelengths, color, kind)) [[unlikely]]
     return note({px, py, sample, kind});
+  if (!format_->light_groups.empty() && SplatLabel::unpacked(length).group < 0) refuse_groups();
   const bool same = splat_path_.x == px && splat_path_.y == py && splat_path_.sample == sample;
   splat_path_ = {px, py, sample};
   splats_.push_back({film, color, length, same});

@@ -58,17 +58,22 @@ PictureFormat::Integral PictureFormat::over_film(int x, int y) const {
   return sum;
 }
 
-std::uint64_t PictureFormat::filter_hash() const {
+std::uint64_t PictureFormat::hash() const {
   std::uint64_t h = 0xcbf29ce484222325ull;
-  const auto add = [&](float f) { h = (h ^ std::bit_cast<std::uint32_t>(f)) * 0x100000001b3ull; };
-  add(radius);
-  for (const float w : table) add(w);
+  const auto add = [&](std::uint32_t bits) { h = (h ^ bits) * 0x100000001b3ull; };
+  add(std::bit_cast<std::uint32_t>(radius));
+  for (const float w : table) add(std::bit_cast<std::uint32_t>(w));
+  for (const std::string& name : light_groups) {
+    add(std::uint32_t(name.size()));
+    for (const char c : name) add(std::uint32_t(static_cast<unsigned char>(c)));
+  }
   return h;
 }
 
 bool PictureFormat::collects_as(const PictureFormat& other) const {
   return width == other.width && height == other.height && area == other.area && path_lengths == other.path_lengths &&
-         wants_features == other.wants_features && radius == other.radius && table == other.table;
+         light_groups == other.light_groups && wants_features == other.wants_features && radius == other.radius &&
+         table == other.table;
 }
 
 }  // namespace etendue

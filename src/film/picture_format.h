@@ -16,6 +16,12 @@ struct PictureFormat {
   std::vector<std::string> layers;
   bool wants_features = false;
   int path_lengths = 0;
+  /// Names of the groups that light is divided in by its luminaires, as ImageBuffer::layers has them without "light."; the last
+  /// holds what belongs to no other. Empty: it is not divided.
+  std::vector<std::string> light_groups;
+  static constexpr const char* light_prefix = "light.";
+  static constexpr const char* rest_group = "rest";
+  static constexpr size_t most_light_groups = 256;
 
   /// The filter tabulated over one quadrant, weight at ((i + 0.5) / table_size * radius).
   static constexpr int table_size = 64;
@@ -33,6 +39,8 @@ struct PictureFormat {
   std::vector<Integral> shares;  ///< over the pixels around its own, over one quadrant of (filter_reach + 1)^2 pixels
   Integral whole;                ///< over all
 
+  /// The parts that light is kept in beside the whole: by path length, then by group.
+  size_t parts() const { return size_t(path_lengths) + light_groups.size(); }
   size_t pixels() const { return size_t(area.width()) * size_t(area.height()); }
   size_t index(int x, int y) const { return size_t(y - area.y0) * size_t(area.width()) + size_t(x - area.x0); }
   /// How many pixels to each side a sample anywhere in a pixel may count for: at the edge of its pixel it lies half a pixel
@@ -50,8 +58,8 @@ struct PictureFormat {
     });
     return sum;
   }
-  /// FNV-1a over the filter: sums made with another filter must not be added to.
-  std::uint64_t filter_hash() const;
+  /// FNV-1a over the filter and the names of light groups: sums made with others must not be added to.
+  std::uint64_t hash() const;
   /// Whether sums collected for one are valid for the other.
   bool collects_as(const PictureFormat&) const;
 

@@ -57,7 +57,9 @@ class GuideProcess final : public RenderProcess {
 };
 
 /// A layer that says how noisy the picture was, or holds a part of its light.
-bool tells_of_noise(const std::string& channel) { return channel.starts_with("variance.") || channel.starts_with("length_"); }
+bool tells_of_noise(const std::string& channel) {
+  return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("light.");
+}
 
 }  // namespace
 

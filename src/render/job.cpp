@@ -1,5 +1,6 @@
 #include "etendue/render/job.h"
 
+#include "etendue/transport/light_groups.h"
 #include "geometry/rendering_space.h"
 
 namespace etendue {
@@ -114,12 +115,14 @@ void Job::prepare() {
   }
   refuse_uneven_media_within(*scene, false);
   camera->set_film(image->width, image->height);
+  const LightGroups known(*scene, *image);  // throws when a name is unknown
 }
 
 void Job::prepare_again() {
   require_parts();
   refuse_uneven_media_within(*scene, false);
   camera->set_film(image->width, image->height);
+  const LightGroups known(*scene, *image);
 }
 
 bool Job::centre_is_stale() const {

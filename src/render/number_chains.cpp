@@ -3,6 +3,7 @@
 #include <array>
 
 #include "etendue/transport/number_vectors.h"
+#include "film/picture_format.h"
 
 namespace etendue {
 namespace {
@@ -108,6 +109,10 @@ void mutate_numbers(Schedule& schedule, const ImageBuffer& image, const ChainSet
 
 void run_chains(Schedule& schedule, const ImageBuffer& image, const ChainSettings& settings, const Chains& chains,
                 std::uint64_t seed, std::uint64_t paths, bool count_paths) {
+  if (!image.format()->light_groups.empty())
+    image.fail("layers",
+               "chains of mutated paths do not tell which luminaires their light comes from, so that they can keep no light "
+               "groups; other renderers, such as BidirectionalPathTracer, can");
   const std::uint64_t mutations = paths * std::uint64_t(settings.mutations);
   // Half of the chains begin with paths of one pool, the other half with those of another. Either takes what only weighs, v and
   // b, from the other's pool, so that it depends on nothing it weighs.

@@ -58,4 +58,22 @@ PhotonProcess::Photons PhotonProcess::make_photons(Schedule& schedule, const Ste
   return photons;
 }
 
+// A map's photons lie in it by their places: every n-th of them are spread over all places as all are.
+ShownPhotons PhotonProcess::some_of(std::initializer_list<const Photons*> maps, size_t most) const {
+  ShownPhotons shown;
+  for (const Photons* photons : maps) shown.all += photons->map.size();
+  const size_t step = std::max<size_t>(1, (shown.all + most - 1) / std::max<size_t>(most, 1));
+  for (const Photons* photons : maps)
+    for (size_t i = step / 2; i < photons->map.size() && shown.some.size() < most; i += step) {
+      const Photon& p = photons->map[i];
+      Wavelengths w = wavelengths_;
+      if (p.single) w.drop_secondary();
+      const Xyz power = to_xyz(p.throughput, w);
+      const double n = photons->walks;
+      shown.some.push_back(
+          {p.position, -p.out, {power.x / n, power.y / n, power.z / n}, int(p.vertices), p.caustic, p.in_medium});
+    }
+  return shown;
+}
+
 }  // namespace etendue

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "etendue/render/renderer.h"
+#include "etendue/transport/light_groups.h"
 #include "film/pixel_area.h"
 #include "parallel_schedule.h"
 
@@ -86,6 +87,7 @@ void weigh_parts(const Spectrum& weight, const PathObserver& observe) {
   if (observe.record) [[unlikely]]
     for (PathRecord::Contribution& part : observe.record->contributions)
       if (!part.splat) part.value *= weight;
+  LightParts::weigh(weight);
 }
 
 }  // namespace
@@ -145,14 +147,14 @@ size_t RenderProcess::path_items(const Step& step) const { return size_t(Divisio
 void RenderProcess::film_paths(Schedule& schedule, const Step& step, RecordsOf records_of, void* all) {
   const Division division(context.image, step.samples);
   const bool wants_features = context.image.wants_features();
-  const size_t path_lengths = size_t(context.image.path_lengths);
+  const LightGroups groups(context.scene, context.image);
   schedule.film(division.count(), [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
     const auto [area, first, last, block] = division.item(item);
     tile.begin(context.image, area, block);
     std::vector<Splat> splats;
-    std::vector<Spectrum> lengths(path_lengths);
+    LightParts parts(context.image, groups);
     Features features;
-    const PathRequest request{{wants_features ? &features : nullptr, nullptr, lengths},
+    const PathRequest request{{wants_features ? &features : nullptr, nullptr, parts.lengths()},
                               &splats,
                               schedule.abort,
                               records_of ? records_of(all, item) : nullptr};
@@ -162,10 +164,10 @@ void RenderProcess::film_paths(Schedule& schedule, const Step& step, RecordsOf r
           if (schedule.aborted()) return;
           if (wants_features) features = {};
           splats.clear();
-          for (Spectrum& light : lengths) light = {};
+          parts.clear();
           const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, request);
           tile.count_path();
-          tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, 1, lengths);
+          tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, 1, parts.all());
           for (const Splat& splat : splats)
             tile.splat(splat.film, x, y, key.sample, splat.value, splat.wavelengths, splat.length);
           if (wants_features) tile.features(x, y, key.sample, features);

@@ -21,7 +21,7 @@ VirtualLights VirtualLightProcess::make_lights(Schedule& schedule, const Step& s
       SampleContext sample{w, numbers, arena, {}, nullptr, schedule.abort};
       if (!walk_from_luminaire(context.scene, *renderer.light_sampler, time(0), limits, sample, walk, light)) continue;
       for (size_t i = 1; i < walk.size(); ++i)
-        if (walk[i].connectable()) lights.push_back({walk[i], int(i) + 1});
+        if (walk[i].connectable()) lights.push_back({walk[i], int(i) + 1, walk[0].point.object});
     }
   });
   return made;

@@ -118,7 +118,7 @@ void Studio::note_shape(const Shown& now, const Image& picture) {
   Shape& shape = shapes_[now.number];
   shape = {now.generation, picture.width, picture.height, {}};
   for (size_t i = 3; i < picture.channels.size(); ++i) {
-    const std::string layer = picture.channels[i].substr(0, picture.channels[i].find('.'));
+    const std::string layer = picture.channels[i].substr(0, picture.channels[i].rfind('.'));
     if (std::find(shape.layers.begin(), shape.layers.end(), layer) == shape.layers.end()) shape.layers.push_back(layer);
   }
 }

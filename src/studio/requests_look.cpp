@@ -5,21 +5,20 @@
 #include "check/replay/replay.h"
 #include "etendue/describe/color.h"
 #include "etendue/shader.h"
-#include "requests.h"
+#include "requests_look.h"
 
 namespace etendue::studio {
+
+void make_fine(Studio& studio) {
+  studio.fine_at.reset();
+  if (studio.coarse.exchange(false)) studio.apply_overrides();
+}
 
 namespace {
 
 template <class V>
 Json triple(const V& v) {
   return {v.x, v.y, v.z};
-}
-
-/// A moving camera's coarse picture counts other pixels than those that are asked about.
-void make_fine(Studio& studio) {
-  studio.fine_at.reset();
-  if (studio.coarse.exchange(false)) studio.apply_overrides();
 }
 
 Json pick(const Call& call) {
@@ -90,6 +89,13 @@ Json replay(const Call& call) {
   return {{"replay", Json::parse(replay_json(render->job(), paths, document.file(), "etendue render " + document.file()))}};
 }
 
+/// Why no sample of a list can be replayed; null: it can.
+Json refusal(const Render& render, const Json& list) {
+  if (list.empty()) return {};
+  const std::string why = replay_refusal(render);
+  return why.empty() ? Json() : Json(why);
+}
+
 Json fireflies(const Call& call) {
   const auto render = call.render();
   const auto count = size_t(call.integer_or("count", 20, 1, 10000));
@@ -114,7 +120,7 @@ Json fireflies(const Call& call) {
                     {"film", {s.film.x, s.film.y}},
                     {"splat", s.splat}});
   }
-  return {{"samples", list}, {"kept", kept}};
+  return {{"samples", list}, {"kept", kept}, {"refused", refusal(*render, list)}};
 }
 
 Json bad_samples(const Call& call) {
@@ -217,6 +223,8 @@ std::span<const Request> look_requests() {
       {"fireflies", true, fireflies},
       {"bad_samples", true, bad_samples},
       {"wireframe", true, wireframe},
+      {"photons", true, photons},
+      {"lobes", true, lobes},
   };
   return all;
 }

@@ -6,6 +6,7 @@
 
 #include "etendue/output.h"
 #include "requests.h"
+#include "studio/pixels/relight.h"
 
 namespace etendue::studio {
 
@@ -84,6 +85,9 @@ Json crop(const Call& call) {
   return {};
 }
 
+/// Pictures that one browser watches at once: the render, those beside it, and light groups.
+constexpr int most_slots = 24;
+
 Json watch(const Call& call) {
   Watch watch;
   const std::string what = call.text_or("what", "linear");
@@ -98,8 +102,26 @@ Json watch(const Call& call) {
   watch.layer = call.text_or("layer", "");
   watch.tone_map = call.text_or("tone_map", "");
   if (!watch.tone_map.empty()) static_cast<void>(tone_map_of(watch.tone_map));  // throws when it is none
-  call.studio.set_watch(call.browser, int(call.integer_or("slot", 0, 0, Studio::most_slots - 1)), watch);
+  call.studio.set_watch(call.browser, int(call.integer_or("slot", 0, 0, most_slots - 1)), watch);
   return {};
+}
+
+/// The picture as it is to be saved: with its lights weighed, if that is asked.
+Image picture_to_save(const Call& call, const Render& render) {
+  const Image picture = render.picture();
+  if (!call.has("lights")) return picture;
+  const Json& wanted = call.request["lights"];
+  std::map<std::string, std::array<double, 3>> factors;
+  const auto bad = [] { return RequestError("bad_request", "'lights' must be {\"NAME\": [r, g, b], …}, factors from 0 on"); };
+  if (!wanted.is_object()) throw bad();
+  for (const auto& [name, rgb] : wanted.items()) {
+    if (!rgb.is_array() || rgb.size() != 3) throw bad();
+    for (size_t i = 0; i < 3; ++i) {
+      if (!rgb[i].is_number() || !(rgb[i].get<double>() >= 0)) throw bad();
+      factors[name][i] = rgb[i].get<double>();
+    }
+  }
+  return relit(picture, factors);
 }
 
 Json save_picture(const Call& call) {
@@ -117,7 +139,7 @@ Json save_picture(const Call& call) {
     require_free(call, path);
     set(*output, "file", Value(FilePath{path, ""}));
     prepare_tree(*output);
-    return {{"file", write_output(render->job(), *output, render->picture(), "picture")}};
+    return {{"file", write_output(render->job(), *output, picture_to_save(call, *render), "picture")}};
   }
   throw Error(fmt::format("'{}': no format has the ending '{}'; known are {}", path, ending, fmt::join(known, " ")));
 }

@@ -81,9 +81,7 @@ class Studio {
   void leave(const Browser&);
   /// A request; the answer goes to the browser's `send`. Never throws, whatever the text is.
   void request(const std::shared_ptr<Browser>&, std::string text);
-  /// A browser watches several pictures, by slots of its own.
-  static constexpr int most_slots = 8;
-  /// The newest frame of what a browser watches in each slot; null when there is none.
+  /// A browser watches several pictures, by slots of its own: the newest frame in each; null when there is none.
   std::map<int, std::shared_ptr<const Frame>> frames(const Browser&) const;
 
   /// Ends all threads. What was edited and not saved, unless a page gave it up, is written beside the description; the path of

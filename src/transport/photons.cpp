@@ -114,6 +114,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
       p.single = v.single;
       p.in_medium = v.in_medium();
       p.caustic = caustic;
+      p.luminaire = walk[0].point.object->luminaire_index;
       if (against) p.weight = weight_of(walk, i, direct, *against, front);
     }
   }

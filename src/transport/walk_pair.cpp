@@ -1,5 +1,6 @@
 #include "etendue/transport/walk_pair.h"
 
+#include "etendue/transport/light_groups.h"
 #include "etendue/transport/photons.h"
 
 namespace etendue {
@@ -68,7 +69,8 @@ void WalkPair::meet(int t, LightListener& listener) const {
 }
 
 void WalkPair::meet_at(const KeptVertex& z, const SurfacePoint& point, int t, LightListener& listener) const {
-  FoundLight found{0, t, false, z.throughput * point.object->emission->radiance(point, z.out, sample_.wavelengths)};
+  FoundLight found{0, t, false, z.throughput * point.object->emission->radiance(point, z.out, sample_.wavelengths),
+                   point.object};
   if (found.light.black()) return;
   if (t > 2 && weights_.weighted) {
     const KeptVertex& x1 = camera_vertex(t - 1);
@@ -89,7 +91,7 @@ std::optional<FoundLight> WalkPair::sample_luminaire(int t) const {
   NumberStream numbers = sample_.numbers.fork("luminaire", std::uint32_t(t));
   const auto c = connect_to_luminaire(context_.scene, lights_, z, sample_.wavelengths, numbers, sample_.arena);
   if (!c) return {};
-  FoundLight found{1, t, false, c->light};
+  FoundLight found{1, t, false, c->light, c->luminaire.point.object};
   if (weights_.weighted) {
     const KeptVertex& x0 = c->luminaire;
     ConnectedPath path{&x0, 1, camera_.data(), t, 0, 0, 0, 0, 0, 0, !c->delta, weights_.merging};
@@ -108,7 +110,7 @@ std::optional<FoundLight> WalkPair::connect(int s, int t) const {
   NumberStream numbers = sample_.numbers.fork("connection", std::uint32_t(s * 0x10000 + t));
   const auto c = etendue::connect(context_.scene, y, z, sample_.wavelengths, numbers, sample_.arena);
   if (!c) return {};
-  FoundLight found{s, t, false, c->light};
+  FoundLight found{s, t, false, c->light, light_[0].point.object};
   if (weights_.weighted) {
     ConnectedPath path{light_.data(),   s, camera_.data(), t, 0, 0, 0, 0, direct_, light_[0].forward, can_be_met(light_[0]),
                        weights_.merging};
@@ -126,7 +128,7 @@ std::optional<FoundLight> WalkPair::connect_to_lens(int s) const {
   NumberStream numbers = sample_.numbers.fork("lens", std::uint32_t(s));
   const auto c = etendue::connect_to_lens(context_, y, light_wavelengths_, numbers, sample_.arena);
   if (!c) return {};
-  FoundLight found{s, 1, false, c->light, 1, c->lens.film};
+  FoundLight found{s, 1, false, c->light, light_[0].point.object, 1, c->lens.film};
   if (weights_.weighted) {
     const Vector3& direction = c->lens.direction;
     ConnectedPath path{light_.data(),   s, &c->camera, 1, 0, 0, 0, 0, direct_, light_[0].forward, can_be_met(light_[0]),
@@ -143,7 +145,7 @@ std::optional<FoundLight> WalkPair::merge(const Photon& photon, int t) const {
   const double merging = z.in_medium() ? weights_.merging.medium : weights_.merging.surface;
   const Spectrum scattered = scattered_from_photon(z, photon, {sample_.wavelengths, z.single});
   if (scattered.black()) return {};
-  FoundLight found{int(photon.vertices), t, true, z.throughput * scattered / float(merging)};
+  FoundLight found{int(photon.vertices), t, true, z.throughput * scattered / float(merging), photon.from(context_.scene)};
   if (weights_.weighted) {
     ConnectedPath path{nullptr, int(photon.vertices), camera_.data(), t, 0, 0, photon.weight.forward, 0, 0, 0,
                        true,    weights_.merging};
@@ -171,10 +173,10 @@ void add_found(SampleContext& sample, const Wavelengths& of_light, const FoundLi
   const Spectrum light = found.light * found.weight;
   const bool splat = found.t == 1;
   if (splat) {
-    sample.splat(found.film, light, of_light, found.length());
+    splat_light(sample, found.film, light, of_light, found.length(), found.luminaire);
   } else {
     radiance += light;
-    sample.observe.light(found.length(), light);
+    tell_light(sample.observe, found.length(), light, found.luminaire);
   }
   if (PathRecord* record = sample.observe.record) [[unlikely]]
     record->contribute({std::to_string(found.s) + " from the luminaire, " + std::to_string(found.t) + " from the camera" +

@@ -126,7 +126,7 @@ class Sides(unittest.TestCase):
             self.assertFalse(page.ask("renders", add=[1])["ok"])
             self.assertFalse(page.ask("renders", remove=7)["ok"])
             self.assertFalse(page.ask("watch", slot=1, render=7)["ok"])
-            self.assertFalse(page.ask("watch", slot=8)["ok"])
+            self.assertFalse(page.ask("watch", slot=24)["ok"])
             page.good("pause")
             for _ in range(4):
                 page.good("renders", add={})

@@ -3,11 +3,12 @@
 // share, and so all its paths have the same wavelengths and are of the same moment.
 
 #include "etendue/render/renderer.h"
+#include "etendue/render/shown_in_space.h"
 #include "etendue/transport/photons.h"
 
 namespace etendue {
 
-class PhotonProcess : public RenderProcess {
+class PhotonProcess : public RenderProcess, public ShownInSpace {
  public:
   using RenderProcess::RenderProcess;
 
@@ -59,6 +60,8 @@ class PhotonProcess : public RenderProcess {
   };
   /// Makes photons of a step, after `share`. Requests of one step that differ in kinds have different numbers.
   Photons make_photons(Schedule&, const Step&, const Request&) const;
+  /// For people: some of several maps together, in proportion to what each has.
+  ShownPhotons some_of(std::initializer_list<const Photons*>, size_t most) const;
 
  private:
   bool shares_ = false;

@@ -24,7 +24,8 @@ namespace etendue {
 
 struct VirtualLight {
   KeptVertex at;
-  int vertices = 0;  ///< of its walk up to it, the luminaire's and its own included
+  int vertices = 0;                        ///< of its walk up to it, the luminaire's and its own included
+  const SceneObject* luminaire = nullptr;  ///< that its walk began at
 };
 
 /// Those of a step, with what they point to.

@@ -24,6 +24,7 @@
 
 #include "etendue/transport/direct_light.h"
 #include "etendue/transport/division.h"
+#include "etendue/transport/light_groups.h"
 #include "etendue/transport/visibility.h"
 #include "etendue/transport/walk.h"
 
@@ -150,7 +151,15 @@ class CameraWalk : public Walk<clear> {
   }
 
   /// Adds light that somebody else gathered at the last vertex, whose way from the luminaire has so many segments: photons.
-  void add_light(int segments_before, const Spectrum& light) { add(length + segments_before, placed(throughput * light)); }
+  void add_light(int segments_before, const Spectrum& light, const SceneObject* luminaire) {
+    add(length + segments_before, placed(throughput * light), luminaire);
+  }
+  /// The same where it is not known which luminaires it comes from: there are no light groups then.
+  void add_light(int segments_before, const Spectrum& light) {
+    const Spectrum here = placed(throughput * light);
+    radiance += here;
+    sample.observe.light(length + segments_before, here);
+  }
   /// The place among the path's wavelengths of the only one that a branch follows; -1: it follows no single one.
   int lane() const { return lane_; }
 
@@ -289,7 +298,7 @@ class CameraWalk : public Walk<clear> {
   struct Listener : NoListener {
     CameraWalk& walk;
     const Weight& weight;
-    void emitted(const Spectrum& light) const { walk.add(walk.length, walk.placed(light)); }
+    void emitted(const Spectrum& light) const { walk.add(walk.length, walk.placed(light), nullptr); }
     void crossed_luminaire() const {
       walk.sample.observe.surface(walk.vertex.point, walk.placed(walk.throughput));
       walk.add_luminaire(weight);
@@ -299,9 +308,9 @@ class CameraWalk : public Walk<clear> {
     }
   };
 
-  [[gnu::always_inline]] void add(int segments, const Spectrum& light) {
+  [[gnu::always_inline]] void add(int segments, const Spectrum& light, const SceneObject* luminaire) {
     radiance += light;
-    sample.observe.light(segments, light);
+    tell_light(sample.observe, segments, light, luminaire);
   }
 
   template <class Weight>
@@ -310,7 +319,7 @@ class CameraWalk : public Walk<clear> {
         placed(throughput * vertex.point.object->emission->radiance(vertex.point, -ray.direction, sample.wavelengths));
     if (light.black()) return;
     const float w = weight(vertex.point);
-    add(length, light * w);
+    add(length, light * w, vertex.point.object);
     sample.observe.met(light * w, length, w);
   }
 
@@ -318,7 +327,7 @@ class CameraWalk : public Walk<clear> {
   [[gnu::always_inline]] void settle(bool lit) {
     if (!awaits_) return;
     awaits_ = false;
-    add(direct_length_, lit ? direct_.light : Spectrum());
+    add(direct_length_, lit ? direct_.light : Spectrum(), direct_.luminaire);
     if (lit) sample.observe.sampled(direct_.light, direct_length_, direct_.weight);
   }
 

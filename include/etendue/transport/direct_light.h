@@ -11,7 +11,8 @@ namespace etendue {
 struct DirectLight {
   Spectrum light;  ///< scattered radiance [W m^-2 sr^-1 nm^-1]
   Ray shadow;
-  float weight = 1;  ///< of multiple importance sampling, which is part of `light`
+  float weight = 1;                        ///< of multiple importance sampling, which is part of `light`
+  const SceneObject* luminaire = nullptr;  ///< that it comes from
 };
 
 /// One sample of direct light by choosing a point on a luminaire. The light scattered at a point is the integral over
@@ -41,6 +42,7 @@ template <class Scattering, class Leave>
   const float weight = weight_over_density(heuristic, density, s.delta ? 0 : f.density);
   direct.light = f.value * emitted * weight;
   direct.weight = weight * density;
+  direct.luminaire = light.luminaire;
   return true;
 }
 

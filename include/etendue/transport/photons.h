@@ -28,7 +28,10 @@ struct Photon {
   std::uint32_t vertices : 29 = 0;          ///< of its walk before it; 1: it came straight from a luminaire
   bool single : 1 = false;                  ///< it holds the hero wavelength alone
   bool in_medium : 1 = false;
-  bool caustic : 1 = false;  ///< it came from the luminaire by specular scattering alone, once or more
+  bool caustic : 1 = false;     ///< it came from the luminaire by specular scattering alone, once or more
+  std::int32_t luminaire = -1;  ///< SceneObject::luminaire_index of that
+
+  const SceneObject* from(const Scene& scene) const { return luminaire < 0 ? nullptr : scene.luminaires()[size_t(luminaire)]; }
 
   Vector3 surface_normal() const { return Vector3{float(normal[0]), float(normal[1]), float(normal[2])} / 32767.0f; }
 };

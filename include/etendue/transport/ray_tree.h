@@ -2,6 +2,7 @@
 // Steps that renderers which follow trees of rays from the camera have in common.
 
 #include "etendue/transport/boundaries.h"
+#include "etendue/transport/light_groups.h"
 #include "etendue/transport/medium.h"
 #include "etendue/transport/sample_context.h"
 #include "etendue/transport/scattering.h"
@@ -96,9 +97,9 @@ struct RayTree {
   SampleContext& sample;
   Spectrum radiance = {};
 
-  void add(int length, const Spectrum& light) {
+  void add(int length, const Spectrum& light, const SceneObject* luminaire) {
     radiance += light;
-    sample.observe.light(length, light);
+    tell_light(sample.observe, length, light, luminaire);
   }
 };
 

@@ -27,6 +27,7 @@ struct FoundLight {
   int s = 0, t = 0;  ///< vertices from the luminaire and from the camera
   bool merged = false;
   Spectrum light;  ///< [W m^-2 sr^-1 nm^-1] of the sample, without the weight; for t = 1 as a Splat counts it
+  const SceneObject* luminaire = nullptr;  ///< that it comes from; null: a medium sent it
   float weight = 1;
   Point2 film = {};  ///< of t = 1: where it falls
   /// Segments of the path. A photon takes the place of its own vertex and the camera's.

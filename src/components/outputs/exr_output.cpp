@@ -17,7 +17,8 @@ class ExrOutput final : public Output {
  public:
   static void describe(Description<ExrOutput>& d) {
     d.summary(
-         "OpenEXR: linear values without bounds, the film's layers, and what is known of the picture as attributes. The "
+         "OpenEXR: linear values without bounds, the film's layers (light groups as light.NAME.R, .G, .B), and what is known "
+         "of the picture as attributes. The "
          "encoding of a tone map is undone, as the format holds linear values by definition.",
          "Kainz, Bogart & Hess 2004, The OpenEXR image file format")
         .member<&ExrOutput::precision>("precision", "", "of the colours: 16 or 32 bits", choices("half", "float"),
@@ -31,7 +32,8 @@ class ExrOutput final : public Output {
   bool for_display() const override { return false; }
 
   void write_image(const Image& given, const std::string& path) const override {
-    const Image image = convert_color_space(given, color_space);
+    Image image = convert_color_space(given, color_space);
+    convert_light_groups(image, rgb_space(color_space));
     std::vector<size_t> kept;
     for (size_t c = 0; c < image.channels.size(); ++c)
       if (layers || image.channels[c].find('.') == std::string::npos) kept.push_back(c);
@@ -68,6 +70,22 @@ class ExrOutput final : public Output {
   }
 
  private:
+  /// Light groups are in the same space as the picture, so that programs which know nothing of them can add them up.
+  static void convert_light_groups(Image& image, const RgbSpace& space) {
+    if (space.name == "xyz") return;
+    const auto is = [&](size_t c, const char* end) {
+      return image.channels[c].starts_with("light.") && image.channels[c].ends_with(end);
+    };
+    for (size_t c = 0; c + 2 < image.channels.size(); ++c) {
+      if (!is(c, ".X") || !is(c + 1, ".Y") || !is(c + 2, ".Z")) continue;
+      for (size_t i = 0; i < 3; ++i) image.channels[c + i].back() = "RGB"[i];
+      const auto& m = space.from_xyz;
+      for (size_t at = c; at < image.values.size(); at += image.channels.size()) {
+        const double xyz[3] = {image.values[at], image.values[at + 1], image.values[at + 2]};
+        for (size_t i = 0; i < 3; ++i) image.values[at + i] = m[3 * i] * xyz[0] + m[3 * i + 1] * xyz[1] + m[3 * i + 2] * xyz[2];
+      }
+    }
+  }
   /// Where a cropped picture lies within the whole.
   static void place(ImageHeader& header, const Image& image) {
     const auto number = [&](const char* key, int otherwise) {

@@ -24,6 +24,7 @@
 #include "etendue/core/math.h"
 #include "etendue/describe/registry.h"
 #include "etendue/render/renderer.h"
+#include "etendue/transport/light_groups.h"
 #include "film/pixel_area.h"
 
 namespace etendue {
@@ -209,14 +210,15 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
   const bool whole = count == AdaptiveSampling::mean_samples && step.samples.begin % count == 0;
   const std::uint64_t seed = mix_bits(context.seed + mix_bits(whole ? epoch : std::uint64_t(step.samples.begin) + 64));
   const bool wants_features = context.image.wants_features();
+  const LightGroups groups(context.scene, context.image);
   const std::uint64_t items = columns() * rows();
   const std::vector<Luminances> found = schedule.film_and_collect<Luminances>(
       items, [&](std::uint64_t item, ImageTile& film, std::vector<Luminances>& results, Arena& arena) {
         const PixelArea area = item_area(item);
         film.begin(context.image, area);
-        std::vector<Spectrum> lengths(size_t(context.image.path_lengths));
+        LightParts parts(context.image, groups);
         Features features;
-        const PathRequest request{{wants_features ? &features : nullptr, nullptr, lengths}, nullptr, schedule.abort};
+        const PathRequest request{{wants_features ? &features : nullptr, nullptr, parts.lengths()}, nullptr, schedule.abort};
         for (int y = area.y0; y < area.y1; ++y)
           for (int x = area.x0; x < area.x1; ++x) {
             const std::uint32_t n = whole ? planned_[place(x, y)] : count, first = whole ? (step.number - first_step) * n : 0;
@@ -224,10 +226,10 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
             for (SampleKey key(seed, x, y, first); key.sample < first + n; ++key.sample) {
               if (schedule.aborted()) return;
               features = {};
-              for (Spectrum& light : lengths) light = {};
+              parts.clear();
               const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, request);
               film.count_path();
-              film.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, float(count) / float(n), lengths);
+              film.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, float(count) / float(n), parts.all());
               if (wants_features) film.features(x, y, key.sample, features);
               const double luminance = to_xyz(s.value, s.wavelengths).y;
               if (std::isfinite(luminance)) of_pixel.add({1, luminance, luminance * luminance});

@@ -56,9 +56,9 @@ class DirectRenderer final : public Renderer {
     Ray ray = camera_ray;
     Hit hit;
     SurfacePoint point;
-    const auto add = [&](int length, const Spectrum& light) {
+    const auto add = [&](int length, const Spectrum& light, const SceneObject* luminaire) {
       radiance += light;
-      sample.observe.light(length, light);
+      tell_light(sample.observe, length, light, luminaire);
     };
     for (int crossings = 0; crossings <= most_crossings; ++crossings) {  // goes round where light passes straight on
       const ArenaScope memory(sample.arena);
@@ -66,7 +66,7 @@ class DirectRenderer final : public Renderer {
         for (const SceneObject* far : scene.infinite_luminaires()) {
           far->surface_point(ray, hit, point);
           const Spectrum light = throughput * far->emission->radiance(point, -ray.direction, sample.wavelengths);
-          add(1, light);
+          add(1, light, far);
           sample.observe.escape(*far, ray, throughput);
           sample.observe.met(light, 1, 1);
         }
@@ -76,7 +76,7 @@ class DirectRenderer final : public Renderer {
       sample.observe.surface(point, throughput);
       if (point.object->luminaire()) {
         const Spectrum light = throughput * point.object->emission->radiance(point, out, sample.wavelengths);
-        add(1, light);
+        add(1, light, point.object);
         sample.observe.met(light, 1, 1);
       }
       const Scatter* scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
@@ -84,12 +84,15 @@ class DirectRenderer final : public Renderer {
       if (!scatter) return radiance;
 
       Spectrum direct;
+      const auto add_direct = [&](const Spectrum& scattered, const SceneObject* luminaire) {
+        const Spectrum light = throughput * scattered;
+        direct += light;
+        add(2, light, luminaire);
+      };
       if (strategy != Strategy::shader && scatter->has(smooth_lobes))
-        direct += by_luminaires(scene, point, *scatter, out, sample);
+        by_luminaires(scene, point, *scatter, out, sample, add_direct);
       if (strategy != Strategy::light && scatter->has(bent_lobes))
-        direct += by_shader(scene, point, *scatter, ray, media, sample);
-      direct *= throughput;
-      add(2, direct);
+        by_shader(scene, point, *scatter, ray, media, sample, add_direct);
       sample.observe.sampled(direct, 2, 1);
 
       const auto straight = pass_straight(point, *scatter, ray, media);
@@ -113,10 +116,11 @@ class DirectRenderer final : public Renderer {
     return straight->weight;
   }
 
-  Spectrum by_luminaires(const Scene& scene, const SurfacePoint& point, const Scatter& scatter, const Vector3& out,
-                         SampleContext& sample) const {
+  /// Calls `add(light, luminaire)` for light that is scattered towards `out`; so does by_shader.
+  template <class Add>
+  void by_luminaires(const Scene& scene, const SurfacePoint& point, const Scatter& scatter, const Vector3& out,
+                     SampleContext& sample, const Add& add) const {
     const float n = float(light_samples);
-    Spectrum sum;
     LuminaireSample light;
     for (int i = 0; i < light_samples && !sample.aborted(); ++i) {
       // Choices in equal strata over all samples: together they still choose luminaires as one choice does.
@@ -129,17 +133,17 @@ class DirectRenderer final : public Renderer {
       const bool rivalled = strategy == Strategy::both && !light.delta;
       const float weight = weight_over_density(heuristic, n * chosen.probability * light.density,
                                                rivalled ? float(shader_samples) * f.density : 0);
-      sum += f.value * light.radiance * weight *
-             visible_fraction(scene, light.shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena);
+      add(f.value * light.radiance * weight *
+              visible_fraction(scene, light.shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena),
+          chosen.luminaire);
     }
-    return sum;
   }
 
-  Spectrum by_shader(const Scene& scene, const SurfacePoint& point, const Scatter& scatter, const Ray& camera_ray,
-                     const MediumStack* media, SampleContext& sample) const {
+  template <class Add>
+  void by_shader(const Scene& scene, const SurfacePoint& point, const Scatter& scatter, const Ray& camera_ray,
+                 const MediumStack* media, SampleContext& sample, const Add& add) const {
     const Vector3 out = -camera_ray.direction;
     const float n = float(shader_samples);
-    Spectrum sum;
     Hit hit;
     SurfacePoint met;
     for (int i = 0; i < shader_samples && !sample.aborted(); ++i) {
@@ -165,12 +169,12 @@ class DirectRenderer final : public Renderer {
         if (!meet_surface(scene, ray, around, hit, met)) {
           for (const SceneObject* far : scene.infinite_luminaires()) {
             far->surface_point(ray, hit, met);
-            sum += throughput * far->emission->radiance(met, -ray.direction, wavelengths) * weight(met);
+            add(throughput * far->emission->radiance(met, -ray.direction, wavelengths) * weight(met), far);
           }
           break;
         }
         if (met.object->luminaire())
-          sum += throughput * met.object->emission->radiance(met, -ray.direction, wavelengths) * weight(met);
+          add(throughput * met.object->emission->radiance(met, -ray.direction, wavelengths) * weight(met), met.object);
         if (!met.object->shader || !(met.object->shader->possible_lobes() & pass_through)) break;
         const Scatter* there = scattering_at(met, -ray.direction, wavelengths, sample.arena);
         const auto straight = there ? pass_straight(met, *there, ray, around) : std::nullopt;
@@ -178,7 +182,6 @@ class DirectRenderer final : public Renderer {
         throughput *= *straight;
       }
     }
-    return sum;
   }
 };
 

@@ -107,7 +107,7 @@ class DistributionRenderer final : public Renderer {
       weight = heuristic_weight(Heuristic::power, branch.density, branch.luminaire_rays * density);
     }
     light *= weight;
-    tree.add(branch.depth, light);
+    tree.add(branch.depth, light, point.object);
     tree.sample.observe.met(light, branch.depth, weight);
   }
 
@@ -137,8 +137,7 @@ class DistributionRenderer final : public Renderer {
       const Place place{point, *scatter, out, branch.depth <= split_depth};
       const bool last = branch.depth >= max_depth;
       if (!last && scatter->has(smooth_lobes)) {
-        const Spectrum direct = branch.throughput * direct_light(tree, branch, place);
-        tree.add(branch.depth + 1, direct);
+        const Spectrum direct = direct_light(tree, branch, place);
         sample.observe.sampled(direct, branch.depth + 1, 1);
       }
       // What goes straight on is no longer for it, so the last segment may do that.
@@ -240,7 +239,7 @@ class DistributionRenderer final : public Renderer {
     return sum;
   }
 
-  /// Light straight from luminaires that is scattered towards `out`.
+  /// Adds light straight from luminaires that is scattered towards `out`; returns it.
   Spectrum direct_light(RayTree& tree, const Branch& branch, const Place& place) const {
     const int count = place.splits ? light_samples : 1;
     const Lobes alone = smooth_lobes & ~followed();
@@ -259,8 +258,11 @@ class DistributionRenderer final : public Renderer {
       if (place.scatter.has(alone))
         f += place.scatter.evaluate(place.out, light.direction, Transport::radiance, alone) / density;
       if (f.black()) continue;
-      sum += f * light.radiance *
-             visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.numbers, sample.arena);
+      const Spectrum direct = branch.throughput * (f * light.radiance *
+                                                   visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths,
+                                                                    sample.numbers, sample.arena));
+      tree.add(branch.depth + 1, direct, chosen.luminaire);
+      sum += direct;
     }
     return sum;
   }

@@ -22,6 +22,7 @@
 
 #include "etendue/guiding/guide.h"
 #include "etendue/render/renderer.h"
+#include "etendue/render/shown_in_space.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/roulette.h"
@@ -190,7 +191,7 @@ class Mixture {
   float share_ = 0;  // a
 };
 
-class GuidedProcess final : public RenderProcess {
+class GuidedProcess final : public RenderProcess, public ShownInSpace {
  public:
   GuidedProcess(const GuidedPathTracer& r, const RenderContext& c)
       : RenderProcess(r, c),
@@ -211,6 +212,15 @@ class GuidedProcess final : public RenderProcess {
     learn(schedule, samples, settings_.target);
     const std::uint64_t steps = step.number + std::uint64_t(1);
     if ((steps & (steps - 1)) == 0 && !schedule.aborted()) guide_.refine(settings_.target);
+  }
+
+  std::optional<ShownLobes> lobes(const Point3& position, const Normal3& normal) const override {
+    const Guide::Region& region = guide_.at(position, normal);
+    ShownLobes shown{{}, region.share()};
+    for (int row = 0; row < ShownLobes::rows; ++row)
+      for (int column = 0; column < ShownLobes::columns; ++column)
+        shown.density.push_back(region.directions().density(ShownLobes::direction(row, column)));
+    return shown;
   }
 
   std::vector<std::byte> save_state() const override { return guide_.save(); }

@@ -7,6 +7,7 @@
 
 #include "etendue/render/renderer.h"
 #include "etendue/transport/kept_walk.h"
+#include "etendue/transport/light_groups.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/visibility.h"
 
@@ -72,7 +73,7 @@ class LightTracer final : public Renderer {
     value *= visible_fraction(context.scene, ray, media, sample.wavelengths, numbers, sample.arena, Transport::importance);
     if (value.black()) return;
     const int length = int(i) + 1;
-    sample.splat(lens->film, value, sample.wavelengths, length);
+    splat_light(sample, lens->film, value, sample.wavelengths, length, path[0].point.object);
     if (sample.observe.record)
       sample.observe.record->contribute({"light path to the lens", length, 1, value, lens->film, true});
   }

@@ -105,6 +105,8 @@ class PhotonMapperProcess final : public PhotonProcess {
                        {size_t(settings_.nearest), settings_.farthest * pixel_, global_.walks, time(0)});
   }
 
+  std::optional<ShownPhotons> photons(size_t most) const override { return some_of({&global_, &caustics_}, most); }
+
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     CameraWalk walk(context.scene, sample, ray, settings_.max_depth);
     enum class Seeks : std::uint8_t {
@@ -157,7 +159,8 @@ class PhotonMapperProcess final : public PhotonProcess {
       const bool wanted = kinds == PhotonKinds::all || (p.vertices > 1 && p.caustic == (kinds == PhotonKinds::caustics));
       if (!wanted || each.squared == infinity || walk.length + int(p.vertices) > settings_.max_depth) continue;
       if (p.in_medium != v.in_medium() || parted(context.scene, v, p, radius)) continue;
-      walk.add_light(int(p.vertices), scattered_from_photon(v, p, {w, w.single()}) / (float(photons.walks) * place));
+      walk.add_light(int(p.vertices), scattered_from_photon(v, p, {w, w.single()}) / (float(photons.walks) * place),
+                     p.from(context.scene));
     }
   }
 

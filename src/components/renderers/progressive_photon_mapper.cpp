@@ -89,6 +89,8 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     photons_ = make_photons(schedule, step, request);
   }
 
+  std::optional<ShownPhotons> photons(size_t most) const override { return some_of({&photons_, &caustics_}, most); }
+
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     CameraWalk walk(context.scene, sample, ray, settings_.max_depth);
     walk.only_weakened = settings_.beams;
@@ -139,7 +141,7 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     const Carrying to = carrying(walk);
     const auto add = [&](const Photon& p, float density) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
-      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, to) / density);
+      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, to) / density, p.from(context.scene));
     };
     photons_.near(context.scene, walk.vertex, add);
     caustics_.near(context.scene, walk.vertex, add);
@@ -154,7 +156,8 @@ class ProgressivePhotonProcess final : public PhotonProcess {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(ray(t), ray.time, -ray.direction, p.out);
       walk.add_light(int(p.vertices),
-                     transmittance(medium, ray, t, to.wavelengths, numbers) * carried(p, to) * (phase / density));
+                     transmittance(medium, ray, t, to.wavelengths, numbers) * carried(p, to) * (phase / density),
+                     p.from(context.scene));
     };
     photons_.along(context.scene, ray, reach, add);
     caustics_.along(context.scene, ray, reach, add);

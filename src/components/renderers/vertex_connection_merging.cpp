@@ -81,6 +81,11 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
                              .weighted = settings_.connecting ? &settings_.heuristic : nullptr});
   }
 
+  std::optional<ShownPhotons> photons(size_t most) const override {
+    if (!settings_.merging) return {};
+    return some_of({&photons_}, most);
+  }
+
   Spectrum radiance(const Ray& camera_ray, SampleContext& sample) const override {
     const int max_depth = settings_.max_depth, roulette_depth = settings_.roulette_depth;
     const bool connecting = settings_.connecting, merges = settings_.merging;

@@ -59,7 +59,7 @@ class WhittedRenderer final : public Renderer {
       for (const SceneObject* far : scene.infinite_luminaires()) {
         far->surface_point(branch.ray, hit, point);
         const Spectrum light = branch.throughput * far->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
-        tree.add(branch.depth, light);
+        tree.add(branch.depth, light, far);
         sample.observe.escape(*far, branch.ray, branch.throughput);
         sample.observe.met(light, branch.depth, 1);
       }
@@ -69,7 +69,7 @@ class WhittedRenderer final : public Renderer {
     sample.observe.surface(point, branch.throughput);
     if (point.object->luminaire()) {
       const Spectrum light = branch.throughput * point.object->emission->radiance(point, out, branch.wavelengths);
-      tree.add(branch.depth, light);
+      tree.add(branch.depth, light, point.object);
       sample.observe.met(light, branch.depth, 1);
     }
     const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
@@ -77,8 +77,7 @@ class WhittedRenderer final : public Renderer {
     if (!scatter) return false;
     const bool last = branch.depth >= max_depth;
     if (!last && scatter->has(smooth_lobes)) {
-      const Spectrum direct = branch.throughput * direct_light(scene, point, *scatter, out, branch.wavelengths, sample);
-      tree.add(branch.depth + 1, direct);
+      const Spectrum direct = direct_light(tree, branch, point, *scatter);
       sample.observe.sampled(direct, branch.depth + 1, 1);
     }
 
@@ -108,17 +107,21 @@ class WhittedRenderer final : public Renderer {
     return goes_on;
   }
 
-  /// The sum over all luminaires without extent.
-  static Spectrum direct_light(const Scene& scene, const SurfacePoint& point, const Scatter& scatter, const Vector3& out,
-                               const Wavelengths& wavelengths, SampleContext& sample) {
+  /// Adds light of all luminaires without extent; returns their sum.
+  static Spectrum direct_light(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter) {
+    SampleContext& sample = tree.sample;
+    const Vector3 out = -branch.ray.direction;
     Spectrum sum;
     LuminaireSample light;
-    for (const SceneObject* luminaire : scene.luminaires()) {
-      if (!luminaire->delta() || !sample_luminaire(*luminaire, point, wavelengths, {0.5f, 0.5f}, light)) continue;
+    for (const SceneObject* luminaire : tree.scene.luminaires()) {
+      if (!luminaire->delta() || !sample_luminaire(*luminaire, point, branch.wavelengths, {0.5f, 0.5f}, light)) continue;
       const Spectrum f = scatter.evaluate(out, light.direction, Transport::radiance, smooth_lobes);
       if (f.black()) continue;
-      sum += f * light.radiance / light.density *
-             visible_fraction(scene, light.shadow, nullptr, wavelengths, sample.numbers, sample.arena);
+      const Spectrum direct = branch.throughput * (f * light.radiance / light.density *
+                                                   visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths,
+                                                                    sample.numbers, sample.arena));
+      tree.add(branch.depth + 1, direct, luminaire);
+      sum += direct;
     }
     return sum;
   }

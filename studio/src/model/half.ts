@@ -15,6 +15,24 @@ export function fromHalf(bits: number): number {
   return table[bits & 0xffff] as number;
 }
 
+/** All of them, by their bits: for whoever needs many. */
+export const halves: Readonly<Float32Array> = table;
+
+const float = new Float32Array(1);
+const word = new Uint32Array(float.buffer);
+
+/** The bits of the nearest half float, ties to even; what is too large becomes the largest. */
+export function toHalf(value: number): number {
+  float[0] = value;
+  const bits = word[0] as number;
+  const sign = (bits >>> 16) & 0x8000;
+  const size = bits & 0x7fffffff;
+  if (size > 0x7f800000) return 0x7e00; // no number
+  if (size >= 0x477ff000) return sign | 0x7bff;
+  if (size < 0x38800000) return sign | Math.round(Math.abs(value) * 2 ** 24);
+  return sign | ((size + 0x0fff + ((size >>> 13) & 1) - 0x38000000) >>> 13);
+}
+
 /** The bits of a half float times 2^power: what becomes too large is infinite, what becomes too small is 0. */
 export function halfTimesPowerOfTwo(bits: number, power: number): number {
   const value = fromHalf(bits) * 2 ** power;

@@ -194,10 +194,10 @@ export function pictureLayer(name: string): string {
 /** What is watched beside the picture, by slot. */
 const sides = new Map<number, Record<string, unknown>>();
 
-/** Watches another render in a slot from 1 on; null: no longer. */
-export function watchSide(slot: number, render: number | null): void {
-  const what = { slot, ...(render === null ? { what: "none" } : { what: "linear", render }) };
-  if (render === null) sides.delete(slot);
+/** Watches another render, or a layer, in a slot from 1 on; null: no longer. */
+export function watchSide(slot: number, of: { render: number } | { layer: string } | null): void {
+  const what = { slot, ...(of === null ? { what: "none" } : { what: "linear", ...of }) };
+  if (of === null) sides.delete(slot);
   else sides.set(slot, what);
   if (state.line.value === "open") void ask("watch", what);
 }

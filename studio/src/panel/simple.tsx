@@ -38,9 +38,14 @@ export function ChoicesField({ component, member, state, id }: FieldProps): JSX.
     const next = on ? [...chosen, name] : chosen.filter((c) => c !== name);
     void setMember(component.id, member.name, `[${next.map(quote).join(", ")}]`);
   };
+  // One that ends with "…" stands for all that begin so: they are written.
+  const closed = (member.choices ?? []).filter((c) => !c.endsWith("…"));
   return (
     <div class="choices" role="group" id={id} aria-label={member.name}>
-      {(member.choices ?? []).map((c) => (
+      {closed.length < (member.choices ?? []).length && (
+        <Entry id={`${id}-all`} text={state.text} label={member.name} commit={(text) => setMember(component.id, member.name, text)} />
+      )}
+      {closed.map((c) => (
         <label key={c} class="check">
           <input type="checkbox" checked={chosen.includes(c)} onChange={(e) => toggle(c, e.currentTarget.checked)} />
           {c}

@@ -9,6 +9,7 @@ import { demand } from "../model/studio.ts";
 import { Button } from "../parts/parts.tsx";
 import { mode, pathPixel } from "../picture/state.ts";
 import { texts } from "../texts.ts";
+import { HeldLight } from "./held_light.tsx";
 import type { Replay, ReplayedPath, Vertex } from "./model.ts";
 import { pathColors, type Chosen } from "./space.ts";
 import { SpaceView } from "./space_view.tsx";
@@ -27,7 +28,7 @@ const replay = signal<Replay | null>(null);
 const loading = signal(false);
 const problem = signal("");
 const chosen = signal<Chosen | null>(null);
-const fireflies = signal<{ samples: Firefly[]; kept: boolean } | null>(null);
+const fireflies = signal<{ samples: Firefly[]; kept: boolean; refused: string | null } | null>(null);
 
 async function load(x: number, y: number, sample?: number): Promise<void> {
   loading.value = true;
@@ -47,8 +48,8 @@ async function load(x: number, y: number, sample?: number): Promise<void> {
 
 async function findFireflies(): Promise<void> {
   try {
-    const said = await demand<{ samples: Firefly[]; kept?: boolean }>("fireflies", { count: 20 });
-    fireflies.value = { samples: said.samples, kept: said.kept !== false };
+    const said = await demand<{ samples: Firefly[]; kept?: boolean; refused?: string | null }>("fireflies", { count: 20 });
+    fireflies.value = { samples: said.samples, kept: said.kept !== false, refused: said.refused ?? null };
   } catch (error) {
     problem.value = error instanceof Refused ? error.message : texts.notices.offline;
   }
@@ -78,16 +79,22 @@ export function Paths(): JSX.Element {
             </li>
           ))}
         </ol>
+        <HeldLight />
         <h2 class="small">{t.fireflies}</h2>
         <Button label={t.findFireflies} onClick={() => void findFireflies()} />
         {fireflies.value && fireflies.value.samples.length === 0 && <p class="dim">{t.noFireflies}</p>}
+        {fireflies.value?.refused && <p class="dim" role="status">{t.refused(fireflies.value.refused)}</p>}
         <ul class="plain">
           {fireflies.value?.samples.map((f) => (
             <li key={`${f.x}.${f.y}.${f.sample}`}>
-              <button type="button" class="link" onClick={() => ((pathPixel.value = { x: f.x, y: f.y }), void load(f.x, f.y, f.sample))}>
-                {f.x}, {f.y} · {t.sample(f.sample)} · Y {brief(f.luminance, 3)}
-                {f.ratio !== null && ` · ${brief(f.ratio, 3)}×`}
-              </button>
+              {fireflies.value?.refused ? (
+                <span>{f.x}, {f.y} · Y {brief(f.luminance, 3)}{f.ratio !== null && ` · ${brief(f.ratio, 3)}×`}</span>
+              ) : (
+                <button type="button" class="link" onClick={() => ((pathPixel.value = { x: f.x, y: f.y }), void load(f.x, f.y, f.sample))}>
+                  {f.x}, {f.y} · {t.sample(f.sample)} · Y {brief(f.luminance, 3)}
+                  {f.ratio !== null && ` · ${brief(f.ratio, 3)}×`}
+                </button>
+              )}
             </li>
           ))}
         </ul>

@@ -2,6 +2,7 @@
 import type * as Three from "./three_parts.ts";
 import { Gizmo } from "./gizmo.ts";
 import type { Change } from "../model/placing.ts";
+import { lobesObject, photonsObject, type Lobes, type Photons } from "./light.ts";
 import { places, triple, type ReplayedPath, type Triple, type Wireframe } from "./model.ts";
 
 export interface Chosen {
@@ -18,6 +19,7 @@ export class Space {
   private readonly camera: Three.PerspectiveCamera;
   private readonly controls: InstanceType<typeof Three.OrbitControls>;
   private readonly paths: Three.Group;
+  private readonly light: Three.Group;
   private wires: Three.LineSegments | null = null;
   private size = 1;
   private frame = 0;
@@ -35,7 +37,8 @@ export class Space {
     this.scene = new three.Scene();
     this.camera = new three.PerspectiveCamera(40, 1, 0.001, 10000);
     this.paths = new three.Group();
-    this.scene.add(this.paths);
+    this.light = new three.Group();
+    this.scene.add(this.paths, this.light);
     box.append(this.renderer.domElement);
     this.renderer.domElement.setAttribute("aria-hidden", "true"); // the list beside it tells the same
     this.controls = new three.OrbitControls(this.camera, this.renderer.domElement);
@@ -113,6 +116,15 @@ export class Space {
         }
       });
     });
+    this.draw();
+  }
+
+  /** Photons, and what a guide has learned at a place. */
+  drawLight(photons: Photons | null, lobes: Lobes | null): void {
+    this.light.traverse((o) => "geometry" in o && (o.geometry as Three.BufferGeometry).dispose());
+    this.light.clear();
+    if (photons) this.light.add(...photonsObject(this.three, photons, this.size));
+    if (lobes) this.light.add(...lobesObject(this.three, lobes, this.size));
     this.draw();
   }
 

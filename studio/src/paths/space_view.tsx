@@ -7,6 +7,7 @@ import { demand } from "../model/studio.ts";
 import { isDark } from "../theme.ts";
 import { texts } from "../texts.ts";
 import type { ReplayedPath, Wireframe } from "./model.ts";
+import { lobes, photons } from "./held_light.tsx";
 import { GizmoBar, gizmoMode, heldNow, Placement, target } from "./placing.tsx";
 import { Space, type Chosen } from "./space.ts";
 
@@ -18,6 +19,7 @@ export function SpaceView({ paths, chosen }: { paths: ReplayedPath[]; chosen: Si
   const failed = useSignal("");
   const looked = useRef(false);
   const dragged = useSignal(0);
+  const shown = useSignal(0);
   useEffect(() => {
     let ended = false;
     const begin = async (): Promise<void> => {
@@ -47,6 +49,7 @@ export function SpaceView({ paths, chosen }: { paths: ReplayedPath[]; chosen: Si
     const timer = setTimeout(() => {
       const show = (found: Wireframe): void => {
         now.show(found, isDark.value, !looked.current);
+        shown.value += 1;
         looked.current ||= found.lines.length > 0;
       };
       demand<Wireframe>("wireframe", { most: 50000 }).then(show, () => show({ lines: [] }));
@@ -64,6 +67,7 @@ export function SpaceView({ paths, chosen }: { paths: ReplayedPath[]; chosen: Si
   }, [space.value, held?.component.id, held?.state.text, held?.use?.id, gizmoMode.value, progress.value?.generation, dragged.value]);
   useEffect(() => space.value?.background(isDark.value ? "#14171a" : "#eef0f2"), [isDark.value, space.value]);
   useEffect(() => space.value?.drawPaths(paths, chosen.value), [paths, chosen.value, space.value]);
+  useEffect(() => space.value?.drawLight(photons.value, lobes.value), [photons.value, lobes.value, space.value, shown.value]);
   return (
     <div class="space-pane">
       <GizmoBar />

@@ -94,7 +94,7 @@ export class PictureCanvas {
     const flicker = store.compare.value === "flicker" && Math.floor(performance.now() / 500) % 2 === 1;
     const look: Look = {
       stops: store.stops.value,
-      curve: curves[store.curve.value],
+      curve: curves[store.shownCurve.value],
       falseColor: store.falseColor.value,
       falseRange: store.falseRange.value,
       compare: flicker ? 2 : compares[store.compare.value],

@@ -59,6 +59,11 @@ export class Film {
     return changed;
   }
 
+  /** Somebody has written into `pixels`, anywhere. */
+  touch(): void {
+    this.changed = { x0: 0, y0: 0, x1: this.width, y1: this.height };
+  }
+
   rgb(x: number, y: number): [number, number, number] {
     const at = (y * this.width + x) * 4;
     const s = this.scale;

@@ -7,7 +7,7 @@ import { demand } from "../model/studio.ts";
 import { texts } from "../texts.ts";
 import { zoom } from "./state.ts";
 import { luminance } from "./film.ts";
-import { pixelsVersion, samplesShown, shownFilm, size } from "./store.ts";
+import { pixelsVersion, relit, samplesShown, shownFilm, size } from "./store.ts";
 
 export interface Pixel {
   x: number;
@@ -74,15 +74,16 @@ const number = (v: number | string): string => (typeof v === "number" && Number.
 
 export function PixelNumbers(): JSX.Element {
   const now = here.value;
+  const weighed = relit.value !== null;
   const known = probe.value && now && probe.value.x === now.x && probe.value.y === now.y ? probe.value : null;
   return (
     <div class="pixel-numbers" id="picture-numbers" aria-live="off">
       {now ? (
         <dl>
           <Item label={texts.picture.pixel} value={`${now.x}, ${now.y}`} width={9} />
-          <Item label="RGB" value={(known?.rgb ?? now.rgb).map(number).join("  ")} width={22} />
-          <Item label="XYZ" value={known ? known.xyz.map(number).join("  ") : "…"} width={22} />
-          <Item label="Y" value={number(known ? known.xyz[1] : luminance(now.rgb))} width={7} />
+          <Item label="RGB" value={(weighed ? now.rgb : (known?.rgb ?? now.rgb)).map(number).join("  ")} width={22} />
+          {!weighed && <Item label="XYZ" value={known ? known.xyz.map(number).join("  ") : "…"} width={22} />}
+          <Item label="Y" value={number(known && !weighed ? known.xyz[1] : luminance(now.rgb))} width={7} />
           {!viewing.value && <Item label={texts.picture.samples} value={brief(known?.samples ?? samplesShown.value)} width={6} />}
           {!viewing.value && <Item label={texts.picture.error} value={known?.error != null ? percent(known.error) : "–"} width={7} />}
           {Object.entries(known?.layers ?? {}).map(([name, v]) => (

@@ -7,6 +7,7 @@ import { Refused } from "../model/protocol.ts";
 import { Button, Dialog } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
 import { takeScreenshot } from "./canvas.ts";
+import { factors, relighting } from "./lights.ts";
 
 export const savePicture = signal(false);
 const t = texts.picture;
@@ -22,7 +23,7 @@ export function SavePicture(): JSX.Element | null {
   const save = async (over: boolean): Promise<void> => {
     wrong.value = "";
     try {
-      await demand("save_picture", { file: file.value, over });
+      await demand("save_picture", { file: file.value, over, ...(relighting.value ? { lights: factors.value } : {}) });
       notify(t.saved(file.value));
       close();
     } catch (error) {
@@ -51,7 +52,7 @@ export function SavePicture(): JSX.Element | null {
           <span>{t.saveFile}</span>
           <input type="text" value={file.value} spellcheck={false} onInput={(e) => (file.value = e.currentTarget.value)} />
         </label>
-        <p class="dim">{t.saveHelp}</p>
+        <p class="dim">{t.saveHelp}{relighting.value && ` ${texts.lights.saved}`}</p>
         {wrong.value && <p class="wrong" role="alert">{wrong.value}</p>}
         <footer>
           <Button label={t.download} onClick={() => void download()} />

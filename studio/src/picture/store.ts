@@ -1,6 +1,6 @@
 // The pictures that are there: the one that grows, a coarse one while a camera moves, display values, and a pinned one.
 import { computed, signal } from "@preact/signals";
-import { readPixels, type Pixels } from "../model/protocol.ts";
+import { readPixels, type Pixels } from "../model/pixels.ts";
 import { automaticStops, Film, stretched } from "./film.ts";
 import type { Toned } from "./screen.ts";
 import type { Size } from "./view.ts";
@@ -36,10 +36,19 @@ export const compare = signal<Compare>("none");
 /** From 0 to 1 over the canvas. */
 export const split = signal(0.5);
 
-export const shownFilm = computed(() => coarse.value ?? mixed.value ?? film.value);
+/** The picture with its lights weighed anew: lights.ts. */
+export const relit = signal<Film | null>(null);
+
+export const shownFilm = computed(() => relit.value ?? coarse.value ?? mixed.value ?? film.value);
+/** The curve as it is shown: the job's tone map knows nothing of lights that are weighed here. */
+export const shownCurve = computed<Curve>(() => (relit.value && curve.value === "program" ? "filmic" : curve.value));
 
 /** Pictures of renders beside the document's own, by slot. */
 export const sideFilms = signal<ReadonlyMap<number, Film>>(new Map());
+
+export function forgetSides(first: number, last: number): void {
+  sideFilms.value = new Map([...sideFilms.value].filter(([slot]) => slot < first || slot > last));
+}
 
 function takeSide(pixels: Pixels): void {
   const { fullWidth, fullHeight, slot, coarse: isCoarse, x0: left, y0: top, width, height } = pixels;
@@ -108,7 +117,7 @@ function takeToned(pixels: Pixels): void {
 }
 
 export function forgetPictures(): void {
-  film.value = coarse.value = mixed.value = toned.value = null;
+  film.value = coarse.value = mixed.value = toned.value = relit.value = null;
   exposed = false;
   pixelsVersion.value += 1;
 }

@@ -7,6 +7,7 @@ import { texts } from "../texts.ts";
 import { frameSelected } from "./camera.ts";
 import { badMarks } from "./bad.ts";
 import { automaticStops } from "./film.ts";
+import { LightGroups } from "./light_groups.tsx";
 import { HistogramView } from "./histogram.tsx";
 import { command, crop, mode, movesCamera, pathPixel, setCrop, type Mode } from "./state.ts";
 import { watchedPicture } from "./readout.tsx";
@@ -64,6 +65,7 @@ export function PictureToolbar(): JSX.Element {
           ))}
       </select>
       <Layers />
+      <LightGroups />
       <div class="cluster end">
         {viewing.value ? <ViewedPictures /> : <Views />}
         <details class="drop">
@@ -76,7 +78,7 @@ export function PictureToolbar(): JSX.Element {
 }
 
 function Exposure(): JSX.Element {
-  const disabled = store.curve.value === "program" && !store.falseColor.value && store.compare.value === "none";
+  const disabled = store.shownCurve.value === "program" && !store.falseColor.value && store.compare.value === "none";
   const change = (e: JSX.TargetedEvent<HTMLInputElement>): void => {
     store.expose(Number(e.currentTarget.value));
   };
@@ -88,7 +90,7 @@ function Exposure(): JSX.Element {
       </label>
       <input type="number" class="narrow" aria-label={t.exposureStops} min={-30} max={30} step={0.25} disabled={disabled}
         value={Number(store.stops.value.toFixed(2))} onInput={change} />
-      <Button label={t.automatic} disabled={disabled} onClick={() => store.film.value && store.expose(automaticStops(store.film.value))} />
+      <Button label={t.automatic} disabled={disabled} onClick={() => store.shownFilm.value && store.expose(automaticStops(store.shownFilm.value))} />
     </div>
   );
 }

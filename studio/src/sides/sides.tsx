@@ -6,7 +6,7 @@ import { brief, duration, percent } from "../model/numbers.ts";
 import type { Progress } from "../model/protocol.ts";
 import { classes, progress, readOnly, renders, root } from "../model/state.ts";
 import { ask, report, watchSide } from "../model/studio.ts";
-import { shownFilm, sideFilms } from "../picture/store.ts";
+import { forgetSides, shownFilm, sideFilms } from "../picture/store.ts";
 import type { Film } from "../picture/film.ts";
 import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
@@ -33,10 +33,10 @@ export function Sides(): JSX.Element {
   // Each has the slot of its place: they are watched as long as they are looked at.
   const numbers = all.map((r) => r.render).join(" ");
   useEffect(() => {
-    all.forEach((r, i) => watchSide(i + 1, r.render));
+    all.forEach((r, i) => watchSide(i + 1, { render: r.render }));
     return () => {
       for (let slot = 1; slot <= all.length; ++slot) watchSide(slot, null);
-      sideFilms.value = new Map();
+      forgetSides(1, all.length);
     };
   }, [numbers]);
   return (

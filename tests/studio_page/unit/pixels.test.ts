@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fromHalf, halfTimesPowerOfTwo } from "../../../studio/src/model/half.ts";
-import { readPixels } from "../../../studio/src/model/protocol.ts";
+import { readPixels } from "../../../studio/src/model/pixels.ts";
 import { Film, histogram, isBad, union } from "../../../studio/src/picture/film.ts";
 import { fit, toCanvas, toPicture, zoomAbout } from "../../../studio/src/picture/view.ts";
 

@@ -1,0 +1,104 @@
+#include "etendue/transport/light_groups.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "film/picture_format.h"
+
+namespace etendue {
+namespace {
+
+/// The names that a luminaire is known by.
+std::vector<std::string> names_of(const SceneObject& luminaire) {
+  std::vector<std::string> names;
+  for (const Component* part :
+       {static_cast<const Component*>(&luminaire.original()), static_cast<const Component*>(luminaire.emission.get())})
+    if (part && part->origin && !part->origin->name.empty()) names.push_back(part->origin->name);
+  return names;
+}
+
+std::string trimmed(std::string_view s) {
+  const size_t first = s.find_first_not_of(' '), last = s.find_last_not_of(' ');
+  return first == s.npos ? std::string() : std::string(s.substr(first, last - first + 1));
+}
+
+/// The names of luminaires in a group's: that of one, or of several with '+' between them.
+std::vector<std::string> names_in(const std::string& group, const std::set<std::string>& known) {
+  if (known.contains(group)) return {group};
+  std::vector<std::string> names;
+  for (size_t begin = 0; begin <= group.size();) {
+    const size_t end = std::min(group.find('+', begin), group.size());
+    names.push_back(trimmed(std::string_view(group).substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return names;
+}
+
+[[noreturn]] void refuse(const ImageBuffer& image, const std::string& name, const std::set<std::string>& known) {
+  if (known.empty())
+    image.fail("layers",
+               fmt::format("no luminaire is called '{}': none has a name, as 'lamp' has in 'lamp = Sphere {{ … }}'", name));
+  const std::vector<std::string> all(known.begin(), known.end());
+  image.fail("layers", fmt::format("no luminaire and no emission is called '{}'{}", name, suggestion(name, all)));
+}
+
+thread_local LightParts* collecting = nullptr;
+
+}  // namespace
+
+LightGroups::LightGroups(const Scene& scene, const ImageBuffer& image) {
+  const std::vector<std::string>& wanted = image.format()->light_groups;
+  if (wanted.empty()) return;
+  count_ = int(wanted.size());
+  std::set<std::string> known;
+  for (const SceneObject* luminaire : scene.luminaires())
+    for (std::string& name : names_of(*luminaire)) known.insert(std::move(name));
+  std::map<std::string, int> group_of;
+  for (int group = 0; group + 1 < count_; ++group)
+    for (const std::string& name : names_in(wanted[size_t(group)], known)) {
+      if (!known.contains(name)) refuse(image, name, known);
+      group_of.emplace(name, group);  // of several groups the first
+    }
+  for (const SceneObject* luminaire : scene.luminaires()) {
+    int group = count_ - 1;
+    for (const std::string& name : names_of(*luminaire))
+      if (const auto found = group_of.find(name); found != group_of.end()) group = std::min(group, found->second);
+    group_.push_back(std::uint8_t(group));
+  }
+}
+
+LightParts::LightParts(const ImageBuffer& image, const LightGroups& groups)
+    : groups_(groups), lengths_(size_t(image.path_lengths)), before_(collecting) {
+  // Who is told of lengths is told of groups, so that there is one length at least for the observer.
+  first_group_ = groups.count() > 0 ? std::max<size_t>(lengths_, 1) : lengths_;
+  parts_.resize(first_group_ + size_t(groups.count()));
+  collecting = groups.count() > 0 ? this : nullptr;
+}
+
+LightParts::~LightParts() { collecting = before_; }
+
+void LightParts::clear() {
+  for (Spectrum& part : parts_) part = {};
+}
+
+std::span<Spectrum> LightParts::lengths() { return std::span(parts_).first(first_group_); }
+std::span<const Spectrum> LightParts::all() const { return std::span(parts_).subspan(first_group_ - lengths_); }
+
+void LightParts::add(const SceneObject* luminaire, const Spectrum& light) {
+  if (!collecting) return;
+  collecting->parts_[collecting->first_group_ + size_t(collecting->groups_.of(luminaire))] += light;
+}
+
+void LightParts::weigh(const Spectrum& weight) {
+  if (!collecting) return;
+  for (size_t i = collecting->first_group_; i < collecting->parts_.size(); ++i) collecting->parts_[i] *= weight;
+}
+
+SplatLabel LightParts::label(int length, const SceneObject* luminaire) {
+  return {length, collecting ? collecting->groups_.of(luminaire) : -1};
+}
+
+}  // namespace etendue
