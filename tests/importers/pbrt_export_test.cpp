@@ -122,6 +122,8 @@ TEST(PbrtExport, Materials) {
 TEST(PbrtExport, CamerasThatMirrorAndWideOnes) {
   const std::string scene = sky + "Sphere { centre: [1, 0.5, 0] m, radius: 0.5 m, shader: Lambertian { color: 0.9 } }\n";
   expect_same(scene, "", "from: [1, 2, 6] m, to: [0, 0, 0] m, fov: 50 deg, fov_axis: width");
+  expect_same(scene, "",
+              "from: [1, 2, 6] m, to: [0, 0, 0] m, focal_length: 0.06, fov_axis: diagonal, principal_point: [0.1, -0.05]");
   expect_same(scene, "", "from: [1, 2, 6] m, to: [0, 0, 0] m, fov: 50 deg, transform: scale(-1, 1, 1)");
 }
 

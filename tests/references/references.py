@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenes import SCENES
+from scenes import EXPORTS, SCENES
 
 REFERENCE_SAMPLES = 32000
 SEEDS = 4
@@ -138,6 +138,7 @@ def report(results, rows):
     text += [rows[scene.file] for scene in SCENES if scene.file in rows]
     text += ["", "## Why some differ", ""]
     text += [f"- **{scene.file}**: {scene.reason}" for scene in SCENES if scene.reason]
+    text += ["", "## Exports", "", EXPORTS]
     return "\n".join(text) + "\n"
 
 

@@ -49,7 +49,8 @@ void Writer::camera() {
   const std::string axis = word_of(camera, "fov_axis");
   const bool across_width = axis == "width" || (axis == "smaller" && aspect <= 1) || (axis == "larger" && aspect > 1);
   const bool shorter_is_width = aspect <= 1;
-  double tangent = std::tan(number_of(camera, "fov") * exact_pi / 360);
+  double tangent = std::tan(field_of_view(camera) * exact_pi / 360);
+  if (axis == "diagonal") tangent /= std::hypot(aspect, 1.0);  // of the height
   if (across_width && !shorter_is_width) tangent /= aspect;
   if (!across_width && shorter_is_width) tangent *= aspect;
   out_ += fmt::format("Camera \"perspective\" \"float fov\" {}", 2 * std::atan(tangent) * 180 / exact_pi);
@@ -57,6 +58,12 @@ void Writer::camera() {
     double focus = number_of(camera, "focus_distance");
     if (focus == 0) focus = std::sqrt(std::pow(t[0] - f[0], 2) + std::pow(t[1] - f[1], 2) + std::pow(t[2] - f[2], 2));
     out_ += fmt::format(" \"float lensradius\" {} \"float focaldistance\" {}", lens, focus);
+  }
+  // A lens that is shifted sees a window beside the middle; the shorter side of pbrt's is 2 long.
+  if (const std::vector<double> shift = numbers_of(camera, "principal_point"); shift[0] != 0 || shift[1] != 0) {
+    const double x = std::max(aspect, 1.0), y = std::max(1 / aspect, 1.0);
+    out_ += fmt::format(" \"float screenwindow\" [ {} {} {} {} ]", x * (-1 - 2 * shift[0]), x * (1 - 2 * shift[0]),
+                        y * (-1 + 2 * shift[1]), y * (1 + 2 * shift[1]));
   }
   out_ += shutter + "\n";
 }

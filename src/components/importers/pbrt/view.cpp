@@ -211,8 +211,16 @@ void set_camera(Reader& reader, Component& job) {
       throw Error("'screenwindow' must be xmin, xmax, ymin, ymax", p.place("screenwindow"));
     half_width = (window[1] - window[0]) / 2;
     const double half_height = (window[3] - window[2]) / 2;
-    if (std::abs(window[0] + window[1]) > 1e-6 * half_width || std::abs(window[2] + window[3]) > 1e-6 * half_height)
-      reader.importing.inexact("a screen window that is not in the middle is put there", p.place("screenwindow"));
+    if (std::abs(window[0] + window[1]) > 1e-6 * half_width || std::abs(window[2] + window[3]) > 1e-6 * half_height) {
+      if (s.type == "perspective")
+        set_member(
+            *camera, "principal_point",
+            Numbers{
+                {-(window[0] + window[1]) / (4 * half_width), (window[2] + window[3]) / (4 * half_height)}, 1, Dimension::none},
+            p.at);
+      else
+        reader.importing.inexact("a screen window that is not in the middle is put there", p.place("screenwindow"));
+    }
     if (std::abs(half_width / half_height / pixels - 1) > 1e-3)
       reader.importing.inexact("pixels are squares: the screen window's height is left out", p.place("screenwindow"));
   }
