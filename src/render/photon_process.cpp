@@ -6,14 +6,14 @@ namespace etendue {
 namespace {
 
 /// The chance of a photon to be kept, so that about `most` are. When walks cannot make as many, all are; else as many as some
-/// walks of other numbers made tell.
-double chance_to_keep(Schedule& schedule, const PhotonWalks& walks, std::uint64_t most) {
+/// walks of other numbers made tell: `made(those walks)`.
+template <class Made>
+double chance_to_keep(const PhotonWalks& walks, std::uint64_t most, const Made& made) {
   if (double(walks.walks) * walks.limits.longest <= double(most)) return 1;
   PhotonWalks some = walks;
   some.walks = std::min<std::uint64_t>(walks.walks, 1 << 14);
   some.step = ~walks.step;
-  const size_t made = schedule.collect<Photon>(some.items(), some).size();
-  const double expected = double(made) * double(walks.walks) / double(some.walks);
+  const double expected = double(made(some)) * double(walks.walks) / double(some.walks);
   return std::min(1.0, double(most) / std::max(expected, 1.0));
 }
 
@@ -27,22 +27,28 @@ void PhotonProcess::share(const Step& step) {
   time_ = context.camera.shutter_time(numbers.next());
 }
 
-PhotonProcess::Photons PhotonProcess::make_photons(Schedule& schedule, const Step& step, const Request& request) const {
+PhotonWalks PhotonProcess::walks(const Schedule& schedule, const Step& step, const Request& request) const {
   const ImageBuffer& image = context.image;
-  PhotonWalks walks{.context = context,
-                    .lights = *renderer.light_sampler,
-                    .numbers = *renderer.sampler,
-                    .step = step.number,
-                    .wavelengths = wavelengths_,
-                    .time = time_,
-                    .walks = request.walks > 0 ? request.walks : std::uint64_t(image.width) * std::uint64_t(image.height),
-                    .limits = request.limits,
-                    .kinds = request.kinds,
-                    .targets = request.targets,
-                    .fewest_vertices = request.fewest_vertices,
-                    .fewest_in_media = request.fewest_in_media,
-                    .abort = schedule.abort};
-  walks.kept = chance_to_keep(schedule, walks, request.most);
+  return {.context = context,
+          .lights = *renderer.light_sampler,
+          .numbers = *renderer.sampler,
+          .step = step.number,
+          .wavelengths = wavelengths_,
+          .time = time_,
+          .walks = request.walks > 0 ? request.walks : std::uint64_t(image.width) * std::uint64_t(image.height),
+          .limits = request.limits,
+          .kinds = request.kinds,
+          .targets = request.targets,
+          .fewest_vertices = request.fewest_vertices,
+          .fewest_in_media = request.fewest_in_media,
+          .in_even_media = request.in_even_media,
+          .abort = schedule.abort};
+}
+
+PhotonProcess::Photons PhotonProcess::make_photons(Schedule& schedule, const Step& step, const Request& request) const {
+  PhotonWalks walks = this->walks(schedule, step, request);
+  walks.kept = chance_to_keep(walks, request.most,
+                              [&](const PhotonWalks& some) { return schedule.collect<Photon>(some.items(), some).size(); });
 
   Photons photons;
   photons.walks = double(walks.walks) * walks.kept;
@@ -74,6 +80,19 @@ ShownPhotons PhotonProcess::some_of(std::initializer_list<const Photons*> maps, 
           {p.position, -p.out, {power.x / n, power.y / n, power.z / n}, int(p.vertices), p.caustic, p.in_medium});
     }
   return shown;
+}
+
+PhotonProcess::Beams PhotonProcess::make_beams(Schedule& schedule, const Step& step, const Request& request) const {
+  BeamWalks of{walks(schedule, step, request)};
+  of.walks.kept = chance_to_keep(of.walks, request.most, [&](const PhotonWalks& some) {
+    const BeamWalks few{some};
+    return schedule.collect<PhotonBeam>(few.items(), few).size();
+  });
+  Beams beams;
+  beams.walks = double(of.walks.walks) * of.walks.kept;
+  beams.radius = float(request.radius * shrunk_area(step.number, request.shrinking));
+  beams.map.build(schedule.collect<PhotonBeam>(of.items(), of), beams.radius);
+  return beams;
 }
 
 }  // namespace etendue

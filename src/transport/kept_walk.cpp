@@ -26,6 +26,9 @@ struct KeptListener : NoListener {
   void emitted(const Spectrum& light) const {
     if (listener) listener->emitted(walk.length, light);
   }
+  void through(const Medium& medium, float reach) const {
+    if (listener) listener->through(medium, walk.ray, reach, walk.throughput);
+  }
   void crossed_luminaire() const {
     if (!listener) return;
     add(walk, density, front, kept);
@@ -105,7 +108,7 @@ void walk_from_camera(const RenderContext& context, const Ray& ray, const WalkLi
 
 bool walk_from_luminaire(const Scene& scene, const LightSampler& lights, float time, const WalkLimits& limits,
                          SampleContext& sample, std::vector<KeptVertex>& kept, EmittedLight& light,
-                         const EmissionTargets* targets) {
+                         const EmissionTargets* targets, WalkListener* listener) {
   kept.clear();
   if (targets ? !targets->sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light)
               : !sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light))
@@ -121,7 +124,7 @@ bool walk_from_luminaire(const Scene& scene, const LightSampler& lights, float t
     first.media = sample.arena.make<MediumStack>(walk.media);
   }
   // From infinity, places in the scene are given by where the ray crosses the disc around it.
-  grow(walk, light.infinite ? 1 : light.direction, limits.roulette_depth, kept, nullptr);
+  grow(walk, light.infinite ? 1 : light.direction, limits.roulette_depth, kept, listener);
   return true;
 }
 

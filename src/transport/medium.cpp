@@ -106,11 +106,16 @@ FreeFlight through_heterogeneous(const VolumeShader& volume, const Ray& local, f
   return flight;
 }
 
-/// Where a ray that nothing ends leaves the bounds of the object whose inside a medium is. Such a ray has slipped through an
-/// edge or a corner of its surface, and is outside without knowing: there a bound of extinction is without matter, and a walk
-/// from one tentative collision to the next would never come to an end.
-float within_object(const Medium& medium, const Ray& ray, float reach) {
-  if (std::isfinite(reach) || !medium.object || medium.object->unbounded() || medium.object->infinite()) return reach;
+/// A ray's reach where something ends it, and else as far as the medium goes: further on there may be no matter at all, and a
+/// walk from one tentative collision to the next would never come to an end.
+float reach_within(const Medium& medium, const Ray& ray, float reach) {
+  return std::isfinite(reach) ? reach : within_object(medium, ray);
+}
+
+}  // namespace
+
+float within_object(const Medium& medium, const Ray& ray) {
+  if (!medium.object || medium.object->unbounded() || medium.object->infinite()) return infinity;
   const Bounds3 box = medium.object->bounds();
   float end = infinity;
   for (int axis = 0; axis < 3; ++axis) {
@@ -119,8 +124,6 @@ float within_object(const Medium& medium, const Ray& ray, float reach) {
   }
   return std::max(end, 0.0f);
 }
-
-}  // namespace
 
 Point3 Medium::own(const Point3& p, float time) const { return object->transform.from_origin(time).back(p); }
 
@@ -134,9 +137,9 @@ Ray Medium::own(const Ray& ray) const {
 
 Spectrum transmittance(const Medium& medium, const Ray& ray, float distance, const Wavelengths& w, NumberStream& numbers) {
   const VolumeShader& volume = *medium.volume;
-  if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), distance);
+  const float end = reach_within(medium, ray, distance);
+  if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), end);
   const float m = volume.majorant(w).maximum();
-  const float end = within_object(medium, ray, distance);
   Spectrum fraction(1.0f);
   collide(volume, medium.own(ray), end, m, w, numbers, [&](float, const VolumeCoefficients& c) {
     fraction *= left_of(m, c) / m;
@@ -154,7 +157,8 @@ Spectrum transmittance(const Medium& medium, const Ray& ray, float distance, con
 
 Spectrum likely_transmittance(const Medium& medium, const Ray& ray, float distance, const Wavelengths& w) {
   const VolumeShader& volume = *medium.volume;
-  if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), distance);
+  if (volume.homogeneous())
+    return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), reach_within(medium, ray, distance));
   if (!std::isfinite(distance)) return Spectrum(1.0f);
   // The optical depth by the midpoint rule, whose points are the same from both ends.
   constexpr int points = 8;
@@ -169,11 +173,11 @@ Spectrum likely_transmittance(const Medium& medium, const Ray& ray, float distan
 FreeFlight sample_free_flight(const Medium& medium, const Ray& ray, float reach, const Spectrum& throughput,
                               const Wavelengths& w, NumberStream& numbers) {
   const VolumeShader& volume = *medium.volume;
-  if (!volume.homogeneous())
-    return through_heterogeneous(volume, medium.own(ray), within_object(medium, ray, reach), throughput, w, numbers);
+  const float end = reach_within(medium, ray, reach);
+  if (!volume.homogeneous()) return through_heterogeneous(volume, medium.own(ray), end, throughput, w, numbers);
   const VolumeCoefficients c = volume.coefficients(ray.origin, ray.time, w);
-  FreeFlight flight = through_homogeneous(c, reach, throughput, numbers);
-  if (volume.emits()) flight.emitted = emitted_along(c, reach);
+  FreeFlight flight = through_homogeneous(c, end, throughput, numbers);
+  if (volume.emits()) flight.emitted = emitted_along(c, end);
   return flight;
 }
 

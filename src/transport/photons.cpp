@@ -4,12 +4,12 @@
 
 namespace etendue {
 
-Spectrum carried(const Photon& photon, const Carrying& to) {
-  if (!to.single) return photon.throughput;
+Spectrum carried(const Spectrum& light, bool single, const Carrying& to) {
+  if (!to.single) return light;
   const int lane = std::max(to.lane, 0);
   Spectrum one;
-  one.set(0, photon.throughput[lane]);
-  if (photon.single) one *= lane == 0 ? to.branches / float(spectrum_size) : 0;
+  one.set(0, light[lane]);
+  if (single) one *= lane == 0 ? to.branches / float(spectrum_size) : 0;
   return one;
 }
 
@@ -103,7 +103,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
       specular = specular && v.specular;
       const bool wanted = kinds == PhotonKinds::all || caustic == (kinds == PhotonKinds::caustics);
       if (!wanted || !v.connectable() || int(i) < (v.in_medium() ? fewest_in_media : fewest_vertices) ||
-          (kept < 1 && double(chances.next()) >= kept))
+          (v.in_medium() && !in_even_media && v.medium.volume->homogeneous()) || (kept < 1 && double(chances.next()) >= kept))
         continue;
       Photon& p = photons.emplace_back();
       p.position = v.point.position;

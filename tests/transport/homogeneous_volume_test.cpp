@@ -5,6 +5,7 @@
 
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
+#include "etendue/transport/medium.h"
 #include "support/luminaire_test_support.h"
 
 namespace etendue::test {
@@ -33,6 +34,39 @@ TEST(HomogeneousVolume, PhaseFunctionIsNormalisedWithItsMeanCosine) {
     EXPECT_NEAR(phase(across), (1 - g * g) / (4 * M_PI * std::pow(1 + g * g, 1.5)), 1e-4 * phase(across));
     EXPECT_NEAR(double(m->phase({}, across, out)), phase(across), 1e-4 * phase(across));
   }
+}
+
+// A ray that has slipped through an edge of the surface would be in the medium for ever. It ends with the object: from the
+// middle there is half a metre of it, from outside none.
+TEST(HomogeneousVolume, EndsWithItsObjectWhereNothingElseEndsARay) {
+  const Ref<VolumeShader> v = prepared_as<VolumeShader>("HomogeneousVolume { scattering: 1, absorption: 2, emission: 6 }");
+  const Ref<SceneObject> box = prepared_as<SceneObject>("Box { centre: [0.5, 0.5, 0.5] m, size: [1, 1, 1] m }");
+  const Medium medium{v.get(), box.get()};
+  const Ref<Sampler> sampler = create<Sampler>("IndependentSampler");
+  const Wavelengths w = wavelengths();
+  NumberStream stream(*sampler, SampleKey(7, 0, 0, 1));
+  Ray ray;
+  ray.origin = {0.5f, 0.3f, 0.3f};
+  ray.direction = {1, 0, 0};
+  EXPECT_NEAR(within_object(medium, ray), 0.5f, 1e-6f);
+  for (const float far : {infinity, 0.5f}) {
+    EXPECT_NEAR(transmittance(medium, ray, far, w, stream)[0], std::exp(-1.5f), 1e-5f);
+    EXPECT_NEAR(likely_transmittance(medium, ray, far, w)[0], std::exp(-1.5f), 1e-5f);
+    EXPECT_NEAR(sample_free_flight(medium, ray, far, Spectrum(1.0f), w, stream).emitted[0], 2 * (1 - std::exp(-1.5f)), 1e-5f);
+  }
+  int scattered = 0;
+  constexpr int n = 10000;
+  for (int i = 0; i < n; ++i) {
+    NumberStream own(*sampler, SampleKey(7, 0, 0, std::uint32_t(i)));
+    const FreeFlight flight = sample_free_flight(medium, ray, infinity, Spectrum(1.0f), w, own);
+    EXPECT_LE(flight.distance, 0.5f + 1e-6f);
+    scattered += flight.scattered;
+  }
+  const double p = 1 - std::exp(-1.5);
+  EXPECT_NEAR(double(scattered) / n, p, 4 * std::sqrt(p * (1 - p) / n));
+  ray.origin = {1.5f, 0.3f, 0.3f};
+  EXPECT_EQ(transmittance(medium, ray, infinity, w, stream)[0], 1.0f);
+  EXPECT_FALSE(sample_free_flight(medium, ray, infinity, Spectrum(1.0f), w, stream).scattered);
 }
 
 TEST(HomogeneousVolume, SamplesFollowThePhaseFunction) {

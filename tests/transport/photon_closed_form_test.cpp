@@ -36,7 +36,7 @@ std::vector<Row> photon_rows() {
                   2,
                   {{"VertexConnectionMerging", "max_depth: 1000, radius: 0.1", 16},
                    {"ProgressivePhotonMapper", "max_depth: 1000, radius: 0.1, photon_walks: 16000", 10},
-                   {"ProgressivePhotonMapper", "max_depth: 1000, radius: 0.2, photon_walks: 4000, beams: false", 8}}});
+                   {"ProgressivePhotonMapper", "max_depth: 1000, radius: 0.2, photon_walks: 4000, media: points", 8}}});
   // Light through glass onto a plate that shows what it gets and sends next to nothing back; what photons bring is a caustic.
   const std::string sun = "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: 314159.265 } }";
   const std::string glass =

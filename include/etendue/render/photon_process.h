@@ -4,7 +4,7 @@
 
 #include "etendue/render/renderer.h"
 #include "etendue/render/shown_in_space.h"
-#include "etendue/transport/photons.h"
+#include "etendue/transport/photon_beams.h"
 
 namespace etendue {
 
@@ -29,6 +29,7 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
     PhotonKinds kinds = PhotonKinds::all;
     const EmissionTargets* targets = nullptr;  ///< see PhotonWalks
     int fewest_vertices = 1, fewest_in_media = 1;
+    bool in_even_media = true;
     double radius = 0;                    ///< of the first step [m]
     double shrinking = 1;                 ///< a: see photons.h
     const Heuristic* weighted = nullptr;  ///< how photons are weighted against connections; null: they are not
@@ -58,12 +59,31 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
       });
     }
   };
+  struct Beams {
+    BeamMap map;
+    double walks = 0;  ///< n, as far as their beams were kept
+    float radius = 0;  ///< r [m]
+    /// Calls `visit(beam, s, t, n times the width)` for those in a medium that pass a ray's first `reach` [m] there and from
+    /// which nothing parts it: see BeamMap::along.
+    template <class Visit>
+    void along(const Scene& scene, const Medium& medium, const Ray& ray, float reach, NumberStream& numbers,
+               const Visit& visit) const {
+      map.along(ray, reach, numbers, [&](const PhotonBeam& b, float s, float t, float width) {
+        if (b.volume == medium.volume && !parted(scene, ray(t), {}, ray.time, b.origin + s * b.direction, {}, radius))
+          visit(b, s, t, float(walks * double(width)));
+      });
+    }
+  };
   /// Makes photons of a step, after `share`. Requests of one step that differ in kinds have different numbers.
   Photons make_photons(Schedule&, const Step&, const Request&) const;
   /// For people: some of several maps together, in proportion to what each has.
   ShownPhotons some_of(std::initializer_list<const Photons*>, size_t most) const;
+  /// The same of beams, which are of walks of their own, through media that are the same everywhere.
+  Beams make_beams(Schedule&, const Step&, const Request&) const;
 
  private:
+  PhotonWalks walks(const Schedule&, const Step&, const Request&) const;
+
   bool shares_ = false;
   Wavelengths wavelengths_;
   float time_ = 0;

@@ -42,12 +42,15 @@ struct WalkLimits {
   int roulette_depth = 5;  ///< segments before Russian roulette may end a walk
 };
 
-/// What is told of a camera walk while it grows.
+/// What is told of a walk while it grows.
 struct WalkListener {
   /// Light that media themselves send towards the camera: the path's length in segments, and what it brings.
   virtual void emitted(int /*length*/, const Spectrum&) {}
   /// A luminaire whose surface lets all light pass straight on: it is the walk's last vertex for a moment.
   virtual void crossed_luminaire() {}
+  /// It goes into a medium, along a ray and as far as `reach` [m], unless it is scattered before; with its throughput at the
+  /// ray's origin.
+  virtual void through(const Medium&, const Ray&, float /*reach*/, const Spectrum& /*throughput*/) {}
 
  protected:
   ~WalkListener() = default;
@@ -70,7 +73,8 @@ void walk_from_camera(const RenderContext&, const Ray&, const WalkLimits&, Sampl
 /// A walk that begins at a luminaire, chosen by power. False: no light leaves there, and the walk is empty. The context's
 /// wavelengths and numbers are the walk's. `targets`, if any: it goes towards one of them.
 bool walk_from_luminaire(const Scene&, const LightSampler&, float time, const WalkLimits&, SampleContext&,
-                         std::vector<KeptVertex>& walk, EmittedLight&, const EmissionTargets* targets = nullptr);
+                         std::vector<KeptVertex>& walk, EmittedLight&, const EmissionTargets* targets = nullptr,
+                         WalkListener* listener = nullptr);
 
 /// The density of a vertex b that was chosen from a by a direction of solid-angle density `density`; `direction` is unit
 /// from a to b, `chance` that of getting along the edge.

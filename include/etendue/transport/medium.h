@@ -59,6 +59,11 @@ inline Medium medium_in(const MediumStack& media) {
   return object ? Medium{object->interior.get(), object} : Medium{};
 }
 
+/// How far a ray that meets nothing goes through a medium [m]: to where it leaves the bounds of the object that holds it. Such
+/// a ray has slipped through an edge or a corner of the object's surface, and is outside without knowing. Infinite where the
+/// object is.
+float within_object(const Medium&, const Ray&);
+
 /// An unbiased estimate of the fraction of light that gets `distance` [m] (may be infinite) along a ray in a medium; exact, and
 /// without numbers, in a homogeneous one.
 Spectrum transmittance(const Medium&, const Ray&, float distance, const Wavelengths&, NumberStream&);

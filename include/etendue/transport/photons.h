@@ -43,8 +43,11 @@ struct Carrying {
   int lane = -1;        ///< of the step's wavelengths that one; -1: the first
   float branches = 1;   ///< of how many such walks, one for each of so many wavelengths, this is one
 };
-/// alpha_p as such a walk sees it: both have made up for the wavelengths they dropped, and once is enough.
-Spectrum carried(const Photon&, const Carrying&);
+/// Light as such a walk sees it: both have made up for the wavelengths they dropped, and once is enough. `single`: the light is
+/// of the hero alone.
+Spectrum carried(const Spectrum& light, bool single, const Carrying&);
+/// alpha_p.
+inline Spectrum carried(const Photon& p, const Carrying& to) { return carried(p.throughput, p.single, to); }
 
 /// What of a photon's light goes on from a vertex near it: f alpha [W/(sr nm)] on a surface; in a medium phase alpha / s_s
 /// [W m/(sr nm)], since the throughput of the walk that came there holds s_s, too. To be divided by n pi r^2 or n 4/3 pi r^3.
@@ -107,6 +110,7 @@ struct PhotonWalks {
   const EmissionTargets* targets = nullptr;  ///< light goes towards these alone
   int fewest_vertices = 1;                   ///< before a photon: 2 leaves out those straight from luminaires
   int fewest_in_media = 1;                   ///< the same in media
+  bool in_even_media = true;                 ///< whether they are kept in media that are the same everywhere
   const StrategyWeights* against = nullptr;  ///< photons have weights against these other strategies; null: none
   double kept = 1;  ///< the chance of a photon to be kept; with fewer photons n counts that part of the walks
   const std::atomic<bool>* abort = nullptr;

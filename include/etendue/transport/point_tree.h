@@ -17,6 +17,7 @@ namespace etendue {
 
 class PointTree {
  public:
+  static constexpr size_t leaf = 8;  ///< points that are not divided further
   /// Builds it on all cores. Returns the order of points: the tree calls that which was the order[i]-th of them i. At most
   /// 2^32.
   std::vector<std::uint32_t> build(std::span<const Point3> points);
@@ -88,7 +89,6 @@ class PointTree {
   static std::vector<Near>& near_on_this_thread();
 
  private:
-  static constexpr size_t leaf = 8;
   struct Plane {
     float at;
     std::uint32_t axis;

@@ -25,7 +25,7 @@ struct NoListener {
   void emitted(const Spectrum&) const {}
   /// A luminaire that the walk passes straight through is the vertex, for a moment.
   void crossed_luminaire() const {}
-  /// Of a walk that media only weaken: it goes through one of them, along its ray from the origin to this distance [m].
+  /// It goes into a medium, along its ray from the origin and as far as this distance [m], unless it is scattered before.
   void through(const Medium&, float) const {}
 };
 
@@ -98,9 +98,9 @@ class Walk {
     for (; crossings_ <= most_crossings; found = scene.nearest(ray, hit), ++crossings_) {
       if (tracks_)
         if (const Medium medium = medium_in(media)) {
-          const float reach = found ? hit.distance : ray.maximum;
+          const float reach = found ? hit.distance : std::min(ray.maximum, within_object(medium, ray));
+          listener.through(medium, reach);
           if (only_weakened) {
-            listener.through(medium, reach);
             throughput *= transmittance(medium, ray, reach, sample.wavelengths, numbers);
             if (throughput.black()) return false;
           } else {

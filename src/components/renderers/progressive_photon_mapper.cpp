@@ -4,12 +4,20 @@
 // A walk from the camera goes through mirrors and glass to the first vertex x that scatters smoothly. There, with T its
 // throughput,
 //     L = T [ L_e(x) + direct(x) + sum_p f(x, w, w_p) alpha_p / (n pi r^2) ],
-// the sum being over photons p within r of x, of n walks from luminaires (transport/photons.h). What media scatter towards the
-// camera is gathered all along the way, from photons within r of the ray, a beam of it (Jarosz, Zwicker & Jensen 2008, "The
-// beam radiance estimate for volumetric photon mapping"),
-//     L = T sum_p T(t_p) phase(x_p, w, w_p) alpha_p / (n pi r^2),         T(t) = what the medium lets through as far as t,
-// or else the walk is scattered in media as well, and x may lie there: f is the phase function then, and pi r^2 becomes 4/3 pi
-// r^3. Each step has new photons and a smaller r, so the mean over steps goes to the truth.
+// the sum being over photons p within r of x, of n walks from luminaires (transport/photons.h). Each step has new photons and a
+// smaller r, so the mean over steps goes to the truth.
+//
+// What media scatter towards the camera is found in one of three ways:
+//     points       the walk is scattered in media as well, and x may lie there: f is the phase function then, and pi r^2
+//     becomes
+//                  4/3 pi r^3.
+//     along_rays   It is gathered all along the way, from photons within r of the ray, a beam of it (Jarosz, Zwicker & Jensen
+//                  2008, "The beam radiance estimate for volumetric photon mapping"), T(t) being what the medium lets through
+//                  as far as t:
+//                      L = T sum_p T(t_p) phase(x_p, w, w_p) alpha_p / (n pi r^2).
+//     beams        It is gathered all along the way, from all the ways of walks from luminaires that pass the ray within r
+//                  (transport/photon_beams.h, which has the formula). What media let through then is exact on both sides, which
+//                  it is only in media that are the same everywhere; in others light is gathered along rays.
 //
 // Photons of caustics, light that mirrors and glass alone threw on, come from walks of their own that begin towards such
 // objects (transport/emission_targets.h); the others leave those out.
@@ -25,6 +33,8 @@
 
 namespace etendue {
 
+enum class InMedia : std::uint8_t { points, along_rays, beams };
+
 class ProgressivePhotonMapper final : public Renderer, public ShrinkingBias {
  public:
   int max_depth = 64;
@@ -33,7 +43,8 @@ class ProgressivePhotonMapper final : public Renderer, public ShrinkingBias {
   bool next_event = true;
   std::int64_t photon_walks = 0, most_photons = 50'000'000;
   float radius = 4, alpha = 0.67f;
-  bool beams = true;
+  InMedia media = InMedia::along_rays;
+  std::int64_t beam_walks = 0, most_beams = 5'000'000;
   int split_depth = 0, split_wavelengths = 3;
 
   static void describe(Description<ProgressivePhotonMapper>& d) {
@@ -48,8 +59,21 @@ class ProgressivePhotonMapper final : public Renderer, public ShrinkingBias {
     d.group("Photons");
     describe_photons<&ProgressivePhotonMapper::photon_walks, &ProgressivePhotonMapper::most_photons>(d);
     describe_shrinking_radius<&ProgressivePhotonMapper::radius, &ProgressivePhotonMapper::alpha>(d);
-    d.member<&ProgressivePhotonMapper::beams>(
-        "beams", "", "whether light in media is gathered all along a ray; without, at places where media scatter it by chance");
+    d.group("Media")
+        .member<&ProgressivePhotonMapper::media>(
+            "media", "",
+            "how light in media is gathered: `points`: at places where they scatter it by chance, from photons; `along_rays`: "
+            "all along a ray, from photons; `beams`: all along a ray, from whole ways of photons, through media that are the "
+            "same everywhere, and along rays in others",
+            choices("points", "along_rays", "beams"))
+        .member<&ProgressivePhotonMapper::beam_walks>(
+            "beam_walks", "1", "walks from luminaires in each step whose ways are beams; 0: one for every eighth pixel",
+            range(0, 4e9), soft(0, 1e6))
+        .member<&ProgressivePhotonMapper::most_beams>("most_beams", "1",
+                                                      "about so many beams are kept in each step, which takes up to 800 bytes "
+                                                      "for each while their tree is built; where there would be more, each "
+                                                      "is kept with a chance",
+                                                      range(1, 4e8), soft(1e4, 1e7), logarithmic);
     d.group("Smooth glass");
     describe_division<&ProgressivePhotonMapper::split_depth, &ProgressivePhotonMapper::split_wavelengths>(d);
   }
@@ -75,29 +99,41 @@ class ProgressivePhotonProcess final : public PhotonProcess {
                     .most = std::uint64_t(settings_.most_photons),
                     .limits = {settings_.max_depth - 1, settings_.roulette_depth},
                     .fewest_vertices = settings_.next_event ? 2 : 1,
-                    .fewest_in_media = settings_.next_event && !settings_.beams ? 2 : 1,
+                    .fewest_in_media = settings_.next_event && settings_.media == InMedia::points ? 2 : 1,
+                    .in_even_media = settings_.media != InMedia::beams,
                     .radius = first_radius_,
                     .shrinking = double(settings_.alpha)};
-    caustics_ = {};
+    photons_ = caustics_ = {};
+    beams_ = caustic_beams_ = {};
     if (targets_.useful()) {
       request.kinds = PhotonKinds::no_caustics;
       Request caustics = request;
       caustics.kinds = PhotonKinds::caustics;
       caustics.targets = &targets_;
-      caustics_ = make_photons(schedule, step, caustics);
+      make(schedule, step, caustics, caustics_, caustic_beams_);
     }
-    photons_ = make_photons(schedule, step, request);
+    make(schedule, step, request, photons_, beams_);
   }
 
   std::optional<ShownPhotons> photons(size_t most) const override { return some_of({&photons_, &caustics_}, most); }
 
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     CameraWalk walk(context.scene, sample, ray, settings_.max_depth);
-    walk.only_weakened = settings_.beams;
+    walk.only_weakened = settings_.media != InMedia::points;
     return follow(walk);
   }
 
  private:
+  void make(Schedule& schedule, const Step& step, Request request, Photons& photons, Beams& beams) const {
+    photons = make_photons(schedule, step, request);
+    if (settings_.media != InMedia::beams || !context.scene.has_interiors()) return;
+    const ImageBuffer& image = context.image;
+    request.walks = settings_.beam_walks > 0 ? std::uint64_t(settings_.beam_walks)
+                                             : (std::uint64_t(image.width) * std::uint64_t(image.height) + 7) / 8;
+    request.most = std::uint64_t(settings_.most_beams);
+    beams = make_beams(schedule, step, request);
+  }
+
   template <class Walk>
   Spectrum follow(Walk& walk) const {
     const Division division{settings_.split_depth, settings_.split_wavelengths};
@@ -126,7 +162,7 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     }
     /// A medium, for so far. What it sends to a smooth vertex photons have brought there.
     void through(const Medium& medium, float reach) const {
-      if (walk.specular) self.gather_along(walk, medium, reach);
+      if (walk.only_weakened && walk.specular) self.gather_along(walk, medium, reach);
     }
   };
 
@@ -161,12 +197,23 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     };
     photons_.along(context.scene, ray, reach, add);
     caustics_.along(context.scene, ray, reach, add);
+    if (settings_.media != InMedia::beams || !medium.volume->homogeneous()) return;
+    // Of the step's wavelengths, as the beams': a walk may have dropped some.
+    const VolumeCoefficients c = medium.coefficients(ray.origin, ray.time, wavelengths({}, 0));
+    const auto add_beam = [&](const PhotonBeam& b, float s, float t, float density) {
+      if (walk.length + int(b.vertices) > settings_.max_depth) return;
+      const float phase = medium.phase(ray(t), ray.time, -ray.direction, -b.direction);
+      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.single, to) * (phase / density));
+    };
+    beams_.along(context.scene, medium, ray, reach, numbers, add_beam);
+    caustic_beams_.along(context.scene, medium, ray, reach, numbers, add_beam);
   }
 
   const ProgressivePhotonMapper& settings_;
   const double first_radius_;  // [m]
   const EmissionTargets targets_;
   Photons photons_, caustics_;
+  Beams beams_, caustic_beams_;
 };
 
 std::unique_ptr<RenderProcess> ProgressivePhotonMapper::begin(const RenderContext& context) const {
