@@ -103,8 +103,11 @@ CheckedInput open_checked(const std::string& path) {
   check_bmp_header(path);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
   if (!input) refuse(OIIO::geterror());
-  OIIO::ImageSpec ignored;
-  if (!input->open(file->path_to_open(), ignored)) refuse(input->geterror());
+  // Colours are not weighed by alpha where the file has them whole (PNG, TGA, WebP, most TIFFs): whoever wants that does it
+  // with numbers that are decoded.
+  OIIO::ImageSpec ignored, wanted;
+  wanted.attribute("oiio:UnassociatedAlpha", 1);
+  if (!input->open(file->path_to_open(), ignored, wanted)) refuse(input->geterror());
   require_plausible(*input, file->size());
   const bool unpacked = file->path_to_open() != path;
   return {unpacked ? file : nullptr, std::move(input)};

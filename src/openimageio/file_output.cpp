@@ -57,6 +57,7 @@ OIIO::ImageSpec spec_of(const std::string& extension, const ImageHeader& header)
     spec.attribute("compression", "zip");
     spec.attribute("DateTime", "");  // else the library writes the time, and equal pictures differ
   }
+  if (spec.alpha_channel >= 0 && extension != ".exr") spec.attribute("oiio:UnassociatedAlpha", 1);  // as they are read
   for (const auto& [name, value] : header.texts) spec.attribute(name, value);
   if (header.transfer == "linear") spec.attribute("oiio:ColorSpace", "linear");
   if (header.transfer == "srgb") spec.attribute("oiio:ColorSpace", "sRGB");

@@ -96,6 +96,20 @@ TEST(ImageMap, ChannelsByName) {
   EXPECT_NE(message.find("depth.Z"), std::string::npos) << message;
 }
 
+// What is nearly transparent is as bright as its file says: how much of it is there is another map's business.
+TEST(ImageMap, AlphaWeighsNoColours) {
+  const Folder folder("alpha");
+  for (const char* name : {"clear.png", "clear.tga", "clear.tif"}) {
+    write_image(folder / name, {1, 1, 4, NumberType::uint8}, {200 / 255.0f, 100 / 255.0f, 50 / 255.0f, 51 / 255.0f});
+    const Ref<ObjectMap> map = create<ObjectMap>("ImageMap", {{"file", folder / name}});
+    const double expected =
+        (decode_transfer("srgb", 200 / 255.0) + decode_transfer("srgb", 100 / 255.0) + decode_transfer("srgb", 50 / 255.0)) / 3;
+    EXPECT_NEAR(map->scalar(at(0.5f, 0.5f)), expected, 1e-4) << name;
+    EXPECT_NEAR(create<ObjectMap>("ImageMap", {{"file", folder / name}, {"channel", "A"}})->scalar(at(0.5f, 0.5f)), 0.2, 1e-4)
+        << name;
+  }
+}
+
 TEST(ImageMap, AveragesOverTheEllipse) {
   // Stripes and blobs of 1/16 of the image, seen at 75 degrees to the normal along four directions.
   constexpr int size = 256;

@@ -1,6 +1,6 @@
 // Beams of photons: that rays find those they pass, and what they bring where the answer is known (see closed_form_rows.h).
 
-#include "etendue/transport/photon_beams.h"
+#include "etendue/render/photon_beams.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 
 #include "etendue/render/renderer.h"
 #include "etendue/render/shown_in_space.h"
-#include "etendue/transport/photon_beams.h"
+#include "etendue/render/photon_beams.h"
 
 namespace etendue {
 

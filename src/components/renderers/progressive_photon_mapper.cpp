@@ -16,7 +16,7 @@
 //                  as far as t:
 //                      L = T sum_p T(t_p) phase(x_p, w, w_p) alpha_p / (n pi r^2).
 //     beams        It is gathered all along the way, from all the ways of walks from luminaires that pass the ray within r
-//                  (transport/photon_beams.h, which has the formula). What media let through then is exact on both sides, which
+//                  (render/photon_beams.h, which has the formula). What media let through then is exact on both sides, which
 //                  it is only in media that are the same everywhere; in others light is gathered along rays.
 //
 // Photons of caustics, light that mirrors and glass alone threw on, come from walks of their own that begin towards such

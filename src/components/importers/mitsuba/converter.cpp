@@ -84,6 +84,11 @@ Ref<Job> Converter::job(const Element& scene) {
   set_member(*job, "renderer",
              renderer(integrators.empty() ? nullptr : integrators.front(), samplers.empty() ? nullptr : samplers.front()),
              scene.at);
+  if (!samplers.empty() && samplers.front()->has("seed")) {
+    const Reading of_sampler(*samplers.front());
+    const std::int64_t seed = samplers.front()->integer("seed", 0);
+    set_member(*job, "seed", double(std::max<std::int64_t>(seed, 0)), samplers.front()->location_of("seed"));
+  }
   set_member(*job, "scene", objects, scene.at);
   add_outputs(*job, film);
   note_unread(scene);

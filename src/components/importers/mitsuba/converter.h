@@ -42,6 +42,7 @@ class Converter {
   void place(Component& camera, const Element& sensor);
   Ref<Component> camera(const Element& sensor);
   std::string axis_of(const Element& e);
+  bool front_by_world(const Element& shape);
   void set_view(Component& camera, const Element& sensor);
   void set_clip(Component& camera, const Element& sensor);
   void set_shutter(Component& camera, const Element& sensor);

@@ -60,19 +60,28 @@ Ref<Component> Converter::renderer(const Element* integrator, const Element* sam
     if (std::ranges::find(known, sampler->type) == known.end()) fail_unknown(*sampler, known);
     set_member(*made, "samples", double(sampler->integer("sample_count", 4)), sampler->location_of("sample_count"));
     if (sampler->type == "independent") set_member(*made, "sampler", make("IndependentSampler", *sampler), sampler->at);
-    sampler->ignore({"seed", "scramble", "jitter", "strength", "dimension"});
+    sampler->ignore({"scramble", "jitter", "strength", "dimension"});
   }
   return made;
 }
 
-void Converter::set_depths(Component& renderer, const Element& e) {
+void Converter::set_depths(Component& outer, const Element& e) {
+  // A renderer around another has the other's depths.
+  const Value inner = outer.class_info().find("inner") ? get(outer, "inner") : Value();
+  const auto* within = inner.as<Ref<Component>>();
+  Component& renderer = within && *within ? **within : outer;
   // Both count segments: 1 shows emitters alone, 2 adds direct light.
   const std::int64_t depth = e.integer("max_depth", -1);
   if (depth == 0) importing_.inexact("paths of no segment are a black picture: here they have one", e.location_of("max_depth"));
   const double longest = depth < 0 ? without_end : double(std::clamp<std::int64_t>(depth, 1, without_end));
-  if (renderer.class_info().find("max_depth")) set_member(renderer, "max_depth", longest, e.location_of("max_depth"));
-  if (const std::int64_t roulette = e.integer("rr_depth", 5); renderer.class_info().find("roulette_depth"))
-    set_member(renderer, "roulette_depth", double(std::max<std::int64_t>(roulette, 1)), e.location_of("rr_depth"));
+  const auto set_or_tell = [&](const char* member, double value, const char* name) {
+    if (renderer.class_info().find(member))
+      set_member(renderer, member, value, e.location_of(name));
+    else if (e.has(name))
+      importing_.inexact(fmt::format("'{}' has no counterpart in {}", name, renderer.class_info().name), e.location_of(name));
+  };
+  set_or_tell("max_depth", longest, "max_depth");
+  set_or_tell("roulette_depth", double(std::max<std::int64_t>(e.integer("rr_depth", 5), 1)), "rr_depth");
   if (e.boolean("hide_emitters", false))
     importing_.inexact("emitters are seen: they cannot be hidden from the camera alone", e.location_of("hide_emitters"));
   if (e.boolean("strict_normals", false))

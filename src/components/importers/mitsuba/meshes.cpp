@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
+#include <cstring>
 
 #include "converter.h"
 #include "files/regular_file.h"
@@ -35,6 +37,41 @@ struct Strands {
 
 constexpr size_t fewest_of_spline = 4;
 
+constexpr std::string_view binary_hair = "BINARY_HAIR";
+
+/// Mitsuba 0.5's binary hair: behind the first word a number of vertices (32 bits), then x, y and z of each as floats, lowest
+/// byte first; before the first vertex of a strand stands an infinity.
+Strands read_binary_hair(const std::string& path, std::string_view bytes, Location at, double radius) {
+  size_t next = binary_hair.size();
+  const auto take = [&](auto& to) {
+    if (bytes.size() - next < sizeof to) throw Error(fmt::format("'{}': it ends too early", path), at);
+    std::memcpy(&to, bytes.data() + next, sizeof to);
+    next += sizeof to;
+  };
+  std::uint32_t count = 0;
+  take(count);
+  if (count > bytes.size() / 12) throw Error(fmt::format("'{}': it ends too early", path), at);
+  Strands all;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    float v[3];
+    take(v[0]);
+    const bool begins = std::isinf(v[0]);
+    if (begins) take(v[0]);
+    take(v[1]), take(v[2]);
+    if (begins || i == 0) all.counts.values.push_back(0);
+    ++all.counts.values.back();
+    for (const float x : v) {
+      if (!(std::abs(x) < 1e18f)) throw Error(fmt::format("'{}': vertex {} is not finite", path, i), at);
+      all.points.values.push_back(double(x));
+    }
+    all.radius.values.push_back(radius);
+  }
+  for (const double n : all.counts.values)
+    if (n < 2) throw Error(fmt::format("'{}': a strand has one point, but 2 are needed", path), at);
+  if (all.counts.values.empty()) throw Error(fmt::format("'{}' holds no curves", path), at);
+  return all;
+}
+
 /// Lines of x, y, z and a radius; an empty line ends a strand.
 Strands read_strands(const std::string& path, Location at, bool with_radius, double radius, size_t fewest) {
   std::string text;
@@ -43,7 +80,7 @@ Strands read_strands(const std::string& path, Location at, bool with_radius, dou
   } catch (const Error& error) {
     throw Error(fmt::format("'{}': {}", path, error.what()), at);
   }
-  if (text.starts_with("BINARY_HAIR")) throw Error(fmt::format("'{}': binary hair files are not read", path), at);
+  if (text.starts_with(binary_hair)) return read_binary_hair(path, text, at, radius);
   Strands all;
   size_t points = 0, line_number = 0;
   const auto end_strand = [&] {
@@ -87,14 +124,26 @@ Strands read_strands(const std::string& path, Location at, bool with_radius, dou
 
 Ref<Component> Converter::curves(const Element& e) {
   const bool spline = e.type == "bsplinecurve";
-  const Strands strands = read_strands(file(e).resolved(), e.location_of("filename"), e.type != "hair",
-                                       e.number("radius", e.type == "hair" ? 0.025 : 1), spline ? fewest_of_spline : 2);
+  Strands strands = read_strands(file(e).resolved(), e.location_of("filename"), e.type != "hair",
+                                 e.number("radius", e.type == "hair" ? 0.025 : 1), spline ? fewest_of_spline : 2);
   Ref<Component> curve = make("Curve", e);
+  if (e.type == "hair") {
+    set_transform(*curve, e.transform(), e.location_of("to_world"));
+  } else {  // there the points alone are transformed, and radii stay what they are
+    const TransformValue placed = e.transform();
+    if (placed.transform.animated()) inexact(e, "curves stay where they are at first");
+    const Transform to_world = placed.transform.still();
+    std::vector<double>& v = strands.points.values;
+    for (size_t i = 0; i + 2 < v.size(); i += 3) {
+      const DoublePoint3 p = to_world(DoublePoint3{v[i], v[i + 1], v[i + 2]});
+      v[i] = p.x, v[i + 1] = p.y, v[i + 2] = p.z;
+    }
+  }
+  if (e.type == "linearcurve") inexact(e, "the ends of curves are open here, and round in Mitsuba");
   set_member(*curve, "points", strands.points, e.at);
   set_member(*curve, "radius", strands.radius, e.at);
   set_member(*curve, "counts", strands.counts, e.at);
   set_member(*curve, "basis", spline ? "b_spline" : "linear", e.at);
-  set_transform(*curve, e.transform(), e.location_of("to_world"));
   e.ignore({"angle_threshold", "reduction"});
   return curve;
 }

@@ -92,6 +92,27 @@ constexpr float almost_no_index = 1e-6f;
 
 }  // namespace
 
+namespace {
+
+/// An index of refraction whose table ends within the visible goes on with its first and last values: no index is 0.
+Color going_on_at_its_ends(const Color& table) {
+  constexpr int first = 360, last = 830;  // [nm]
+  const auto at = [&](int nm) { return table->at(float(nm), ColorUse::coefficient); };
+  int low = first, high = last;
+  while (low < last && at(low) == 0) ++low;
+  while (high > low && at(high) == 0) --high;
+  if (low == first && high == last) return table;
+  if (low == last) return table;  // black everywhere: whoever needs an index says so
+  std::vector<float> wavelengths, values;
+  for (int nm = first; nm <= last; ++nm) {
+    wavelengths.push_back(float(nm));
+    values.push_back(at(std::clamp(nm, low, high)));
+  }
+  return table_spectrum(std::move(wavelengths), std::move(values));
+}
+
+}  // namespace
+
 Converter::Surface Converter::conductor(const Element& e, Uv uv, const std::string& name) {
   std::string material = e.string("material", e.old && !e.has("eta") ? "Cu" : "none");
   const bool by_numbers = e.has("eta") || e.has("k");
@@ -116,7 +137,7 @@ Converter::Surface Converter::conductor(const Element& e, Uv uv, const std::stri
       set_member(*shader, "rgb_k", three(*rgb_k), k->at);
     } else {
       const auto part = [&](const char* of, double otherwise) {
-        const Color c = spectrum_of(e, of, otherwise);
+        const Color c = going_on_at_its_ends(spectrum_of(e, of, otherwise));
         return exterior == 1 ? c : scaled_spectrum(1 / exterior, c);
       };
       set_member(*shader, "ior", complex_index(part("eta", double(almost_no_index)), part("k", 1)), e.at);

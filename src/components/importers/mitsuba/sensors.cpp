@@ -200,8 +200,12 @@ void Converter::add_outputs(Component& job, const Element* film) {
   static const std::vector<std::string> known_films = {"hdrfilm", "ldrfilm", "specfilm", "mfilm", "tiledhdrfilm"};
   if (!film) return;
   if (std::ranges::find(known_films, film->type) == known_films.end()) fail_unknown(*film, known_films);
-  film->ignore(
-      {"sample_border", "high_quality_edges", "banner", "label", "pixel_format", "attach_log", "compensate", "variable"});
+  film->ignore({"sample_border", "high_quality_edges", "banner", "label", "attach_log", "compensate", "variable"});
+  if (const std::string channels = film->string("pixel_format", "rgb"); channels != "rgb")
+    importing_.inexact(channels.ends_with("a")
+                           ? "a picture has no alpha: its channels are those of its output, red, green and blue"
+                           : fmt::format("a picture in '{}' is written as red, green and blue", channels),
+                       film->location_of("pixel_format"));
   Value::List outputs;
   if (film->type == "ldrfilm") {
     Ref<Component> tone_map = make("ExposureToneMap", *film, "");
@@ -225,8 +229,13 @@ void Converter::add_outputs(Component& job, const Element* film) {
     if (film->type == "specfilm" || film->type == "mfilm")
       inexact(*film, fmt::format("film '{}' is taken for 'hdrfilm'", film->type));
     const std::string format = film->string("file_format", "openexr");
+    if (format != "openexr" && format != "rgbe" && format != "exr")
+      importing_.inexact(fmt::format("a picture in '{}' is written as OpenEXR", format), film->location_of("file_format"));
     Ref<Component> output = make(format == "rgbe" ? "HdrOutput" : "ExrOutput", *film, "");
     const std::string component = film->string("component_format", "float16");
+    if (component != "float16" && component != "float32")
+      importing_.inexact(fmt::format("a component_format of '{}' becomes 32-bit floats", component),
+                         film->location_of("component_format"));
     if (format != "rgbe" && component == "float16")
       set_member(*output, "precision", "half", film->location_of("component_format"));
     outputs.emplace_back(output, film->at);

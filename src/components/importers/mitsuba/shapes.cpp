@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "components/objects/meshes/mesh_data.h"
 #include "converter.h"
 #include "etendue/language/language.h"
 
@@ -139,9 +140,23 @@ bool Converter::textured(const Element& e) {
   return false;
 }
 
+/// Whether a shape's front is found in the world, where a mirroring transform has turned its triangles round: a sphere's, and
+/// that of a mesh whose normals are those of its triangles. Elsewhere normals are carried along.
+bool Converter::front_by_world(const Element& e) {
+  if (e.type == "sphere") return true;
+  if (e.type != "obj" && e.type != "ply" && e.type != "serialized") return false;
+  if (e.boolean("face_normals", false)) return true;
+  const std::string part = e.type == "serialized" ? std::to_string(e.integer("shape_index", 0)) : std::string();
+  try {
+    return read_mesh(file(e).resolved(), part).normals.empty();
+  } catch (const Error&) {  // the mesh itself will say so
+    return false;
+  }
+}
+
 void Converter::set_surface(Component& object, const Element& e, Uv uv) {
   bool flipped = e.boolean("flip_normals", false);
-  if (e.type == "sphere" && mirrors(e.transform())) flipped = !flipped;
+  if (mirrors(e.transform()) && front_by_world(e)) flipped = !flipped;
   const std::vector<const Element*> bsdfs = e.all("bsdf"), emitters = e.all("emitter");
   if (bsdfs.size() > 1) importing_.inexact("a shape has one bsdf: the first counts", bsdfs[1]->at);
   if (!e.all("subsurface").empty()) inexact(e, "subsurface scattering of Mitsuba 0.5 is left out: the bsdf alone counts");

@@ -54,13 +54,21 @@ Value Converter::scalar(const Element& e, const std::string& name, double otherw
 
 Value Converter::texture(const Element& e, Uv uv) {
   const Reading reading(e);
+  if (e.tag == "volume" && e.type == "constvolume") return color(e, "value", 1, uv);
   if (e.tag != "texture" && e.tag != "spectrum") throw Error(fmt::format("a texture is expected, not a {}", e.tag), e.at);
   if (e.type == "bitmap") return bitmap(e, uv);
   if (e.type == "checkerboard") return checkerboard(e, uv);
   if (e.type == "mesh_attribute" || e.type == "vertexcolors") return attribute_map(e);
   if (e.type == "srgb") return color(e, "color", 0.5, uv);
   if (e.type == "uniform" || e.type == "rawconstant") return color(e, "value", 1, uv);
-  if (e.type == "d65") return Value(scaled_spectrum(e.number("scale", 1), illuminant_spectrum("D65")), e.at);
+  if (e.type == "d65") {
+    const double scale = e.number("scale", 1);
+    if (!e.has("color")) return Value(scaled_spectrum(scale, illuminant_spectrum("D65")), e.at);
+    const Property& tint = *e.find("color");
+    if (const auto* c = std::get_if<ColorValue>(&tint.value); c && c->kind == ColorValue::Kind::rgb)
+      return Value(rgb_color("srgb", scale * c->rgb[0], scale * c->rgb[1], scale * c->rgb[2]), e.at);
+    throw Error("the colour of 'd65' is read as rgb alone", tint.at);
+  }
   if (e.type == "blackbody")
     return Value(scaled_spectrum(e.number("scale", 1), blackbody_spectrum(e.number("temperature", 5000))), e.at);
   if (e.type == "regular" || e.type == "irregular") {

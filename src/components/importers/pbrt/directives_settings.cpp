@@ -48,7 +48,9 @@ void Directives::option() {
   need_options();
   const Parameters p = Parameters::read(lexer(), "Option", at_);
   for (const Parameter& o : p.own)
-    if (o.name != "seed" && o.name != "rendercoordsys" && o.name != "msereferenceimage" && o.name != "msereferenceout")
+    if (o.name == "seed")
+      r.seed = p.integer("seed", 0);
+    else if (o.name != "rendercoordsys" && o.name != "msereferenceimage" && o.name != "msereferenceout")
       r.importing.inexact(fmt::format("the option '{}' is left out", o.name), o.at);
 }
 

@@ -29,8 +29,9 @@ Ref<Component> sampler(Reader& reader) {
                          "stratified", "independent", "02sequence", "lowdiscrepancy", "maxmindist", "zerotwosequence"};
   if (std::ranges::none_of(known, [&](const char* k) { return s.type == k; }))
     reader.importing.inexact(fmt::format("the sampler '{}' is not known: Sobol points are taken", s.type), s.parameters.at);
+  if (s.parameters.has("seed")) reader.seed = s.parameters.integer("seed", 0);
   // Which points they are makes no difference to the picture that is converged to.
-  s.parameters.ignore({"seed", "randomization", "dimensions", "samplepixelcenter"});
+  s.parameters.ignore({"randomization", "dimensions", "samplepixelcenter"});
   return reader.make(independent ? "IndependentSampler" : "SobolSampler", s.parameters.at);
 }
 
@@ -102,7 +103,8 @@ void set_renderer(Reader& reader, Component& job) {
     if (p.has("radius"))
       reader.importing.inexact("the radius of photons is found from the picture, not the one given", p.place("radius"));
     if (const int walks = p.integer("photonsperiteration", -1); walks > 0) set_member(*renderer, "photon_walks", walks, p.at);
-    p.ignore({"imagewritefrequency", "seed"});
+    p.ignore({"imagewritefrequency"});
+    if (p.has("seed")) reader.seed = p.integer("seed", 0);
   } else if (found && std::string_view(found->renderer) == "AmbientOcclusionRenderer") {
     if (const double distance = p.number("maxdistance", 0); distance > 0 && distance < 1e30)
       set_member(*renderer, "distance", distance, p.at);

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -81,7 +82,8 @@ class Reader {
   Setting camera, film, filter, sampler, integrator;
   AnimatedTransform camera_to_world;
   std::array<double, 2> times{0, 1};  ///< of TransformTimes [s]
-  double exposure = 1;                ///< what the sensor multiplies radiances by, put into all lights
+  std::optional<int> seed;
+  double exposure = 1;  ///< what the sensor multiplies radiances by, put into all lights
   std::vector<Material> materials{1};
   std::map<std::string, size_t, std::less<>> named_materials;
   std::map<std::string, Ref<Component>, std::less<>> float_textures, spectrum_textures, media;

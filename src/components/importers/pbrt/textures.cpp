@@ -25,8 +25,9 @@ Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
     if (to_world.valid()) set_member(*outer, "transform", to_world, p.at);
     return outer;
   };
-  const double du = p.number("udelta", 0), dv = p.number("vdelta", 0);
+  const auto delta = [&](const char* name) { return p.number(name, 0); };
   if (mapping == "uv") {
+    const double du = delta("udelta"), dv = delta("vdelta");
     const double su = p.number("uscale", 1), sv = p.number("vscale", 1);
     if (su == 1 && sv == 1 && du == 0 && dv == 0) return map;
     if (su == 0 || sv == 0) throw Error(fmt::format("'{}' must not be 0", su == 0 ? "uscale" : "vscale"), p.at);
@@ -36,6 +37,7 @@ Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
     return outer;
   }
   if (mapping == "planar") {
+    const double du = delta("udelta"), dv = delta("vdelta");
     // s = udelta + v1 . p, t = vdelta + v2 . p: PlanarMap's x and y, with any third axis.
     const DoublePoint3 v1 = p.point("v1", {1, 0, 0}), v2 = p.point("v2", {0, 1, 0});
     const DoubleVector3 a{v1.x, v1.y, v1.z}, b{v2.x, v2.y, v2.z}, c = cross(a, b);

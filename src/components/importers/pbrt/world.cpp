@@ -135,6 +135,7 @@ Ref<Job> Reader::finish() {
   set_camera(*this, *job);
   set_film(*this, *job);
   set_renderer(*this, *job);
+  if (seed) set_member(*job, "seed", double(std::max(*seed, 0)), at);
   set_member(*job, "scene", Ref<Component>(scene_of(objects_, at, "")), at);
   return ref_cast<Job>(job);
 }

@@ -1,4 +1,4 @@
-#include "etendue/transport/photon_beams.h"
+#include "etendue/render/photon_beams.h"
 
 #include <tbb/parallel_invoke.h>
 
