@@ -137,6 +137,32 @@ std::vector<Row> beam_rows() {
   return rows;
 }
 
+// Beams go through media that are the same everywhere. In others light is gathered along rays, as it is if one asks for that.
+TEST(PhotonBeams, leave_uneven_media_to_photons) {
+  const auto picture = [](const char* media, const char* volume) {
+    return test::rendered(
+               load_job_text(
+                   job_text(fmt::format("ProgressivePhotonMapper {{ samples: 2, max_depth: 4, photon_walks: 4000, beam_walks: "
+                                        "4000, media: {} }}",
+                                        media),
+                            "PerspectiveCamera { from: [0.5, 0.5, 3], to: [0.5, 0.5, 0.5], fov: 30 }", 8,
+                            fmt::format("Box {{ centre: [0.5, 0.5, 0.5] m, size: [1, 1, 1] m, shader: PassThrough {{}}, "
+                                        "interior: {} }}\nPoint {{ position: [0.5, 3, 0.5] m, emission: "
+                                        "DiffuseEmission {{ radiance: 1 }} }}",
+                                        volume)),
+                   "fog.etd"))
+        ->film()
+        .develop()
+        .values;
+  };
+  const char *const uneven = "GridVolume { resolution: [2, 1, 1], density: [1, 2], extinction: 1, albedo: 0.8 }", *const even =
+                                                                                          "HomogeneousVolume { scattering: 1 }";
+  const auto gathered = picture("along_rays", uneven);
+  EXPECT_GT(*std::ranges::max_element(gathered), 0);
+  EXPECT_EQ(picture("beams", uneven), gathered);
+  EXPECT_NE(picture("beams", even), picture("along_rays", even));
+}
+
 class BeamRows : public testing::TestWithParam<Case> {};
 TEST_P(BeamRows, HaveTheirClosedForm) { expect_row(GetParam()); }
 INSTANTIATE_TEST_SUITE_P(Rows, BeamRows, testing::ValuesIn(cases(beam_rows())), case_name);

@@ -72,27 +72,35 @@ class Chain {
     return Derivatives{d[0], d[1]};
   }
 
-  /// From `guess` to the direction that leads to a. Empty: none was found.
-  std::optional<Vector3> solve(const Vector3& guess) {
+  /// A direction that leads to a, and how the end changes there.
+  struct Solution {
+    Vector3 direction;
+    Derivatives derivatives;
+  };
+  /// From `guess` on. Empty: none was found.
+  std::optional<Solution> solve(const Vector3& guess) {
     Vector3 direction = guess;
     double largest = 0.1;  // a step [rad]: a shape may look different behind
-    std::optional<End> e = end_of_trial(direction);
-    for (int i = 0; i < most_steps && e; ++i) {
-      if (e->off() < tolerance * reach_) return direction;
-      const std::optional<Derivatives> d = derivatives(direction);
+    std::optional<Trial> here = trial(direction);
+    std::optional<Derivatives> d;  // there, once they were asked for
+    for (int i = 0; i <= most_steps && here; ++i) {
+      const bool near = here->end.off() < tolerance * here->reach;
+      if (!near && i == most_steps) return {};
+      if (!d) d = derivatives(direction);
       if (!d || d->determinant() == 0) return {};
-      double u = -(e->x * d->v.y - e->y * d->v.x) / d->determinant(), v = -(d->u.x * e->y - d->u.y * e->x) / d->determinant();
-      const double length = std::hypot(u, v);
-      if (length > largest) {
-        u *= largest / length;
-        v *= largest / length;
-      }
+      const double u = -(here->end.x * d->v.y - here->end.y * d->v.x) / d->determinant(),
+                   v = -(d->u.x * here->end.y - d->u.y * here->end.x) / d->determinant();
+      const double length = std::hypot(u, v), part = std::min(1.0, largest / length);
       const Frame across{Normal3(direction)};
-      const Vector3 next = normalize(direction + float(u) * Vector3(across.s) + float(v) * Vector3(across.t));
-      const std::optional<End> there = end_of_trial(next);
-      if (there && there->off() < e->off()) {
+      const Vector3 next = normalize(direction + float(part * u) * Vector3(across.s) + float(part * v) * Vector3(across.t));
+      const std::optional<Trial> there = trial(next);
+      const bool nearer = there && there->end.off() < here->end.off();
+      // The last step leaves rounding only, which two ways from different guesses to one solution may differ by.
+      if (near) return Solution{nearer ? next : direction, *d};
+      if (nearer) {
         direction = next;
-        e = there;
+        here = there;
+        d.reset();
       } else {
         largest = std::min(largest, length) / 4;
       }
@@ -100,16 +108,21 @@ class Chain {
     return {};
   }
 
- private:
-  std::optional<End> end_of_trial(const Vector3& direction) {
-    const ArenaScope memory(*y_.arena);
-    const std::optional<End> e = end(direction);
-    if (e) reach_ = double(length(a_.point.position - walk_.back().point.position));
-    return e;
-  }
-
   /// [rad]: rays part by more than their rounding, and by less than what shapes show.
   static constexpr float step = 5e-4f;
+
+ private:
+  struct Trial {
+    End end;
+    double reach;  ///< from the last vertex before a to a [m]
+  };
+  std::optional<Trial> trial(const Vector3& direction) {
+    const ArenaScope memory(*y_.arena);
+    const std::optional<End> e = end(direction);
+    if (!e) return {};
+    return Trial{*e, double(length(a_.point.position - walk_.back().point.position))};
+  }
+
   static constexpr double tolerance = 3e-5;  ///< over the distance from which light comes [rad]
   static constexpr int most_steps = 12;
 
@@ -119,7 +132,6 @@ class Chain {
   const std::span<const Lobe> lobes_;
   const Frame plane_;
   PathSpace::Walk walk_;
-  double reach_ = 0;  // from the last vertex before a to a [m]
 };
 
 }  // namespace
@@ -154,17 +166,17 @@ class ManifoldMutation final : public Mutation {
     const PathVertex there = walk.back();
     Chain proposed(space, y, there, at(x, a), lobes), back(space, y, at(x, b), at(x, a), lobes);
     const auto way = proposed.solve(normalize(at(x, b - 1).point.position - there.point.position));
-    if (!way || !space.follow_lobes(walk, *way, lobes, Transport::radiance, y) || !arrives(space, walk, at(x, a), y)) return {};
+    if (!way || !space.follow_lobes(walk, way->direction, lobes, Transport::radiance, y) || !arrives(space, walk, at(x, a), y))
+      return {};
 
     const Vector3 began = -at(x, b - 1).out;
     const auto again = back.solve(normalize(walk[walk.size() - lobes.size()].point.position - at(x, b).point.position));
-    if (!again || !(length(*again - began) < same_way)) return {};
-    const auto before = back.derivatives(began), after = proposed.derivatives(*way);
-    if (!before || !after) return {};
+    if (!again || !(length(again->direction - began) < same_way)) return {};
     y.x.insert(y.x.end(), walk.rbegin(), walk.rend());
     if (!space.complete(y)) return {};
-    return at(x, k - 1).from_camera / at(y, k - 1).from_camera * std::abs(before->determinant() / after->determinant()) *
-           x.camera_angle(b - 1) / y.camera_angle(b - 1);
+    return at(x, k - 1).from_camera / at(y, k - 1).from_camera *
+           std::abs(again->derivatives.determinant() / way->derivatives.determinant()) * x.camera_angle(b - 1) /
+           y.camera_angle(b - 1);
   }
 
  private:
@@ -176,7 +188,9 @@ class ManifoldMutation final : public Mutation {
            length(met.point.position - a.point.position) < 1e-3f * length(way);
   }
 
-  static constexpr float same_way = 1e-3f;  ///< directions that are one solution [rad]
+  /// Directions that are one solution [rad]. Between two solutions e turns back, or has an edge; and where that is nearer than
+  /// about a step, derivatives from both sides differ, and nothing is proposed.
+  static constexpr float same_way = Chain::step;
 };
 
 static const Register<ManifoldMutation> registered;
