@@ -64,8 +64,9 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
                                                                : std::span<const Item>(list);
       };
       flat.clear();
-      flatten({std::span<const Point3>(counted).subspan(first, n), part(radius), part(normals)}, basis, double(radians(turn)),
-              flat);
+      // Of a tube there may be any number of normals, of which none counts.
+      const std::span<const Normal3> fronts = form == Form::ribbon ? part(normals) : std::span<const Normal3>();
+      flatten({std::span<const Point3>(counted).subspan(first, n), part(radius), fronts}, basis, double(radians(turn)), flat);
       const size_t kept = clean(flat, i);
       dropped += kept < 2;
       if (kept >= 2) {
