@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "commands.h"
@@ -72,6 +73,14 @@ int run_program(int argument_count, char** arguments) {
 
   refuse_empty_values(program);
 
+  // --help behind a command that there is not would print the help of the program, as if all were well.
+  const std::string first = argument_count > 1 ? arguments[1] : "";
+  const std::vector<CLI::App*> commands = program.get_subcommands({});
+  if (!first.empty() && !first.starts_with("-") &&
+      std::ranges::none_of(commands, [&](const CLI::App* command) { return command->get_name() == first; })) {
+    fmt::print(stderr, "etendue: {}\netendue --help tells more\n", no_command(program, first));
+    return exit_status::bad_input;
+  }
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {

@@ -5,11 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 
 #include "describe/guard.h"
 #include "etendue/denoised_output.h"
 #include "etendue/language/language.h"
+#include "language/set_path.h"
 #include "render/checkpoint.h"
 #include "render/denoising.h"
 #include "text.h"
@@ -26,12 +28,14 @@ void RenderOptions::add_to(CLI::App& command) {
           "that are written is replaced by the number")
       ->type_name("A:B[:STEP]")
       ->excludes("--frame");
-  command.add_flag("--skip-existing", skip_existing, "Leave out what has whole pictures of the same file and options already");
-  command
-      .add_option("-o,--output", outputs,
-                  "Write to this file instead of those the file names; its ending chooses the format; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
+  CLI::Option* skip_option = command.add_flag("--skip-existing", skip_existing,
+                                              "Leave out what has whole pictures of the same file and options already");
+  CLI::Option* output_option =
+      command
+          .add_option("-o,--output", outputs,
+                      "Write to this file instead of those the file names; its ending chooses the format; may be repeated")
+          ->type_name("FILE")
+          ->allow_extra_args(false);
   command.add_option("--samples", samples, "Samples per pixel")->type_name("N");
   command
       .add_option("--time", time,
@@ -79,6 +83,8 @@ void RenderOptions::add_to(CLI::App& command) {
       ->type_name("HOST[:PORT]")
       ->excludes(pixel_option);
   pixel_option->excludes(denoise_option);
+  pixel_option->excludes(output_option);
+  pixel_option->excludes(skip_option);
   for (CLI::Option* option : checkpoint_options) pixel_option->excludes(option);
 }
 
@@ -135,7 +141,13 @@ std::vector<RenderOptions::Override> RenderOptions::overrides() const {
   if (open_ended()) list.push_back({"--time", "renderer.samples", "1000000"});
   if (!samples.empty()) list.push_back({"--samples", "renderer.samples", samples});
   if (!time.empty()) list.push_back({"--time", "time_limit", fmt::format("{} s", parse_duration(time, "--time"))});
-  if (!error.empty()) list.push_back({"--error", "error_limit", error});
+  if (!error.empty()) {
+    double percent = 0;
+    const auto [end, problem] = std::from_chars(error.data(), error.data() + error.size(), percent);
+    if (problem == std::errc() && std::string_view(end, error.data() + error.size()) == "%")
+      throw Error(fmt::format("'{}' is written {}", error, percent / 100), {intern("--error"), 0, 0});
+    list.push_back({"--error", "error_limit", error});
+  }
   if (!seed.empty()) list.push_back({"--seed", "seed", seed});
   if (!size.empty()) {
     int n[2];
@@ -160,11 +172,11 @@ Ref<Job> RenderOptions::load() const {
   std::vector<Error> errors;
   for (const Override& override : list) {
     try {
-      set_path(*job, override.path, override.expression);
+      language::set_path_from(*job, override.path, override.expression, {intern(override.option), 0, 0});
     } catch (const Errors& several) {
       errors.insert(errors.end(), several.errors.begin(), several.errors.end());
     } catch (const Error& error_) {
-      errors.push_back(Error(fmt::format("{}: {}", override.option, error_.what())));
+      errors.push_back(error_);
     }
   }
   if (!error.empty() && errors.empty() && !(job->error_limit > 0))
@@ -263,6 +275,10 @@ std::vector<Ref<Output>> chosen_outputs(const std::vector<Ref<Output>>& describe
         break;
       }
     set(*output, "file", Value(FilePath{file, ""}));
+    // A copy says where the file that it was copied from is named.
+    if (!output->origin) output->origin = std::make_unique<Component::Origin>();
+    std::erase_if(output->origin->members, [](const auto& member) { return member.first == "file"; });
+    output->origin->members.emplace_back("file", Location{intern("--output"), 0, 0});
     outputs.push_back(output);
   }
   if (!outputs.empty()) return outputs;

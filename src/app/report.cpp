@@ -79,6 +79,10 @@ int reporting_errors(const Run& run) {
   return exit_status::failed;
 }
 
+std::string no_command(const CLI::App& program, const std::string& given) {
+  return fmt::format("there is no command '{}'{}", given, meant(&program, given));
+}
+
 std::string usage_failure(const CLI::App* program, const CLI::Error& error) {
   const CLI::App* command = innermost_command(program);
   std::string text = error.what();
@@ -90,7 +94,7 @@ std::string usage_failure(const CLI::App* program, const CLI::Error& error) {
   else if (!extras.empty() && command->get_subcommands({}).empty())
     text = fmt::format("'{}' is one argument too many", extras.front());
   else if (!extras.empty())
-    text = fmt::format("there is no command '{}'{}", extras.front(), meant(command, extras.front()));
+    text = no_command(*command, extras.front());
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::string full_name = "etendue";
   for (const CLI::App* app = program; app != command;) {

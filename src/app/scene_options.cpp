@@ -71,6 +71,11 @@ LoadOptions SceneOptions::load_options() const {
   options.time = options.frame / frames_per_second();
   options.animated = animated;
   for (const std::string& define : defines) options.defines.push_back(split("-D", define, "name=value"));
+  for (const std::string& folder : import.allowed_folders) {
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
+      throw Error(fmt::format("'{}' is no folder", folder), {intern("--allow-path"), 0, 0});
+  }
   options.import = import;
   options.import.time = options.time;
   set_import_permissions(options.import);

@@ -136,6 +136,11 @@ Color to_color(const Value& v, const Member& m) {
   const std::string call = text ? color_call(*text) : std::string();
   if (!call.empty())
     throw Error(fmt::format("expects a colour or spectrum, not a string: write {}(\"{}\")", call, *text), v.location);
+  const auto* numbers = v.as<Numbers>();
+  if (numbers && numbers->width == 1 && numbers->values.size() == 3 && numbers->dimension == Dimension::none)
+    throw Error(fmt::format("expects a colour or spectrum, not {}: write rgb({}, {}, {})", v.kind(), numbers->values[0],
+                            numbers->values[1], numbers->values[2]),
+                v.location);
   mismatch("a colour or spectrum", v);
 }
 
@@ -172,6 +177,10 @@ Ref<Component> to_component(const Value& v, const Member& m) {
       literal.store(*made, literal, v);
     return made;
   }
+  if (v.as<Value::List>() && m.list)
+    throw Error(fmt::format("expects {}, not {}: one list of the entries of several is join(a, b)", with_article(wanted->name),
+                            v.kind()),
+                v.location);
   mismatch(with_article(wanted->name), v);
 }
 

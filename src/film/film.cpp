@@ -8,15 +8,28 @@
 #include <mutex>
 
 #include "etendue/film/splat_label.h"
+#include "files/regular_file.h"
 #include "film_members.h"
 #include "film_values.h"
 #include "filter_window.h"
 
 namespace etendue {
 
+namespace {
+
+/// What every render of a picture takes at least [bytes]: the light of the step at hand and the exact sums of it.
+double least_memory(const PictureFormat& format) {
+  const auto pixels = double(format.area.width()) * double(format.area.height());
+  return pixels * double(2 * list_stride(light_list, format) * sizeof(double));
+}
+
+}  // namespace
+
 Film::Film(const ImageBuffer& image, Estimator estimator) : members_(std::make_unique<Members>()) {
   members_->format = image.format();
   members_->estimator = estimator;
+  const PictureFormat& format = *members_->format;
+  require_memory(least_memory(format), fmt::format("a picture of {} x {} pixels", format.area.width(), format.area.height()));
 }
 Film::~Film() = default;
 

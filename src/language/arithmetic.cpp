@@ -36,6 +36,9 @@ Value sum(const Value& a, const Value& b, double sign, Location at) {
     return Value(Number{finite(x->value + sign * y->value, at), common(x->dimension, y->dimension, verb, preposition, at)},
                  a.location);
   const auto *u = a.as<Numbers>(), *v = b.as<Numbers>();
+  const auto is_list = [](const Value& value) { return value.as<Value::List>() || value.as<Numbers>(); };
+  if (sign > 0 && is_list(a) && is_list(b) && (a.as<Value::List>() || b.as<Value::List>()))
+    throw Error(fmt::format("cannot add {} to {}: one list of the entries of both is join(a, b)", a.kind(), b.kind()), at);
   if (!u || !v || u->width != v->width || u->values.size() != v->values.size()) meaningless(verb, preposition, a, b, at);
   Numbers result = *u;
   common(u->dimension, v->dimension, verb, preposition, at);

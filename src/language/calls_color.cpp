@@ -13,6 +13,9 @@ namespace etendue::language {
 namespace {
 
 Value rgb(const Arguments& a) {
+  if (const auto* list = a.as<Numbers>(a.count() == 2 ? 1 : 0); list && a.count() <= 2 && list->values.size() == 3)
+    a.fail(a.count() - 1, fmt::format("the three numbers stand without brackets: write rgb({}{}, {}, {})",
+                                      a.count() == 2 ? "\"…\", " : "", list->values[0], list->values[1], list->values[2]));
   if (a.count() != 3 && a.count() != 4) a.wrong_count();
   const size_t first = a.count() - 3;
   const std::string space = first == 1 ? a.string(0) : "srgb";

@@ -66,6 +66,8 @@ Value matrix(const Arguments& a) {
     for (const double x : m)
       if (std::abs(x) > double(std::numeric_limits<float>::max())) a.too_large(0, x);
   } else {
+    const bool rows = a.count() > 1 && a.as<Numbers>(0);
+    if (rows) a.fail(0, "the rows of a matrix stand in one list: write matrix([[…], […], […]])");
     if (a.count() != 12 && a.count() != 16) a.wrong_count();
     for (size_t i = 0; i < a.count(); ++i) m.push_back(a.number(i));
   }

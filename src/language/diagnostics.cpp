@@ -18,6 +18,31 @@
 namespace etendue {
 namespace language {
 
+namespace {
+
+/// A message in which words of enormous length, that it quotes from the text, are cut.
+std::string shortened(const std::string& message) {
+  constexpr size_t longest = 1000, shown = 60;  // bytes; paths of files are whole
+  std::string text;
+  for (size_t begin = 0; begin < message.size();) {
+    const size_t end = std::min(message.find_first_of(" \n", begin), message.size() - 1) + 1;
+    if (end - begin > longest) {
+      size_t cut = begin + shown;
+      while (cut > begin && (static_cast<unsigned char>(message[cut]) & 0xC0) == 0x80) --cut;
+      text.append(message, begin, cut - begin).append("…");
+      size_t rest = end - 10;  // its end, with the quote and what stands behind it
+      while (rest < end && (static_cast<unsigned char>(message[rest]) & 0xC0) == 0x80) ++rest;
+      text.append(message, rest, end - rest);
+    } else {
+      text.append(message, begin, end - begin);
+    }
+    begin = end;
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string Diagnostics::words_of_trail(const Location& seen_from) const {
   constexpr int most = 6;  // of a function that calls itself the innermost ones say enough
   std::string text;
@@ -35,10 +60,11 @@ std::string Diagnostics::words_of_trail(const Location& seen_from) const {
 }
 
 void Diagnostics::add(const Error& error) {
+  const std::string text = shortened(error.what());
   for (size_t i = 0; i < errors_.size(); ++i)
-    if (errors_[i].location == error.location && bare_[i] == error.what()) return;
-  bare_.emplace_back(error.what());
-  errors_.emplace_back(error.what() + words_of_trail(error.location), error.location);
+    if (errors_[i].location == error.location && bare_[i] == text) return;
+  bare_.push_back(text);
+  errors_.emplace_back(text + words_of_trail(error.location), error.location);
   if (errors_.size() >= limit) throw TooManyErrors{};
 }
 
@@ -214,9 +240,10 @@ std::string place(const Location& at, const Location& seen_from) {
 
 std::string show(const Error& error) {
   const Location& at = error.location;
-  if (!at.known()) return error.what();
-  if (at.line <= 0) return fmt::format("{}: {}", at.file, error.what());
-  std::string result = fmt::format("{}:{}:{}: {}{}", at.file, at.line, at.column, language::path_in_json(at), error.what());
+  const std::string message = language::shortened(error.what());
+  if (!at.known()) return message;
+  if (at.line <= 0) return fmt::format("{}: {}", at.file, message);
+  std::string result = fmt::format("{}:{}:{}: {}{}", at.file, at.line, at.column, language::path_in_json(at), message);
   if (const auto found = language::excerpt(at)) {
     const std::string number = std::to_string(at.line);
     result += fmt::format("\n    {} | {}\n    {} | {}^", number, found->text, std::string(number.size(), ' '),

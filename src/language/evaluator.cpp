@@ -177,8 +177,13 @@ std::optional<Value> Evaluator::call_function(Node& node, const Context& context
   bool good = true;
   for (Node& child : node.children) {
     if (child.type == NodeType::argument) {
-      diagnostics_.add(
-          Error(fmt::format("'{}' takes its arguments by their place: write the value alone", node.text), child.at));
+      if (is_function(node.text))
+        diagnostics_.add(
+            Error(fmt::format("'{}' takes its arguments by their place: write the value alone", node.text), child.at));
+      good = false;
+      continue;
+    }
+    if (lacks_quotes(node, child, nullptr)) {
       good = false;
       continue;
     }

@@ -209,6 +209,7 @@ class Evaluator {
   static Entry* find(const std::string&, Space&);
   std::string name_seen_from(const Entry&, const Space&) const;
   void undefined(const std::string&, Location);
+  bool lacks_quotes(const Node& call, const Node& argument, const Bound*);
   /// Runs what may throw Error; an error is reported at `at` unless it has a place.
   template <class F>
   std::optional<Value> reporting(Location at, F&& make) {

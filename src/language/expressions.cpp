@@ -16,7 +16,7 @@ Node Parser::expression() {
 
 bool Parser::joins() const {
   if (token_.type != TokenType::name) return false;
-  for (const char* word : {"and", "or", "then", "else", "for", "if"})
+  for (const char* word : {"and", "or", "then", "else", "for", "if", "elif", "elseif", "elsif"})
     if (token_.text == word) return true;
   return false;
 }
@@ -79,6 +79,8 @@ Node Parser::range() {
   node.type = NodeType::range;
   node.at = first.at;
   node.labels.push_back({"..", take().at});
+  if (token_.type == TokenType::number && token_.joined && token_.text.starts_with('.'))
+    fail("a range is written with two points: 0..3", node.labels.back().at);
   node.children.push_back(std::move(first));
   node.children.push_back(sum());
   return node;

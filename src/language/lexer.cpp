@@ -86,6 +86,7 @@ void Lexer::skip_blanks() {
       s_.mark_column = 1;
       s_.first_in_line = true;
     } else if (c == '#') {
+      note_comment();
       const size_t end = text_.find('\n', s_.position);
       if (end == std::string::npos) {
         s_.position = text_.size();
@@ -95,6 +96,27 @@ void Lexer::skip_blanks() {
     } else if (c != ' ' && c != '\t' && c != '\r') {
       return;
     }
+  }
+}
+
+void Lexer::note_comment() {
+  if (comment_.known() || s_.first_in_line) return;
+  comment_ = location();
+  comment_begin_ = s_.position;
+}
+
+// What other languages say by a character that means nothing here.
+std::string Lexer::meant_character(size_t begin) const {
+  const std::string_view rest = std::string_view(text_).substr(begin);
+  switch (rest.front()) {
+    case '&': return ": write 'and'";
+    case '|': return ": write 'or'";
+    case '!': return ": write 'not'";
+    case '?': return ": write if … then … else …";
+    case '%': return ": what remains of a division is mod(x, n)";
+    case '.': return rest.size() > 1 && begin >= 2 && text_.compare(begin - 2, 2, "..") == 0 ? ": a range is written 0..3" : "";
+    case '\'': return ": texts stand in double quotes (\")";
+    default: return {};
   }
 }
 
@@ -123,8 +145,11 @@ bool Lexer::read_symbol(Token& token) {
 
 Token Lexer::next() {
   const size_t before = s_.position;
+  comment_ = {};
   skip_blanks();
   Token token;
+  token.comment = comment_;
+  token.comment_begin = comment_begin_;
   token.joined = s_.position == before;
   token.first_in_line = s_.first_in_line;
   token.at = location();
@@ -144,7 +169,7 @@ Token Lexer::next() {
     const auto code = static_cast<unsigned char>(c);
     const std::string shown = code < 0x20 || code == 0x7F ? fmt::format("U+{:04X}", code)
                                                           : fmt::format("'{}'", text_.substr(begin, s_.position - begin));
-    report("unexpected character " + shown, token.at);
+    report("unexpected character " + shown + meant_character(begin), token.at);
     token.type = TokenType::bad;
   }
   token.end = s_.position;

@@ -35,6 +35,8 @@ struct Token {
   std::string text;  ///< the name, the string without its quotes, or the number as written
   Location at;
   size_t begin = 0, end = 0;  ///< bytes in the text
+  Location comment = {};  ///< of the '#' that hides the rest of the line behind the token before this one; unknown: none does
+  size_t comment_begin = 0;  ///< its byte
 
   bool is(char c) const { return type == TokenType::symbol && symbol == c; }
   /// Whether it is this word, which has a meaning in some places and is a name like any other elsewhere.
@@ -53,6 +55,8 @@ class Lexer {
   Lexer(const Source&, Diagnostics&, size_t begin = 0);
 
   Token next();
+  /// The whole that is read.
+  const std::string& text() const { return text_; }
   /// Right behind the last token [bytes].
   size_t position() const { return s_.position; }
   /// Says nothing of bad tokens while this is true: where the parser is lost, they follow from what made it so.
@@ -85,6 +89,8 @@ class Lexer {
   size_t after_blanks(size_t begin) const;
   bool at_end() const { return s_.position >= text_.size(); }
   void skip_blanks();
+  void note_comment();
+  std::string meant_character(size_t begin) const;
   Location location();
   void report(const std::string& message, Location at) const {
     if (!quiet_ || !*quiet_) diagnostics_.add(Error(message, at));
@@ -101,6 +107,8 @@ class Lexer {
   Diagnostics& diagnostics_;
   State s_;
   const bool* quiet_ = nullptr;
+  Location comment_;  // the first one since the last token, in its line
+  size_t comment_begin_ = 0;
 };
 
 }  // namespace etendue::language

@@ -262,6 +262,17 @@ const Value* Evaluator::stored(const Node& node) {
   return &entry->value;
 }
 
+namespace {
+
+/// What other languages call true, false and none; "" for all else.
+std::string meant_constant(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  if (text == "null" || text == "none" || text == "nil" || text == "nullptr") return "none";
+  return text == "true" || text == "false" ? text : std::string();
+}
+
+}  // namespace
+
 void Evaluator::undefined(const std::string& text, Location at) {
   if (Registry::instance().find(text) && is_json(at.file)) {
     diagnostics_.add(Error(fmt::format("'{0}' is a class: write {{ \"class\": \"{0}\" }}", text), at));
@@ -269,6 +280,12 @@ void Evaluator::undefined(const std::string& text, Location at) {
     diagnostics_.add(Error(fmt::format("'{0}' is a class: write {0} {{}}", text), at));
   } else if (is_function(text)) {
     diagnostics_.add(Error(fmt::format("'{0}' is a function: write {0}(…)", text), at));
+  } else if (const std::string constant = meant_constant(text); !constant.empty()) {
+    diagnostics_.add(Error(fmt::format("'{}' is not defined: here it is '{}'", text, constant), at));
+  } else if (const size_t point = text.rfind('.'); point != std::string::npos && find(text.substr(0, point))) {
+    diagnostics_.add(Error(fmt::format("'{}' is a value, and members of components cannot be read: give '{}' a name of its own",
+                                       text.substr(0, point), text.substr(point + 1)),
+                           at));
   } else {
     std::vector<std::string> known = {"true", "false", "none", "pi"};
     if (moment_) known.insert(known.end(), {"frame", "time"});
@@ -277,6 +294,22 @@ void Evaluator::undefined(const std::string& text, Location at) {
     for (const Entry& e : entries_) known.push_back(name_seen_from(e, *space_));
     diagnostics_.add(Error(fmt::format("'{}' is not defined{}", text, suggestion(text, known)), at));
   }
+}
+
+// illuminant(D65), rotate(30 deg, y): a name that there is not, where a text is expected. Reports it.
+bool Evaluator::lacks_quotes(const Node& call, const Node& argument, const Bound* bound) {
+  if (argument.type != NodeType::name) return false;
+  const std::string& text = argument.text;
+  const bool first = &argument == &call.children.front();
+  const bool known_by_name = first && (call.text == "illuminant" || call.text == "glass" || call.text == "metal");
+  const bool axis = !first && call.text == "rotate" && (text == "x" || text == "y" || text == "z");
+  if (!(known_by_name || axis) || find(call.text) || find(text) || local(text) || text == "pi") return false;
+  if (moment_ && (text == "frame" || text == "time")) return false;
+  for (const Bound* one = bound; one; one = one->outer)
+    if (one->name == text) return false;
+  if (!incomplete_)
+    diagnostics_.add(Error(fmt::format("'{0}' is not defined: texts stand in quotes, \"{0}\"", text), argument.at));
+  return true;
 }
 
 namespace {

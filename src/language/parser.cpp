@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include "etendue/describe/registry.h"
+
 namespace etendue::language {
 
 Parser::Parser(const Source& source, Diagnostics& diagnostics, size_t begin)
@@ -16,6 +18,7 @@ Parser::Parser(const Source& source, Diagnostics& diagnostics, size_t begin)
 Token Parser::take() {
   Token taken = std::move(token_);
   last_end_ = taken.end;
+  last_may_be_list_ = taken.type == TokenType::name || taken.is(']') || taken.is(')');
   token_ = lexer_.next();
   return taken;
 }
@@ -35,7 +38,7 @@ void Parser::unexpected(const std::string& expected) {
     lost_ = wrong_ = true;
     throw Failed{};
   }
-  fail(fmt::format("expected {}, not {}", expected, token_.words()), token_.at);
+  fail(fmt::format("expected {}, not {}{}", expected, token_.words(), meant()), token_.at);
 }
 
 // Where something else was wrong before, a bracket may well have been lost with it.
@@ -114,6 +117,7 @@ void Parser::statement(Document& document) {
   if (token_.type != TokenType::name) unexpected(known);
   if (lexer_.followed_by(":")) return go_on_with_last(document);
   Token name = take();
+  if (skip_foreign_word(name)) return statement(document);
   if (token_.is('=')) return definition(document, std::move(name), false);
   if (token_.is('(') && !token_.first_in_line) return function(document, name);
   if (token_.is('{') || misses_brace(name.text)) {
@@ -144,7 +148,9 @@ void Parser::statement(Document& document) {
     wrong.value.type = NodeType::bad;
     document.definitions.push_back(std::move(wrong));
     if ((token_.type == TokenType::string || token_.type == TokenType::name) && !token_.first_in_line) {
-      const std::string near = suggestion(name.text, {"param", "include", "plugin"});
+      std::string near = suggestion(name.text, {"param", "include", "plugin"});
+      for (const char* word : {"import", "use", "using", "require", "load", "source"})
+        if (name.text == word && token_.type == TokenType::string) near = " (here it is include \"file\")";
       if (!near.empty()) fail(fmt::format("unknown statement '{}'{}", name.text, near), name.at);
     }
     unexpected("'=' or '{' after '" + name.text + "'");
@@ -170,12 +176,18 @@ bool Parser::may_be_defined(const Token& name) {
 void Parser::definition(Document& document, Token name, bool parameter) {
   take();  // '='
   lost_ = false;
+  return valued(document, std::move(name), parameter);
+}
+
+// Behind the '='.
+void Parser::valued(Document& document, Token name, bool parameter) {
   Definition made{{name.text, name.at, name.begin}, parameter, {}};
   if (!may_be_defined(name)) {
     expression();
     return;
   }
   try {
+    require_value_before_comment();
     made.value = expression();
   } catch (const Failed&) {
     // The name is known all the same, or every use of it would be reported as well.
@@ -199,7 +211,8 @@ void Parser::go_on_with_last(Document& document) {
   for (Definition& definition : document.definitions)
     if (definition.value.type == NodeType::component && (!last || last->at.line < definition.value.at.line))
       last = &definition.value;
-  if (!last || !last_close_.known()) unexpected("'=' or '{' after '" + take().text + "'");
+  const ClassInfo* info = last ? Registry::instance().find(last->text) : nullptr;
+  if (!last || !last_close_.known() || (info && !info->find(token_.text))) return definition_by_colon(document);
   report(fmt::format("a '}}' too many: here {} ends, but '{}' follows at {}", last->text, token_.text,
                      place(token_.at, last_close_)),
          last_close_);
@@ -290,6 +303,7 @@ void Parser::member(Node& component, Seen& seen) {
 // The value of a member, which counts as written even when it cannot be read, and what separates it from the next. False: it
 // was read, but hardly as it was meant.
 bool Parser::member_value(Node& component, size_t index) {
+  require_value_before_comment();
   Node value = expression();
   component.children[index] = std::move(value);
   if (token_.is(',')) {

@@ -31,6 +31,7 @@ class Parser {
   void go_on_with_last(Document&);
   bool may_be_defined(const Token& name);
   void definition(Document&, Token name, bool parameter);
+  void valued(Document&, Token name, bool parameter);
   Label path_statement(const char* what);
   // repeating/parsing.cpp: what makes a description scale
   void function(Document&, const Token& name);
@@ -49,7 +50,14 @@ class Parser {
   void skip(std::string open, bool in_block, const std::function<bool()>& stops);
   void require_separator(const char* what);
 
-  // repair.cpp: what was probably meant where something is missing
+  // repairing/meant.cpp: what was probably meant by what other languages write
+  /// " (…)" with what is written here for what the current token begins; "" when nothing is known.
+  std::string meant() const;
+  bool skip_foreign_word(const Token& word);
+  void definition_by_colon(Document&);
+  void require_value_before_comment();
+
+  // repairing/repair.cpp: what was probably meant where something is missing
   bool misses_brace(const std::string& class_name);
   bool misses_both_braces_but_one(const std::string& class_name);
   bool two_words(const Token& class_name);
@@ -101,8 +109,9 @@ class Parser {
 
   Diagnostics& diagnostics_;
   Lexer lexer_;
-  Token token_;          // the next one
-  size_t last_end_ = 0;  // the byte behind the last one that was taken
+  Token token_;                    // the next one
+  size_t last_end_ = 0;            // the byte behind the last one that was taken
+  bool last_may_be_list_ = false;  // that one was a name or closed a bracket
   int depth_ = 0;
   bool bracketed_ = false;
   std::string open_;  // '[' and '(' that are open in the innermost block, for going on after an error

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <unordered_set>
 
 #include "describe/words.h"
 #include "etendue/describe/registry.h"
 #include "etendue/language/language.h"
 #include "evaluator.h"
 #include "lexer.h"
+#include "set_path.h"
 
 namespace etendue {
 namespace {
@@ -25,7 +27,7 @@ struct PathStep {
 /// Walks along a path; `whole` names it and the expression in messages.
 class Path {
  public:
-  Path(const std::string& text, const char* source) : source_(source) {
+  Path(const std::string& text, Location begin) : begin_(begin) {
     size_t i = 0;
     for (;;) {
       PathStep step{{}, {}, at(i)};
@@ -48,17 +50,47 @@ class Path {
   }
 
   [[noreturn]] static void fail(const std::string& message, Location place) { throw Error(message, place); }
-  Location at(size_t offset) const { return {source_, 1, int(offset) + 1}; }
+  /// The place in the text; where that is not what the user wrote, that of the whole.
+  Location at(size_t offset) const { return begin_.line == 0 ? begin_ : Location{begin_.file, 1, int(offset) + 1}; }
 
   std::vector<PathStep> steps;
 
  private:
-  const char* source_;
+  Location begin_;
 };
+
+/// Looks for the component that has a name in the file among the parts of another; where it is, as a path, or "".
+std::string path_of_name(const Component& from, const std::string& name, std::unordered_set<const Component*>& seen,
+                         int levels) {
+  constexpr int most_levels = 100;
+  if (levels > most_levels || !seen.insert(&from).second) return {};
+  for (const Member& member : from.class_info().members) {
+    if (member.kind != Kind::component) continue;
+    const Value value = member.get(from, member);
+    const auto within = [&](const Value& one, const std::string& path) -> std::string {
+      const auto* part = one.as<Ref<Component>>();
+      if (!part || !*part) return {};
+      if ((*part)->origin && (*part)->origin->name == name) return path;
+      const std::string rest = path_of_name(**part, name, seen, levels + 1);
+      return rest.empty() ? rest : path + "." + rest;
+    };
+    const auto* list = value.as<Value::List>();
+    for (size_t i = 0; i < (list ? list->size() : 1); ++i)
+      if (std::string path = list ? within((*list)[i], fmt::format("{}[{}]", member.name, i)) : within(value, member.name);
+          !path.empty())
+        return path;
+  }
+  return {};
+}
 
 const Member& find_member(const Component& component, const PathStep& step) {
   const ClassInfo& info = component.class_info();
   if (const Member* member = info.find(step.name)) return *member;
+  std::unordered_set<const Component*> seen;
+  if (const std::string path = path_of_name(component, step.name, seen, 0); !path.empty())
+    Path::fail(fmt::format("{} has no member '{}': a path goes by members, not by names of the file, and '{}' is {}", info.name,
+                           step.name, step.name, path),
+               step.at);
   Path::fail(no_member(info, step.name), step.at);
 }
 
@@ -123,9 +155,8 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
 }
 
-Value read_expression(const std::string& path, const std::string& expression, const char* source, const Member& member,
-                      bool entry) {
-  const Location at{source, 1, int(path.size()) + 2};
+/// `at` is the place of the expression; without a line, that of an option whose value it was made from.
+Value read_expression(const std::string& path, const std::string& expression, Location at, const Member& member, bool entry) {
   const bool text = member.kind == Kind::string || member.kind == Kind::file;
   const size_t first = expression.find_first_not_of(" \t\r\n");
   const char begin = first == std::string::npos ? '\0' : expression[first];
@@ -143,7 +174,8 @@ Value read_expression(const std::string& path, const std::string& expression, co
       throw Error(e.what(), at);
     }
   }
-  const language::Source whole{source, {}, path + "=" + expression};
+  language::Source whole{at.file, {}, path + "=" + expression};
+  if (at.line == 0) whole.columns.assign(whole.text.size() + 1, 0);
   if (language::invalid_utf8(whole.text)) throw Error("the text is not valid UTF-8", at);
   const auto node = language::parse_expression(whole, diagnostics, path.size() + 1);
   std::optional<Value> value;
@@ -154,10 +186,11 @@ Value read_expression(const std::string& path, const std::string& expression, co
 
 }  // namespace
 
-void set_path(Component& root, const std::string& path, const std::string& expression) {
-  const char* source = intern("--set " + path);
-  language::remember_text(source, path + "=" + expression);
-  const Path parsed(path, source);
+namespace language {
+
+void set_path_from(Component& root, const std::string& path, const std::string& expression, Location place) {
+  const Path parsed(path, place);
+  const Location expression_at = parsed.at(path.size() + 1);
   Component* component = &root;
   Ref<Component> held;  // what is walked into stays alive; the root is the caller's
   for (size_t i = 0; i + 1 < parsed.steps.size(); ++i) {
@@ -169,9 +202,9 @@ void set_path(Component& root, const std::string& path, const std::string& expre
   if (last.places.size() > 1) Path::fail(fmt::format("{} is a list of one level", last.name), last.at);
   Value value;
   try {
-    value = read_expression(path, expression, source, member, !last.places.empty());
+    value = read_expression(path, expression, expression_at, member, !last.places.empty());
   } catch (const language::TooManyErrors&) {
-    throw Error("the expression is wrong in too many ways", {source, 1, int(path.size()) + 2});
+    throw Error("the expression is wrong in too many ways", expression_at);
   }
   const Location at = value.location;
   if (!last.places.empty()) value = replaced(member.get(*component, member), value, last.places.front(), last, member);
@@ -181,6 +214,14 @@ void set_path(Component& root, const std::string& path, const std::string& expre
   auto& members = component->origin->members;
   std::erase_if(members, [&](const auto& m) { return m.first == last.name; });
   members.emplace_back(last.name, at);
+}
+
+}  // namespace language
+
+void set_path(Component& root, const std::string& path, const std::string& expression) {
+  const char* source = intern("--set " + path);
+  language::remember_text(source, path + "=" + expression);
+  language::set_path_from(root, path, expression, {source, 1, 1});
 }
 
 }  // namespace etendue

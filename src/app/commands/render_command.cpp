@@ -27,6 +27,9 @@ namespace {
 int replay(const Ref<Job>& job, const RenderOptions& options) {
   int pixel[2];
   parse_integers(options.pixel, ',', 2, pixel, "--pixel", "X,Y");
+  if (options.quiet && options.replay.empty())
+    throw Error("nothing would come of it: --pixel prints the paths, unless --replay writes them to a file",
+                {intern("--quiet"), 0, 0});
   if (!options.replay.empty()) {
     note_inputs_of(*job);
     OutputFiles files;
@@ -87,8 +90,8 @@ std::string passes_text(const Render& render) {
   const std::optional<IndexRange>& passes = render.settings().steps;
   if (!passes) return "";
   const auto step = std::int64_t(render.samples_per_step());
-  return fmt::format("passes {}:{} of 0:{}, {} samples per pixel each\n", passes->begin, passes->end,
-                     (render.job().renderer->samples + step - 1) / step, step);
+  return fmt::format("passes {}:{} of 0:{}, {} sample{} per pixel each\n", passes->begin, passes->end,
+                     (render.job().renderer->samples + step - 1) / step, step, step == 1 ? "" : "s");
 }
 
 /// The files that were written.
@@ -115,8 +118,8 @@ void report_result(const Progress& progress, Ended ended, const Written& written
   } else if (!options.quiet) {
     for (const std::string& path : written.pictures) fmt::print("{}\n", path);
     for (const std::string& path : written.denoised) fmt::print("{}\n", path);
-    fmt::print("{} samples per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, duration_text(progress.seconds),
-               progress.samples_per_second * 1e-6, reason_text(ended), passes_text(render));
+    fmt::print("{} sample{} per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, progress.samples == 1 ? "" : "s",
+               duration_text(progress.seconds), progress.samples_per_second * 1e-6, reason_text(ended), passes_text(render));
     if (ended == Ended::interrupted && !checkpoint.empty()) fmt::print("to go on: {}\n", options.resume_command());
   }
   std::fflush(stdout);
@@ -146,6 +149,11 @@ int render(const RenderOptions& options, Series& series) {
   std::vector<Ref<Output>> outputs;
   if (!settings.steps || !options.outputs.empty()) outputs = chosen_outputs(job->outputs, options.outputs);
   number_outputs(outputs, options);
+  if (!options.frame)
+    for (const std::string& file : options.outputs)
+      if (file.find('#') != std::string::npos)
+        warn(fmt::format("'{}': '#' stands for the number of a frame only with --frames or --frame", file),
+             {intern("--output"), 0, 0});
   if (options.denoise && outputs.empty())
     throw Error("there is no picture to denoise: with --passes those alone are written that -o names",
                 {intern("--denoise"), 0, 0});

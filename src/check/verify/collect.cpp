@@ -112,6 +112,8 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
     for (const std::string& expression : split_expressions(names)) {
       try {
         if (expression.empty()) throw Error("a name is missing in '" + names + "'", {intern("--renderers"), 0, 0});
+        if (std::ranges::find(all, expression, &Candidate::name) != all.end())
+          throw Error(fmt::format("'{}' is named twice", expression), {intern("--renderers"), 0, 0});
         all.push_back({expression, named_renderer(job, expression, "--renderers"), {}});
       } catch (const Errors& several) {
         errors.insert(errors.end(), several.errors.begin(), several.errors.end());

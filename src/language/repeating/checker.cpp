@@ -106,6 +106,10 @@ bool Evaluator::check_call(Node& node, const Bound* bound, const Context& contex
   }
   for (Node& child : node.children) {
     Node& value = child.type == NodeType::argument ? child.children[0] : child;
+    if (lacks_quotes(node, child, bound)) {
+      good = false;
+      continue;
+    }
     good = check(value, bound, {nullptr, false, context.lenient}) && good;
   }
   return good;

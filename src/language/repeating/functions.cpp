@@ -51,6 +51,7 @@ void Evaluator::unknown_function(const Node& node) {
 
 // In the order of the parameters; null where the default stands.
 std::optional<std::vector<Node*>> Evaluator::arguments_of(const Entry& entry, Node& call) {
+  if (entry.definition.value.type == NodeType::bad) return std::nullopt;  // its parameters may not be known either
   const std::vector<Parameter>& parameters = entry.definition.parameters;
   std::vector<Node*> found(parameters.size());
   std::vector<std::string> known;

@@ -98,6 +98,7 @@ Node Parser::conditional() {
   node.at = take().at;
   const auto part = [&](const char* word) {
     node.children.push_back(expression());
+    if (token_.is('=')) fail("values are compared by '==', not '='", token_.at);
     if (!token_.is_word(word)) unexpected(fmt::format("'{}' of the 'if' at {}", word, place(node.at, token_.at)));
     take();
   };
@@ -127,6 +128,7 @@ void Parser::comprehension(Node& list) {
     list.labels.push_back(std::move(label));
     // An "if … then" would be a value, and stands in brackets here.
     list.children.push_back(loop ? expression() : disjunction());
+    if (!loop && token_.is('=')) fail("values are compared by '==', not '='", token_.at);
   }
 }
 

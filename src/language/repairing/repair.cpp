@@ -4,7 +4,7 @@
 
 #include "describe/words.h"
 #include "etendue/describe/registry.h"
-#include "parser.h"
+#include "language/parser.h"
 
 namespace etendue::language {
 
@@ -70,6 +70,7 @@ Node Parser::component_without_brace(const Token& class_name) {
 // Where a member's name should stand: what stands there goes on with the value before, as with a list that lacks its '['.
 bool Parser::misses_bracket(Node& component) {
   if (component.children.empty() || token_.is('}') || token_.is(';') || token_.type == TokenType::bad) return false;
+  if (!meant().empty()) return false;
   const bool name = token_.type == TokenType::name;
   if (name && !lexer_.followed_by("{,]") && !lexer_.ends_line()) return false;
   const std::string& member = component.labels.back().text;

@@ -1,0 +1,80 @@
+// Mistakes in options are told at the option, and options that mean nothing are refused.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "support/program_support.h"
+
+namespace etendue {
+namespace {
+
+const char* const scene_text = R"(Job {
+    renderer: PathTracer { samples: 1 }
+    camera:   PerspectiveCamera { from: [0, 0, -4] m, to: [0, 0, 0] m, fov: 45 deg }
+    image:    ImageBuffer { width: 8, height: 8 }
+    scene:    BvhScene { objects: [
+        ball
+        Sphere { radius: 0.5 m, transform: translate(0, 2 m, -1 m), emission: DiffuseEmission { radiance: 5 } }
+    ] }
+    outputs:  [PngOutput { file: "named.png" }]
+}
+ball = Sphere { radius: 1 m, shader: Lambertian { color: 0.5 } }
+)";
+
+class OptionErrors : public RunsProgram {
+ protected:
+  void SetUp() override { scene = folder.write("ball.etd", scene_text); }
+  /// What is said of a render with these options, which is refused.
+  std::string refused(std::vector<std::string> options) {
+    options.insert(options.begin(), {"render", scene});
+    EXPECT_EQ(run(options), 2) << err;
+    return err;
+  }
+
+  std::string scene;
+};
+
+TEST_F(OptionErrors, StandAtTheOptionThatWasGiven) {
+  EXPECT_TRUE(refused({"-o", "no/h.png"}).starts_with("--output: ")) << err;
+  EXPECT_TRUE(refused({"--crop", "5,5,2,2"}).starts_with("--crop: ")) << err;
+  EXPECT_TRUE(refused({"--samples", "many"}).starts_with("--samples: ")) << err;
+  EXPECT_TRUE(refused({"--samples", "0"}).starts_with("--samples: ")) << err;
+  EXPECT_TRUE(refused({"--samples", "1 +"}).starts_with("--samples: ")) << err;
+  EXPECT_TRUE(refused({"--error", "-1"}).starts_with("--error: ")) << err;
+  EXPECT_TRUE(refused({"--error", "2%"}).starts_with("--error: '2%' is written 0.02\n")) << err;
+  EXPECT_EQ(err.find("--set"), std::string::npos) << err;
+}
+
+TEST_F(OptionErrors, WhatMeansNothingIsRefused) {
+  EXPECT_TRUE(has(refused({"--pixel", "1,1", "-o", "a.png"}), "--output")) << err;
+  EXPECT_TRUE(has(refused({"--pixel", "1,1", "--skip-existing"}), "--skip-existing")) << err;
+  EXPECT_TRUE(has(refused({"--pixel", "1,1", "--quiet"}), "--quiet")) << err;
+  EXPECT_TRUE(has(refused({"--allow-path", "nowhere"}), "--allow-path: 'nowhere' is no folder")) << err;
+  EXPECT_EQ(run({"nonsense", "--help"}), 2);
+  EXPECT_TRUE(says("there is no command 'nonsense'")) << err;
+  EXPECT_EQ(run({"rendr", "--help"}), 2);
+  EXPECT_TRUE(says("did you mean 'render'?")) << err;
+  EXPECT_EQ(run({"verify", scene, "--renderers", "PathTracer,PathTracer"}), 2);
+  EXPECT_TRUE(says("--renderers: 'PathTracer' is named twice")) << err;
+}
+
+TEST_F(OptionErrors, APathGoesByMembers) {
+  EXPECT_TRUE(has(refused({"--set", "ball.radius=2"}),
+                  "a path goes by members, not by names of the file, and 'ball' is scene.objects[0]"))
+      << err;
+}
+
+TEST_F(OptionErrors, APictureLargerThanTheMemoryIsRefusedAtOnce) {
+  // 64 bytes for each pixel at least.
+  if (double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE)) > 65536. * 65536. * 64) GTEST_SKIP();
+  EXPECT_TRUE(has(refused({"--size", "65536x65536"}), "more than the")) << err;
+}
+
+TEST_F(OptionErrors, PlacesForNumbersNeedFrames) {
+  EXPECT_EQ(run({"render", scene, "-o", "h##.png"}), 0) << err;
+  EXPECT_TRUE(says("'#' stands for the number of a frame only with --frames")) << err;
+  EXPECT_TRUE(has(out, "\n1 sample per pixel in ")) << out;
+}
+
+}  // namespace
+}  // namespace etendue
