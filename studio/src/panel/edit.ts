@@ -86,6 +86,12 @@ export async function resetMember(component: number, member: string): Promise<vo
 }
 
 let drags = 0;
+const sending = new Set<Promise<void>>();
+
+/** What was dragged is with the program after this: what undoes it, or saves, comes behind it. */
+export async function dragged(): Promise<void> {
+  await Promise.all(sending);
+}
 
 /** Edits while something is dragged: one at a time, the newest value next, all of them one step of undo. */
 export class Dragging {
@@ -101,7 +107,9 @@ export class Dragging {
 
   set(text: string): void {
     this.waiting = text;
-    if (!this.busy) void this.send();
+    if (this.busy) return;
+    const sent = this.send().finally(() => sending.delete(sent));
+    sending.add(sent);
   }
 
   private async send(): Promise<void> {

@@ -13,6 +13,7 @@ import { Refused, type Problem, type TextState } from "../model/protocol.ts";
 import { browser, components, document_, locked, readOnly, select, selectedComponent, tab } from "../model/state.ts";
 import { ask, connection, demand, followText, hello, report, textNow } from "../model/studio.ts";
 import { Markdown } from "../parts/markdown.tsx";
+import { dragged } from "../panel/edit.ts";
 import { Button } from "../parts/parts.tsx";
 import { warnings } from "./warnings.ts";
 import { texts } from "../texts.ts";
@@ -174,8 +175,9 @@ function extensions(): unknown[] {
   ];
 }
 
-/** What was typed is with the program after this, if it is valid. */
+/** What was dragged, and what was typed if it is valid, is with the program after this. */
 export async function settle(): Promise<void> {
+  await dragged();
   await sync?.flush();
 }
 
