@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "ase_indices.h"
 #include "convert.h"
 #include "limits.h"
 #include "second_reading.h"
@@ -27,6 +28,10 @@ int run(const std::string& path, std::vector<std::string> folders) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   folders.push_back(folder.empty() ? "." : folder);
   limit_process(size);
+  if (const std::string wrong = wrong_ase_index(path); !wrong.empty()) {
+    std::fprintf(stderr, "%s\n", wrong.c_str());
+    return 1;
+  }
   const SecondReading second;
   Assimp::Importer importer;
   importer.SetIOHandler(new FilesWithin(folders));                      // the importer deletes it

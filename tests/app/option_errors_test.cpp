@@ -48,7 +48,6 @@ TEST_F(OptionErrors, StandAtTheOptionThatWasGiven) {
 TEST_F(OptionErrors, WhatMeansNothingIsRefused) {
   EXPECT_TRUE(has(refused({"--pixel", "1,1", "-o", "a.png"}), "--output")) << err;
   EXPECT_TRUE(has(refused({"--pixel", "1,1", "--skip-existing"}), "--skip-existing")) << err;
-  EXPECT_TRUE(has(refused({"--pixel", "1,1", "--quiet"}), "--quiet")) << err;
   EXPECT_TRUE(has(refused({"--allow-path", "nowhere"}), "--allow-path: 'nowhere' is no folder")) << err;
   EXPECT_EQ(run({"nonsense", "--help"}), 2);
   EXPECT_TRUE(says("there is no command 'nonsense'")) << err;

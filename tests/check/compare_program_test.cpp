@@ -133,8 +133,15 @@ TEST_F(CompareProgram, tables_and_page_tell_the_same) {
   EXPECT_TRUE(has(html, "a, &quot;b&quot; &lt;i&gt;"));
   EXPECT_TRUE(has(html, "class=\"matrix\""));
   EXPECT_TRUE(has(html, "prefers-color-scheme: dark"));
+  // Pictures are letters too, among which any word may stand.
+  std::string words;
+  for (size_t at = 0; at < html.size();) {
+    const size_t begin = std::min(html.find("base64,", at), html.size());
+    words.append(html, at, begin - at);
+    at = std::min(html.find('"', begin), html.size());
+  }
   for (const char* outside : {"http:", "https:", "<script", "<link", "url(", "<i>", "nan", "inf "})
-    EXPECT_FALSE(has(html, outside)) << outside;
+    EXPECT_FALSE(has(words, outside)) << outside;
   char error[64];
   std::snprintf(error, sizeof error, ">%.3g <",
                 all["scenes"][0]["variants"][0]["at_equal_samples"]["relative_mean_square_error"]["value"].get<double>());

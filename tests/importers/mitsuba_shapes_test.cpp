@@ -71,7 +71,7 @@ TEST(MitsubaCurve, BinaryHair) {
   };
   const Imported whole = imported(bytes);
   ASSERT_TRUE(whole.job) << whole.told();
-  const Value counts = get(whole.object(0), "counts");
+  const Value counts = get(whole.object(1), "counts");  // behind the sky
   ASSERT_TRUE(counts.as<Numbers>());
   EXPECT_EQ(counts.as<Numbers>()->values, (std::vector<double>{2, 3}));
   EXPECT_NE(imported(bytes.substr(0, bytes.size() - 3)).told().find("ends too early"), std::string::npos);

@@ -1,0 +1,30 @@
+#include "ase_indices.h"
+
+#include <fstream>
+#include <sstream>
+
+namespace etendue::assimp_helper {
+
+std::string wrong_ase_index(const std::string& path) {
+  const std::string ending = path.size() > 4 ? path.substr(path.size() - 4) : std::string();
+  if (ending != ".ase" && ending != ".ASE") return {};
+  std::ifstream file(path);
+  unsigned long corners[2] = {0, 0};  // of textures, of colours: how many the list has that stands before the faces
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    for (int kind = 0; kind < 2; ++kind) {
+      if (word == (kind == 0 ? "*MESH_NUMTVERTEX" : "*MESH_NUMCVERTEX")) words >> corners[kind];
+      if (word != (kind == 0 ? "*MESH_TFACE" : "*MESH_CFACE")) continue;
+      std::string face;
+      words >> face;
+      for (unsigned long index = 0; words >> index;)
+        if (index >= corners[kind])
+          return "face " + face + " names corner " + std::to_string(index) + " of " + std::to_string(corners[kind]);
+    }
+  }
+  return {};
+}
+
+}  // namespace etendue::assimp_helper
