@@ -155,8 +155,8 @@ TEST(PhotonBeams, leave_uneven_media_to_photons) {
         .develop()
         .values;
   };
-  const char *const uneven = "GridVolume { resolution: [2, 1, 1], density: [1, 2], extinction: 1, albedo: 0.8 }", *const even =
-                                                                                          "HomogeneousVolume { scattering: 1 }";
+  const char *const uneven = "GridVolume { resolution: [2, 1, 1], density: [1, 2], extinction: 1, albedo: 0.8 }",
+                    *const even = "HomogeneousVolume { scattering: 1 }";
   const auto gathered = picture("along_rays", uneven);
   EXPECT_GT(*std::ranges::max_element(gathered), 0);
   EXPECT_EQ(picture("beams", uneven), gathered);

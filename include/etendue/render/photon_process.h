@@ -2,9 +2,9 @@
 // PhotonProcess: what algorithms share whose camera paths use photons. Each step has photons of its own, which all its paths
 // share, and so all its paths have the same wavelengths and are of the same moment.
 
+#include "etendue/render/photon_beams.h"
 #include "etendue/render/renderer.h"
 #include "etendue/render/shown_in_space.h"
-#include "etendue/render/photon_beams.h"
 
 namespace etendue {
 
