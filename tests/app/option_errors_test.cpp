@@ -65,7 +65,8 @@ TEST_F(OptionErrors, APathGoesByMembers) {
 
 TEST_F(OptionErrors, APictureLargerThanTheMemoryIsRefusedAtOnce) {
   // 64 bytes for each pixel at least.
-  if (double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE)) > 65536. * 65536. * 64) GTEST_SKIP();
+  if (double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE)) > 65536. * 65536. * 64)
+    GTEST_SKIP() << "this machine's memory holds such a picture";
   EXPECT_TRUE(has(refused({"--size", "65536x65536"}), "more than the")) << err;
 }
 

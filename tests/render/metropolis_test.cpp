@@ -8,6 +8,7 @@
 
 #include "etendue/transport/metropolis.h"
 #include "support/checkpoint_test_support.h"
+#include "support/image_means.h"
 
 namespace etendue::checkpoint_test {
 namespace {
@@ -25,16 +26,7 @@ std::string furnace_text(const std::string& renderer, const std::string& image) 
 }
 const std::string roulette = "PathTracer { next_event: false, roulette_depth: 1, max_depth: 60 }";
 
-/// Means over the pixels of each Y channel.
-std::map<std::string, double> means(const Image& image) {
-  std::map<std::string, double> means;
-  for (size_t c = 0; c < image.channels.size(); ++c) {
-    double& sum = means[image.channels[c]];
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) sum += image.at(x, y, c) / (double(image.width) * image.height);
-  }
-  return means;
-}
+using test::means;
 
 // Ten seeds: 0.3 % of all light. Brightness is measured by 1.3 10^6 walks in all, whose values have the relative standard
 // deviation 0.7 (inner), by 2.6 10^6 single strategies, about 3, or by 1.3 10^5 pairs of walks, less than 1; all but the

@@ -11,6 +11,7 @@
 #include "etendue/describe/reflection.h"
 #include "etendue/film/image_tools.h"
 #include "support/checkpoint_test_support.h"
+#include "support/image_means.h"
 
 namespace etendue::checkpoint_test {
 namespace {
@@ -28,16 +29,7 @@ std::string room(const std::string& renderer, const std::string& layers) {
                      M_PI, renderer, layers);
 }
 
-/// Means over the pixels of each channel.
-std::map<std::string, double> means(const Image& image) {
-  std::map<std::string, double> means;
-  for (size_t c = 0; c < image.channels.size(); ++c) {
-    double& sum = means[image.channels[c]];
-    for (int y = 0; y < image.height; ++y)
-      for (int x = 0; x < image.width; ++x) sum += image.at(x, y, c) / (double(image.width) * image.height);
-  }
-  return means;
-}
+using test::means;
 
 /// Expects the groups of each pixel to add up to it.
 void expect_whole(const Image& image) {

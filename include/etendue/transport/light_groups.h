@@ -4,9 +4,9 @@
 // without rendering it again.
 //
 // Which luminaire a part of the light comes from is known where paths meet, sample, or begin at one: there `tell_light` is
-// called, and `splat_of` makes the label of a splat. What is collected is of the sample at hand on the same thread
-// (LightParts), so that nothing has to carry it along paths. It costs the test that path lengths cost already when nobody wants
-// groups.
+// called, and `splat_light` for what is brought elsewhere on the film. What is collected is of the sample at hand on the same
+// thread (LightParts), so that nothing has to carry it along paths. It costs the test that path lengths cost already when
+// nobody wants groups.
 
 #include <cstdint>
 #include <span>
