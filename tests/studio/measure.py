@@ -38,6 +38,7 @@ def orbit_steps(file, folder, steps=40):
                 page.note(page.receive())
             times.append(time.monotonic() - began)
             page.drain(0.03)
+        page.ask("shutdown", discard=True)  # else the moved camera is kept beside the file
     return times
 
 
