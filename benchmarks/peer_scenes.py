@@ -125,10 +125,13 @@ def glass_caustic(folder, size):
 
 
 def fog(folder, size):
-    """A room full of a homogeneous medium, a lamp and two balls."""
+    """A room full of a homogeneous medium, a lamp and two balls.
+
+    The medium reaches a little below the floor. Where its side lay in the floor Mitsuba's pictures were 7 % darker: rays that
+    meet both at once have left the medium there."""
     body = '<medium type="homogeneous" id="fog">' + rgb("albedo", 0.9, 0.85, 0.8) + rgb("sigma_t", 0.35) + \
            '<phase type="hg"><float name="g" value="0.3"/></phase></medium>\n'
-    body += '<shape type="cube"><transform name="to_world"><scale value="3"/><translate y="3"/></transform>' \
+    body += '<shape type="cube"><transform name="to_world"><scale value="3"/><translate y="2.98"/></transform>' \
             '<bsdf type="null"/><ref name="interior" id="fog"/></shape>\n'
     body += rectangle(FLOOR.format(12), diffuse(0.5))
     for x, color in ((-1.2, (0.7, 0.3, 0.2)), (1.2, (0.2, 0.4, 0.7))):
