@@ -12,6 +12,7 @@
 namespace etendue {
 
 class Job;
+struct ContainedFile;
 
 /// One file being exported: what is written beside it, and what was said of it.
 class Exporting {
@@ -33,7 +34,7 @@ class Exporting {
   /// number, with the ending. No file that is read has that name.
   std::string write_beside(const std::string& what, const std::string& ending, std::string bytes);
   /// The name by which the exported file can name a file that there is: a copy beside it unless it lies in the same folder or
-  /// below.
+  /// below. Of what lies in another file, such as an image in a model, always a copy.
   std::string copy_beside(const std::string& path);
   /// The files that are to be written beside it; none is before write_files is called.
   std::vector<std::string> files_beside() const;
@@ -52,6 +53,7 @@ class Exporting {
     std::string bytes;   ///< what it holds, or
     std::string source;  ///< the file that it is a copy of
   };
+  std::string unpack_beside(const std::string& path, const ContainedFile&);
   /// Whether nothing that is read, and nothing else that is written, is called so.
   bool is_free(const std::string& path) const;
 

@@ -38,7 +38,8 @@ class Scene : public SceneObject {
     return {blocked, nearest(ray, hit)};
   }
 
-  /// Every hit on a short ray, in no order; a scene that cannot tell gives the nearest.
+  /// Every hit on a short ray, in no order; a scene that cannot tell gives the nearest. Objects that have a hit in the list
+  /// already may be left out.
   virtual void all(const Ray& ray, HitList& list) const {
     Hit hit;
     if (nearest(ray, hit)) list.add(hit);

@@ -61,11 +61,26 @@ class Objects {
       if (const Scene* inner = scene_within(*object)) {
         const bool instance = inner != object.get();
         nested(*object, instance);
+        if (instance)
+          instanced_.push_back(inner);
+        else
+          nested_.insert(inner);
         in(*inner, instead ? instead : instance ? object->shader.get() : nullptr);
       } else {
         one(*object, instead ? instead : object->shader.get());
       }
     }
+  }
+
+  /// Of scenes that stand in instances alone, when all have been seen.
+  void of_instanced() {
+    for (const Scene* scene : instanced_)
+      if (!nested_.contains(scene))
+        of_whole(*scene, "of the scene in an instance only its objects count; say it of the instance or of them");
+  }
+  /// Of a scene whose objects alone are rendered.
+  void of_whole(const Scene& scene, const std::string& why) {
+    without_effect(scene, {"transform", "shader", "emission", "interior", "sides", "priority", "shading_normals"}, why);
   }
 
  private:
@@ -84,10 +99,10 @@ class Objects {
 
   void nested(const SceneObject& object, bool instance) {
     if (instance)
-      without_effect(object, {"emission", "interior", "sides", "priority"},
+      without_effect(object, {"emission", "interior", "sides", "priority", "shading_normals"},
                      "of an instance only its shader counts; give these to the objects in its scene");
     else
-      without_effect(object, {"shader", "emission", "interior", "sides", "priority"},
+      without_effect(object, {"shader", "emission", "interior", "sides", "priority", "shading_normals"},
                      "of a nested scene only its objects count; give these to them, or put the scene into an Instance with a "
                      "shader");
   }
@@ -96,7 +111,16 @@ class Objects {
     if (object.infinite() || object.delta()) {
       if (!object.luminaire())
         add("dark luminaire", fmt::format("{} has no emission: it does nothing", label(object)), object.location_of());
-      without_effect(object, {"shader", "interior", "sides", "priority"}, "no ray meets its surface, it has only its emission");
+      without_effect(object, {"shader", "interior", "sides", "priority", "shading_normals"},
+                     "no ray meets its surface, it has only its emission");
+      if (object.emission && object.delta() && written(*object.emission, "sides"))
+        add("without effect", fmt::format("{}: 'sides' of its emission has no effect: it has no surface", label(object)),
+            object.emission->location_of("sides"));
+      if (object.infinite() && written(object, "transform") && std::ranges::any_of(object.transform.keys(), moves))
+        add("without effect",
+            fmt::format("{}: that 'transform' moves it has no effect: it is infinitely far away, and can only be turned",
+                        label(object)),
+            object.location_of("transform"));
       return;
     }
     const bool enters = is_enterable(object, shader);
@@ -111,6 +135,8 @@ class Objects {
     file(object, shader);
     coordinates(object, shader);
   }
+
+  static bool moves(const AnimatedTransform::Key& key) { return distance(key.transform(Point3{}), Point3{}) > 0; }
 
   static bool is_enterable(const SceneObject& object, const Shader* shader) {
     if (!shader) return false;
@@ -225,10 +251,18 @@ class Objects {
   const Job& job_;
   std::vector<SceneWarning>& list_;
   std::set<std::pair<const Scene*, const Shader*>> seen_;
+  std::set<const Scene*> nested_;        // among objects
+  std::vector<const Scene*> instanced_;  // in instances
 };
 
 }  // namespace
 
-void warn_of_objects(const Job& job, std::vector<SceneWarning>& list) { Objects(job, list).in(*job.scene, nullptr); }
+void warn_of_objects(const Job& job, std::vector<SceneWarning>& list) {
+  Objects objects(job, list);
+  objects.of_whole(*job.scene,
+                   "of the job's scene only its objects count; put it into an Instance, which can be placed and have a shader");
+  objects.in(*job.scene, nullptr);
+  objects.of_instanced();
+}
 
 }  // namespace etendue

@@ -7,10 +7,14 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <span>
 
+#include "core/hash.h"
 #include "describe/guard.h"
 #include "etendue/denoised_output.h"
 #include "etendue/language/language.h"
+#include "files/file_content.h"
+#include "files/input_files.h"
 #include "language/set_path.h"
 #include "render/checkpoint.h"
 #include "render/denoising.h"
@@ -167,7 +171,11 @@ Ref<Job> RenderOptions::load() const {
   // A command line that makes no sense is told before a long load.
   const std::vector<Override> list = overrides();
   settings();
+  std::vector<SetOption> said = set_options();
+  for (const Override& override : list) said.push_back({override.option, override.path});
+  require_kept(said);
   if (const std::string from = resumed_file(); !from.empty()) read_checkpoint_header(from);
+  const InputsRead inputs;
   Ref<Job> job = SceneOptions::load();
   std::vector<Error> errors;
   for (const Override& override : list) {
@@ -184,7 +192,7 @@ Ref<Job> RenderOptions::load() const {
                         Location{intern("--error"), 0, 0});
   if (!errors.empty()) throw Errors(std::move(errors));
   job->metadata["file"] = file;
-  job->metadata["file_hash"] = file_hash();
+  job->metadata["file_hash"] = hash_of(*job, inputs.paths());
   job->metadata["command_line"] = picture_command();
   return job;
 }
@@ -220,19 +228,24 @@ std::string RenderOptions::resume_command() const {
 
 std::string RenderOptions::stem() const { return stem_of(file) + (frame ? fmt::format(".{:04}", *frame) : std::string()); }
 
-std::string RenderOptions::file_hash() const {
-  // FNV-1a, 64 bits: it tells files apart, it does not protect them.
-  std::uint64_t hash = 0xcbf29ce484222325ull;
+std::string RenderOptions::hash_of(const Job& job, std::set<std::string> read) const {
+  Hash hash;
   const auto add = [&](const std::string& text) {
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-    hash = (hash ^ 0xff) * 0x100000001b3ull;  // no UTF-8 text has this byte: "ab" + "c" is not "a" + "bc"
+    hash.add(std::as_bytes(std::span(text)));
+    hash.add(std::as_bytes(std::span("\xff", 1)));  // no UTF-8 text has this byte: "ab" + "c" is not "a" + "bc"
   };
-  add(read_file(file));
+  const auto full = [](const std::string& path) { return std::filesystem::absolute(path).string(); };
+  for (const std::string& path : files_named_by(job)) read.insert(full(path));
+  read.insert(full(file));  // one of another program may be read by a process of its own
+  for (const std::string& path : read) {
+    const FileContent content = content_of(path);
+    hash.add(std::as_bytes(std::span(&content, 1)));
+  }
   for (const std::string& define : defines) add("-D" + define);
   for (const std::string& set : sets) add("--set" + set);
   if (frame) add(fmt::format("--frame{} of {}", *frame, frames_per_second()));
   for (const Override& override : overrides()) add(override.path + "=" + override.expression);
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", hash.value());
 }
 
 namespace {

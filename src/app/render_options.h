@@ -2,6 +2,7 @@
 // What `etendue render` takes, and how it changes a Job.
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -46,12 +47,13 @@ struct RenderOptions : SceneOptions {
   std::string resume_command() const;
   /// The names of pictures that nothing else names begin with it: the file's name, with the number of the frame.
   std::string stem() const;
-  /// 16 hexadecimal digits that change with the file's text and every override of it.
-  std::string file_hash() const;
   /// Whether something other than a number of samples is to stop the render.
   bool open_ended() const { return samples.empty() && (!time.empty() || !error.empty()); }
 
  private:
+  /// 16 hexadecimal digits that change with every override and with the contents of all files that were read for the job, and
+  /// of those that it names.
+  std::string hash_of(const Job&, std::set<std::string> read) const;
   /// Member paths and the expressions they are set to, with the options they come from.
   struct Override {
     std::string option, path, expression;

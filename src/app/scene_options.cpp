@@ -65,6 +65,8 @@ double SceneOptions::frames_per_second() const {
 }
 
 LoadOptions SceneOptions::load_options() const {
+  if (!fps.empty() && !frame)
+    throw Error("there are no frames whose time this could tell: give --frame or --frames as well", {intern("--fps"), 0, 0});
   for (const std::string& plugin : plugins) Registry::instance().load_plugin(plugin);
   LoadOptions options;
   options.frame = frame.value_or(0);
@@ -100,7 +102,34 @@ ImportedJob SceneOptions::load_imported() const {
   return imported;
 }
 
+namespace {
+
+/// Whether what `path` says is gone when `later` is set: the same place, or one around it.
+bool replaces(const std::string& later, const std::string& path) {
+  return path.starts_with(later) && (path.size() == later.size() || path[later.size()] == '.' || path[later.size()] == '[');
+}
+
+}  // namespace
+
+void require_kept(const std::vector<SetOption>& sets) {
+  for (size_t i = 0; i < sets.size(); ++i)
+    for (size_t k = i + 1; k < sets.size(); ++k)
+      if (replaces(sets[k].path, sets[i].path))
+        throw Error(sets[k].path == sets[i].path
+                        ? fmt::format("'{}' is set already, by {}: leave out one of the two", sets[k].path, sets[i].option)
+                        : fmt::format("'{}' would undo what {} says of '{}' before it: say this first", sets[k].path,
+                                      sets[i].option, sets[i].path),
+                    {intern(sets[k].option), 0, 0});
+}
+
+std::vector<SetOption> SceneOptions::set_options() const {
+  std::vector<SetOption> list;
+  for (const std::string& set : sets) list.push_back({"--set", split("--set", set, "path=value").first});
+  return list;
+}
+
 void SceneOptions::apply_sets(Job& job) const {
+  require_kept(set_options());
   std::vector<Error> errors;
   for (const std::string& set : sets) {
     try {

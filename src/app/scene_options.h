@@ -12,6 +12,14 @@
 
 namespace etendue {
 
+/// What an option sets in a job.
+struct SetOption {
+  std::string option, path;
+};
+
+/// Throws Error where what one says is lost, as a later one sets the same place or one around it.
+void require_kept(const std::vector<SetOption>&);
+
 struct SceneOptions {
   std::string file;
   std::vector<std::string> defines;  ///< "name=value"
@@ -39,6 +47,10 @@ struct SceneOptions {
   std::string command_line() const;
   /// The same without the file.
   std::string overrides_line() const;
+
+ protected:
+  /// What `sets` set, in their order.
+  std::vector<SetOption> set_options() const;
 
  private:
   LoadOptions load_options() const;

@@ -155,11 +155,13 @@ void Registry::adopt() {
     info->create = node->second->create;
     if (node->second->parent != typeid(void)) {
       info->parent = take(node->second->parent);
-      if (info->parent)
+      if (info->parent) {
         info->members = info->parent->members;
-      else if (node->second->parent != typeid(Component))
+        info->absent = info->parent->absent;
+      } else if (node->second->parent != typeid(Component)) {
         faults += fmt::format("\n  {}: its parent class {} is not registered", info->name,
                               detail::bare_class_name(node->second->parent));
+      }
     }
     try {
       node->second->describe(*info);

@@ -66,6 +66,8 @@ std::string meant_class(const std::string& given, const ClassInfo* of) {
 
 std::string no_member(const ClassInfo& info, const std::string& given) {
   const std::string text = fmt::format("{} has no member '{}'", info.name, given);
+  for (const AbsentMember& absent : info.absent)
+    if (absent.name == given) return text + ": " + absent.why;
   std::vector<std::string> known;
   for (const Member& m : info.members) known.push_back(m.name);
   if (const std::string* same = same_but_for_spelling(given, known)) return text + " (did you mean '" + *same + "'?)";

@@ -4,9 +4,6 @@
 
 #include <filesystem>
 #include <mutex>
-#include <set>
-#include <string>
-
 #include "contained_file.h"
 
 namespace etendue {
@@ -15,6 +12,7 @@ namespace {
 struct Noted {
   std::mutex mutex;
   std::set<std::string> paths;
+  std::set<InputsRead*> listeners;
 };
 
 Noted& noted() {
@@ -36,7 +34,27 @@ void note_input(const std::string& named) {
   const std::filesystem::path full = std::filesystem::absolute(path, error);  // the working folder may change
   Noted& all = noted();
   const std::lock_guard lock(all.mutex);
-  all.paths.insert(error ? path : full.string());
+  const std::string noted_path = error ? path : full.string();  // ".." stays: behind a link it leads elsewhere
+  all.paths.insert(noted_path);
+  for (InputsRead* const listener : all.listeners) listener->paths_.insert(noted_path);
+}
+
+InputsRead::InputsRead() {
+  Noted& all = noted();
+  const std::lock_guard lock(all.mutex);
+  all.listeners.insert(this);
+}
+
+InputsRead::~InputsRead() {
+  Noted& all = noted();
+  const std::lock_guard lock(all.mutex);
+  all.listeners.erase(this);
+}
+
+std::set<std::string> InputsRead::paths() const {
+  Noted& all = noted();
+  const std::lock_guard lock(all.mutex);
+  return paths_;
 }
 
 std::string input_at(const std::string& path) {

@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include "etendue/core/error.h"
@@ -45,6 +47,8 @@ struct Place {
   std::string beside() const { return (folder / fmt::format(".{}.part-{}", target.filename().string(), ::getpid())).string(); }
 };
 
+constexpr int most_links = 40;
+
 /// Throws when nothing can be written there.
 Place place_of(const std::string& path) {
   namespace fs = std::filesystem;
@@ -52,7 +56,18 @@ Place place_of(const std::string& path) {
   Place place;
   std::error_code code;
   place.target = path;
-  if (fs::exists(place.target, code)) place.target = fs::canonical(place.target, code);
+  // A link to what is not there yet, step by step.
+  for (int links = 0; !fs::exists(place.target, code) && fs::is_symlink(fs::symlink_status(place.target, code)); ++links) {
+    if (links == most_links) refuse(path, reason(ELOOP));
+    place.target = place.target.parent_path() / fs::read_symlink(place.target, code);
+    if (code) refuse(path, code.message());
+  }
+  code.clear();
+  if (fs::exists(place.target, code)) {
+    const fs::path canonical = fs::canonical(place.target, code);
+    if (!code) place.target = canonical;  // /dev/stdout of a pipe is there, but has no path
+    code.clear();
+  }
   if (code) refuse(path, code.message());
   place.existed = ::stat(place.target.c_str(), &place.old) == 0;
   if (!place.target.has_filename() || (place.existed && S_ISDIR(place.old.st_mode))) refuse(path, "it is a folder");
@@ -61,6 +76,20 @@ Place place_of(const std::string& path) {
   if (place.plain() && !fs::exists(place.folder, code))
     refuse(path, fmt::format("there is no folder '{}'", place.folder.string()));
   return place;
+}
+
+/// What is no regular file. A pipe without a reader would hold the program for ever: it is given a few seconds. -1: see errno.
+int open_special(const std::filesystem::path& target) {
+  constexpr int tries = 50;
+  constexpr std::chrono::milliseconds between(100);
+  int descriptor = -1;
+  for (int i = 0; i < tries && descriptor < 0; ++i) {
+    if (i > 0) std::this_thread::sleep_for(between);
+    descriptor = ::open(target.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0 && errno != ENXIO) return -1;
+  }
+  if (descriptor >= 0) ::fcntl(descriptor, F_SETFL, O_WRONLY);  // it may be slow to read
+  return descriptor;
 }
 
 int open_beside(const Place& place, const std::string& path) {
@@ -101,8 +130,8 @@ void write_whole_file(const std::string& path, const std::string& text) { write_
 void write_whole_file(const std::string& path, std::span<const std::span<const std::byte>> pieces) {
   const Place place = place_of(path);
   if (!place.plain()) {
-    const int descriptor = ::open(place.target.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor < 0) refuse(path, reason(errno));
+    const int descriptor = open_special(place.target);
+    if (descriptor < 0) refuse(path, errno == ENXIO ? "it is a pipe that nobody reads" : reason(errno));
     const int failure = write_all(descriptor, pieces);
     ::close(descriptor);
     if (failure) refuse(path, reason(failure));

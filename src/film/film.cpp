@@ -115,7 +115,7 @@ void Film::add_tile(const ImageTile& tile) {
   FilmCounts& counts = m.step.counts;
   if (counts.samples.empty()) counts.samples.resize(format.pixels());
   if (tile.lit_ && !tile.light_.empty()) add(tile.extent_, light_list, tile.light_);
-  if (tile.lit_ && !tile.lengths_.empty()) add(tile.extent_, part_list, tile.lengths_);
+  if (tile.lit_ && !tile.parts_.empty()) add(tile.extent_, part_list, tile.parts_);
   if (!tile.weights_.empty()) add(tile.area_, weight_list, tile.weights_);
   if (!tile.features_.empty()) {
     add(tile.area_, feature_list, tile.features_);

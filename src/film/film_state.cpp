@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <mutex>
 
+#include "files/bytes.h"
 #include "film_members.h"
 #include "film_state.h"
 
@@ -12,60 +12,7 @@ namespace etendue {
 namespace {
 
 constexpr std::uint64_t magic = 0x34304d4c49465445;  // "ETFILM04": name and version of the format, little endian
-
-class Writer {
- public:
-  template <class T>
-  void value(T v) {
-    static_assert(std::is_arithmetic_v<T>);
-    append(&v, sizeof v);
-  }
-  template <class T>
-  void list(const std::vector<T>& v) {
-    value(std::uint64_t(v.size()));
-    append(v.data(), v.size() * sizeof(T));
-  }
-  std::vector<std::byte> bytes;
-
- private:
-  void append(const void* data, size_t size) {
-    const auto* from = static_cast<const std::byte*>(data);
-    bytes.insert(bytes.end(), from, from + size);
-  }
-};
-
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
-
-  template <class T>
-  T value() {
-    T v;
-    take(&v, sizeof v);
-    return v;
-  }
-  /// A list that is empty or has the expected length.
-  template <class T>
-  std::vector<T> list(size_t expected) {
-    const auto size = value<std::uint64_t>();
-    if (size != 0 && size != expected)
-      throw Error(fmt::format("the film's state holds {} values where {} belong", size, expected));
-    if (size > rest_.size() / sizeof(T)) truncated();
-    std::vector<T> v(size);
-    take(v.data(), size * sizeof(T));
-    return v;
-  }
-  bool at_end() const { return rest_.empty(); }
-
- private:
-  [[noreturn]] static void truncated() { throw Error("the film's state ends too early"); }
-  void take(void* to, size_t size) {
-    if (size > rest_.size()) truncated();
-    if (size > 0) std::memcpy(to, rest_.data(), size);
-    rest_ = rest_.subspan(size);
-  }
-  std::span<const std::byte> rest_;
-};
+constexpr const char* what = "the film's state";
 
 static_assert(std::has_unique_object_representations_v<FeatureCount>, "written as bytes");
 
@@ -76,7 +23,7 @@ std::array<std::int32_t, 9> kind_of_film(const PictureFormat& f, Estimator estim
 
 constexpr size_t place_of_estimator = 8;  // in those numbers
 
-void write_counts(Writer& w, const FilmCounts& counts) {
+void write_counts(ByteWriter& w, const FilmCounts& counts) {
   w.list(counts.samples);
   w.list(counts.features);
   w.value(counts.paths);
@@ -90,7 +37,7 @@ void write_counts(Writer& w, const FilmCounts& counts) {
   }
 }
 
-FilmCounts read_counts(Reader& r, const PictureFormat& format) {
+FilmCounts read_counts(ByteReader& r, const PictureFormat& format) {
   FilmCounts counts;
   counts.samples = r.list<std::uint32_t>(format.pixels());
   counts.features = r.list<FeatureCount>(format.wants_features ? format.pixels() : 0);
@@ -121,7 +68,7 @@ std::vector<std::byte> Film::save_state() const {
   size_t size =
       1024 + totals.counts.samples.size() * sizeof(std::uint32_t) + totals.counts.features.size() * sizeof(FeatureCount);
   for (const ExactSums& sums : totals.sums) size += sums.digits().size() * sizeof(std::int64_t) + sums.places().size();
-  Writer w;
+  ByteWriter w;
   w.bytes.reserve(size);
   w.value(magic);
   for (const std::int32_t i : kind_of_film(*m.format, m.estimator)) w.value(i);
@@ -138,7 +85,7 @@ std::vector<std::byte> Film::save_state() const {
 // All is read and checked before anything changes.
 Film::Totals Film::read_state(std::span<const std::byte> bytes) const {
   const PictureFormat& format = *members_->format;
-  Reader r(bytes);
+  ByteReader r(bytes, what);
   if (r.value<std::uint64_t>() != magic) throw Error("this is not a film's state, or one of another version");
   for (const std::int32_t i : kind_of_film(format, members_->estimator))
     if (r.value<std::int32_t>() != i)
@@ -207,7 +154,7 @@ void Film::Totals::add(const Totals& other) {
 }
 
 Estimator estimator_of(std::span<const std::byte> state) {
-  Reader r(state);
+  ByteReader r(state, what);
   if (r.value<std::uint64_t>() != magic) throw Error("this is not a film's state, or one of another version");
   for (size_t i = 0; i < place_of_estimator; ++i) r.value<std::int32_t>();
   const auto estimator = r.value<std::int32_t>();

@@ -128,7 +128,7 @@ void ImageTile::begin(const ImageBuffer& image, const PixelArea& area, std::uint
   extent_ = intersection(widened(area, format_->reach()), format_->area);
   light_.assign(4 * pixels(extent_), 0);
   lit_ = false;
-  lengths_.assign(3 * format_->parts() * pixels(extent_), 0);
+  parts_.assign(3 * format_->parts() * pixels(extent_), 0);
   samples_.assign(pixels(area_), 0);
   weights_.clear();
   features_.assign(format_->wants_features ? feature_values * pixels(area_) : 0, 0);
@@ -148,7 +148,7 @@ void ImageTile::note(const BadSample& sample) {
 }
 
 void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum& value,
-                           const Wavelengths& wavelengths, float weight, std::span<const Spectrum> by_length) {
+                           const Wavelengths& wavelengths, float weight, std::span<const Spectrum> parts) {
   Xyz color;
   BadKind kind = BadKind::not_a_number;
   bool good = to_color(value, wavelengths, color, kind);
@@ -176,9 +176,9 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
   }
   if (color.x == 0 && color.y == 0 && color.z == 0) return;
   lit_ = true;
-  if (!lengths_.empty()) [[unlikely]] {
-    require_groups(*format_, color, by_length, wavelengths);
-    add_lengths(film, px, py, wavelengths, weight, by_length);
+  if (!parts_.empty()) [[unlikely]] {
+    require_groups(*format_, color, parts, wavelengths);
+    add_parts(film, px, py, wavelengths, weight, parts);
   }
   add_light(film, px, py, color, weight);
 }
@@ -206,17 +206,16 @@ void ImageTile::add_light(Point2 film, int px, int py, const Xyz& color, float w
   }
 }
 
-void ImageTile::add_lengths(Point2 film, int px, int py, const Wavelengths& wavelengths, float weight,
-                            std::span<const Spectrum> by_length) {
-  const size_t count = std::min(by_length.size(), format_->parts()), stride = 3 * format_->parts();
-  for (size_t length = 0; length < count; ++length) {
-    if (by_length[length].black()) continue;
+void ImageTile::add_parts(Point2 film, int px, int py, const Wavelengths& wavelengths, float weight,
+                          std::span<const Spectrum> parts) {
+  const size_t count = std::min(parts.size(), format_->parts()), stride = 3 * format_->parts();
+  for (size_t part = 0; part < count; ++part) {
+    if (parts[part].black()) continue;
     Xyz color;
     BadKind kind;
-    if (!to_color(by_length[length], wavelengths, color, kind)) continue;
+    if (!to_color(parts[part], wavelengths, color, kind)) continue;
     const auto add = [&](int x, int y, double factor) {
-      double* sum =
-          &lengths_[stride * (size_t(y - extent_.y0) * size_t(extent_.width()) + size_t(x - extent_.x0)) + 3 * length];
+      double* sum = &parts_[stride * (size_t(y - extent_.y0) * size_t(extent_.width()) + size_t(x - extent_.x0)) + 3 * part];
       sum[0] += factor * color.x;
       sum[1] += factor * color.y;
       sum[2] += factor * color.z;

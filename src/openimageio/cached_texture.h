@@ -25,9 +25,9 @@ class CachedTexture final : public ImageTexture {
 
   int channels() const override { return channels_; }
   float largest() const override { return largest_; }
-  void nearest(Point2 at, Wrap, float* out) const override;
-  void bilinear(Point2 at, Wrap, float* out) const override;
-  void mean(Point2 at, const UvFootprint&, Wrap, float* out) const override;
+  void nearest(Point2 at, Wraps, float* out) const override;
+  void bilinear(Point2 at, Wraps, float* out) const override;
+  void mean(Point2 at, const UvFootprint&, Wraps, float* out) const override;
   float texels_along(const UvFootprint&) const override;
 
   static constexpr int tile_side = 64;  ///< of the cache's tiles
@@ -46,9 +46,9 @@ class CachedTexture final : public ImageTexture {
   template <class Use>
   bool read_rows(Use use) const;
   void make_levels() const;
-  bool add_kept_between(float x, float y, Wrap, float* out) const;
+  bool add_kept_between(float x, float y, Wraps, float* out) const;
   /// The mean along a line of `length` texels, from -half_line to half_line, of what level `detail` shows.
-  void line(Point2 at, Vector2 half_line, float length, float detail, Wrap, float* out) const;
+  void line(Point2 at, Vector2 half_line, float length, float detail, Wraps, float* out) const;
 
   std::unique_ptr<KeptTexels> kept_;  // null: in the cache
   bool kept_whole_ = false;           // kept, and there is a pixel for each place of the display window

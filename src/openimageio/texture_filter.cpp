@@ -45,7 +45,7 @@ int wrapped(int i, int size, Wrap wrap) {
 /// meet in a corner, as asking for one takes longer than many texels.
 class TexelReader {
  public:
-  TexelReader(const CachedTexture& texture, size_t level, Wrap wrap, float* sum)
+  TexelReader(const CachedTexture& texture, size_t level, Wraps wrap, float* sum)
       : texture_(texture), level_(texture.levels_[level]), wrap_(wrap), sum_(sum) {}
   ~TexelReader() {
     if (holds_)
@@ -60,8 +60,8 @@ class TexelReader {
 
   /// A texel, times a weight.
   void add(int x, int y, float weight) {
-    if (unsigned(x) >= unsigned(level_.width)) x = wrapped(x, level_.width, wrap_);
-    if (unsigned(y) >= unsigned(level_.height)) y = wrapped(y, level_.height, wrap_);
+    if (unsigned(x) >= unsigned(level_.width)) x = wrapped(x, level_.width, wrap_.u);
+    if (unsigned(y) >= unsigned(level_.height)) y = wrapped(y, level_.height, wrap_.v);
     if (x < 0 || y < 0) return;
     if (level_.texels.empty() && texture_.kept_) {
       x -= texture_.begin_x_;
@@ -124,7 +124,7 @@ class TexelReader {
 
   const CachedTexture& texture_;
   const CachedTexture::Level& level_;
-  Wrap wrap_;
+  Wraps wrap_;
   float* sum_;
   Held held_[4];
   bool holds_ = false;
@@ -161,17 +161,20 @@ Ellipse ellipse_of(const UvFootprint& f, float width, float height) {
 float detail_of(float width) { return 0.5f * std::log2(1 + square(width) / 4); }
 
 /// Coordinates near the image, where whole numbers can count texels; its longer side has so many.
-Point2 near(Point2 at, Wrap wrap, int texels) {
+Point2 near(Point2 at, Wraps wrap, int texels) {
   if (!(std::isfinite(at.x) && std::isfinite(at.y))) return {NAN, NAN};
   const float far = std::min(1000.0f, 1e9f / float(texels));
-  if (wrap == Wrap::repeat) return {at.x - std::floor(at.x), at.y - std::floor(at.y)};
-  if (wrap == Wrap::mirror) return {at.x - 2 * std::floor(at.x / 2), at.y - 2 * std::floor(at.y / 2)};
-  return {clamp(at.x, -far, far), clamp(at.y, -far, far)};
+  const auto nearer = [far](float x, Wrap w) {
+    if (w == Wrap::repeat) return x - std::floor(x);
+    if (w == Wrap::mirror) return x - 2 * std::floor(x / 2);
+    return clamp(x, -far, far);
+  };
+  return {nearer(at.x, wrap.u), nearer(at.y, wrap.v)};
 }
 
 }  // namespace
 
-void CachedTexture::nearest(Point2 at, Wrap wrap, float* out) const {
+void CachedTexture::nearest(Point2 at, Wraps wrap, float* out) const {
   std::fill_n(out, channels_, 0.0f);
   at = near(at, wrap, std::max(levels_[0].width, levels_[0].height));
   if (!(at.x == at.x)) return;
@@ -179,7 +182,7 @@ void CachedTexture::nearest(Point2 at, Wrap wrap, float* out) const {
   reader.add(int(std::floor(at.x * reader.width())), int(std::floor((1 - at.y) * reader.height())), 1.0f);
 }
 
-void CachedTexture::bilinear(Point2 at, Wrap wrap, float* out) const {
+void CachedTexture::bilinear(Point2 at, Wraps wrap, float* out) const {
   std::fill_n(out, channels_, 0.0f);
   at = near(at, wrap, std::max(levels_[0].width, levels_[0].height));
   if (!(at.x == at.x)) return;
@@ -190,12 +193,12 @@ void CachedTexture::bilinear(Point2 at, Wrap wrap, float* out) const {
 
 /// What TexelReader::add_between adds, of an image that is kept and fills its display window: the usual case, in half the time.
 /// False: some of the texels are nowhere.
-bool CachedTexture::add_kept_between(float x, float y, Wrap wrap, float* out) const {
+bool CachedTexture::add_kept_between(float x, float y, Wraps wrap, float* out) const {
   const float left = std::floor(x), top = std::floor(y), fx = x - left, fy = y - top;
   int columns[2] = {int(left), int(left) + 1}, rows[2] = {int(top), int(top) + 1};
   for (int i = 0; i < 2; ++i) {
-    if (unsigned(columns[i]) >= unsigned(pixels_x_)) columns[i] = wrapped(columns[i], pixels_x_, wrap);
-    if (unsigned(rows[i]) >= unsigned(pixels_y_)) rows[i] = wrapped(rows[i], pixels_y_, wrap);
+    if (unsigned(columns[i]) >= unsigned(pixels_x_)) columns[i] = wrapped(columns[i], pixels_x_, wrap.u);
+    if (unsigned(rows[i]) >= unsigned(pixels_y_)) rows[i] = wrapped(rows[i], pixels_y_, wrap.v);
     if (columns[i] < 0 || rows[i] < 0) return false;
   }
   const float weights[2][2] = {{(1 - fx) * (1 - fy), fx * (1 - fy)}, {(1 - fx) * fy, fx * fy}};
@@ -211,7 +214,7 @@ float CachedTexture::texels_along(const UvFootprint& f) const {
   return ellipse_of(f, float(levels_[0].width), float(levels_[0].height)).longer;
 }
 
-void CachedTexture::mean(Point2 at, const UvFootprint& f, Wrap wrap, float* out) const {
+void CachedTexture::mean(Point2 at, const UvFootprint& f, Wraps wrap, float* out) const {
   std::call_once(levels_made_, [this] { make_levels(); });
   const float width = float(levels_[0].width), height = float(levels_[0].height);
   const Ellipse e = ellipse_of(f, width, height);
@@ -221,7 +224,7 @@ void CachedTexture::mean(Point2 at, const UvFootprint& f, Wrap wrap, float* out)
   line(at, half_line, length, detail_of(shorter), wrap, out);
 }
 
-void CachedTexture::line(Point2 at, Vector2 half_line, float length, float detail, Wrap wrap, float* out) const {
+void CachedTexture::line(Point2 at, Vector2 half_line, float length, float detail, Wraps wrap, float* out) const {
   std::fill_n(out, channels_, 0.0f);
   at = near(at, wrap, std::max(levels_[0].width, levels_[0].height));
   if (!(at.x == at.x)) return;

@@ -19,6 +19,7 @@
 
 #include "checkpoint.h"
 #include "core/hash.h"
+#include "files/bytes.h"
 #include "files/regular_file.h"
 #include "files/whole_file.h"
 
@@ -47,61 +48,8 @@ struct Preamble {
 };
 static_assert(sizeof(Preamble) == 8 * (3 + parts + 2));
 
-class Writer {
- public:
-  template <class T>
-    requires std::is_arithmetic_v<T>
-  void value(T v) {
-    append(&v, sizeof v);
-  }
-  void text(const std::string& s) {
-    value(std::uint64_t(s.size()));
-    append(s.data(), s.size());
-  }
-  Bytes bytes;
-
- private:
-  void append(const void* data, size_t size) {
-    const auto* from = static_cast<const std::byte*>(data);
-    bytes.insert(bytes.end(), from, from + size);
-  }
-};
-
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
-  template <class T>
-    requires std::is_arithmetic_v<T>
-  T value() {
-    T v;
-    std::memcpy(&v, take(sizeof v), sizeof v);
-    return v;
-  }
-  std::string text() {
-    const auto size = value<std::uint64_t>();
-    return std::string(reinterpret_cast<const char*>(take(size)), size);
-  }
-  /// How many elements of at least `least` bytes follow.
-  std::uint64_t count(size_t least) {
-    const auto n = value<std::uint64_t>();
-    if (n > rest_.size() / least) short_of();
-    return n;
-  }
-  bool at_end() const { return rest_.empty(); }
-
- private:
-  [[noreturn]] static void short_of() { throw Error("its header ends too early"); }
-  const std::byte* take(std::uint64_t size) {
-    if (size > rest_.size()) short_of();
-    const std::byte* at = rest_.data();
-    rest_ = rest_.subspan(size);
-    return at;
-  }
-  std::span<const std::byte> rest_;
-};
-
 Bytes header(const Checkpoint& c) {
-  Writer w;
+  ByteWriter w;
   w.text(c.version);
   w.value(c.seed);
   w.value(c.samples_per_pass);
@@ -134,7 +82,7 @@ Bytes header(const Checkpoint& c) {
 
 /// Returns whether there is a state from before a short pass. What version wrote it is checked before the rest is read.
 bool read_header(const Bytes& bytes, Checkpoint& c) {
-  Reader r(bytes);
+  ByteReader r(bytes, "its header");
   c.version = r.text();
   const std::string own = ETENDUE_VERSION ", " + std::string(abi_string());
   if (c.version != own) throw Error(fmt::format("it is of version {}, this program is {}", c.version, own));

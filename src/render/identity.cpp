@@ -7,12 +7,11 @@
 #include <set>
 
 #include "checkpoint.h"
-#include "core/hash.h"
 #include "describe/guard.h"
 #include "etendue/describe/registry.h"
 #include "etendue/language/language.h"
+#include "files/file_content.h"
 #include "files/input_files.h"
-#include "files/regular_file.h"
 #include "images/udim_files.h"
 
 namespace etendue {
@@ -27,26 +26,6 @@ std::string folder_of(const Job& job) {
   std::error_code error;
   const fs::path folder = fs::absolute(file.has_parent_path() ? file.parent_path() : fs::path("."), error);
   return error ? std::string() : folder.lexically_normal().string();
-}
-
-/// Reads a whole file; one that cannot be read has a size that none has.
-Identity::File content(const std::string& path) {
-  Identity::File file{{}, std::uint64_t(-1), 0};
-  try {
-    RegularFile from(path);
-    Hash hash;
-    std::uint64_t size = 0;
-    std::vector<std::byte> block(size_t(1) << 20);
-    while (const std::uint64_t got = from.read_some(block.data(), block.size())) {
-      hash.add({block.data(), size_t(got)});
-      size += got;
-      if (got < block.size()) break;
-    }
-    file.size = size;
-    file.hash = hash.value();
-  } catch (const Error&) {
-  }
-  return file;
 }
 
 /// Finds the files that a component and all its parts name, by reflection.
@@ -73,8 +52,8 @@ class FileCollector {
   std::vector<Identity::File> files() const {
     std::vector<Identity::File> list;
     for (const auto& [name, path] : paths_) {
-      list.push_back(content(path));
-      list.back().name = name;
+      const FileContent content = content_of(path);
+      list.push_back({name, content.size, content.hash});
     }
     return list;
   }

@@ -53,6 +53,7 @@ struct BeamListener final : WalkListener {
     beam.vertices = std::uint32_t(walk.size());
     beam.single = wavelengths.single();
     beam.caustic = caustic;
+    beam.luminaire = walk[0].point.object->luminaire_index;
   }
 };
 

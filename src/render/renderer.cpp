@@ -48,6 +48,13 @@ std::unique_ptr<RenderProcess> Renderer::begin(const RenderContext& context) con
   return std::make_unique<RenderProcess>(*this, context);
 }
 
+void Renderer::refuse_samples_of(const Renderer& inner) const {
+  if (!inner.origin) return;
+  for (const char* name : {"samples", "sampler"})  // be it what it would be anyway
+    if (std::ranges::any_of(inner.origin->members, [&](const auto& m) { return m.first == name; }))
+      inner.fail(name, "has no effect here: say it of the " + class_info().name + " around");
+}
+
 std::string Renderer::limits() const {
   const PathClasses found = finds();
   if (found == no_paths) return "all light: it shows something else, or a part of it";

@@ -6,9 +6,9 @@
 
 namespace etendue {
 
-Vector3 ShownLobes::direction(int row, int column) {
-  const float z = 1 - 2 * (float(row) + 0.5f) / rows, r = std::sqrt(1 - z * z);
-  const float phi = 2 * pi * (float(column) + 0.5f) / columns;
+Vector3 ShownLobes::direction(int row, int column, float down, float along) {
+  const float z = 1 - 2 * (float(row) + down) / rows, r = std::sqrt(1 - z * z);
+  const float phi = 2 * pi * (float(column) + along) / columns;
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 

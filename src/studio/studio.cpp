@@ -248,7 +248,9 @@ void Studio::apply_overrides() {
     const ImageBuffer& image = *document_.job().image;
     constexpr int part = 4;
     // A step of a small picture takes as many paths as one of a large picture; of these few are enough until it rests.
-    all["renderer.samples"] = "4";
+    constexpr double most_paths = 1 << 15;
+    const double pixels = std::max(double(image.width) * image.height / (part * part), 1.0);
+    all["renderer.samples"] = std::to_string(int(std::clamp(most_paths / pixels, 1.0, 4.0)));
     if (!document_.overrides().contains("image.width")) {  // else it is coarse already
       all["image.width"] = std::to_string(std::max(image.width / part, 1));
       all["image.height"] = std::to_string(std::max(image.height / part, 1));

@@ -43,8 +43,9 @@ void coincident_hits(const Scene& scene, const Ray& ray, const Hit& hit, const S
   probe.origin = point.position - reach * probe.direction;
   probe.maximum = 2 * reach;
   HitList all;
+  all.add(hit);  // so that a scene need not find it once more
   scene.all(probe, all);
-  for (int i = 0; i < all.size; ++i) {
+  for (int i = 1; i < all.size; ++i) {
     bool known = same_thing(all.hits[i], hit);
     for (int k = 0; k < list.size; ++k) known |= same_thing(all.hits[i], list.hits[k]);
     if (!known) list.add(all.hits[i]);

@@ -38,9 +38,12 @@ struct KeptListener : NoListener {
 };
 
 /// Lets a walk grow whose first vertex is kept already. `density`: of its first direction.
-void grow(Growing& walk, float density, int roulette_depth, std::vector<KeptVertex>& kept, WalkListener* listener) {
+void grow(Growing& walk, float density, const WalkLimits& limits, std::vector<KeptVertex>& kept, WalkListener* listener) {
   const LightFront front(walk.scene);
-  const Roulette roulette{roulette_depth};
+  const Roulette roulette{limits.roulette_depth};
+  const bool from_camera = walk.transport == Transport::radiance;
+  CameraDirections* const chosen = from_camera ? limits.directions : nullptr;
+  float more = 1;  // the product of what directions are more likely than by scattering: so much more would be left without
   walk.keeps = walk.watched = true;
   const KeptListener at{{}, walk, front, kept, listener, density};
   while (walk.length < walk.longest && walk.next_vertex(at)) {
@@ -48,17 +51,23 @@ void grow(Growing& walk, float density, int roulette_depth, std::vector<KeptVert
     if (walk.vertex.kind == Vertex::Kind::escape && walk.transport == Transport::importance) return;
     KeptVertex& v = add(walk, density, front, kept);
     if (v.kind == Vertex::Kind::escape) return;
-    const float choice = v.scatter && v.scatter->has_choice() ? walk.numbers.next() : (walk.numbers.skip(), 0.0f);
-    const auto next = walk.sample_direction(choice, walk.numbers.next_pair());
+    const bool chooses = chosen || (v.scatter && v.scatter->has_choice());
+    const float choice = chooses ? walk.numbers.next() : (walk.numbers.skip(), 0.0f);
+    const Point2 u = walk.numbers.next_pair();
+    const CameraDirections::Choice way =
+        chosen ? chosen->sample(walk, choice, u) : CameraDirections::Choice{walk.sample_direction(choice, u)};
+    const auto& next = way.next;
     if (!next || (v.on_surface() && enters_body(v.point, *next))) return;
     walk.leave(*next);
     v.specular = walk.specular;
     density = v.specular ? 1 : next->density;
     // Of the vertex before, had the walk come the other way through this one.
-    const float back = v.specular ? 1 : scattering_density(v, next->direction, v.out, adjoint(walk.transport));
+    float back = v.specular ? 1 : scattering_density(v, next->direction, v.out, adjoint(walk.transport));
+    if (!from_camera && !v.specular) back = camera_density(limits.directions, v, next->direction, v.out, back);
     KeptVertex& before = kept[kept.size() - 2];
     before.reverse = vertex_density(back, v, before, v.out, v.chance, front);
-    if (!roulette.survives(walk)) return;
+    more *= way.more;
+    if (!roulette.survives(walk, walk.left() * more)) return;
   }
 }
 
@@ -103,28 +112,29 @@ void walk_from_camera(const RenderContext& context, const Ray& ray, const WalkLi
   lens.point.time = ray.time;
   Growing walk(context.scene, sample, ray, limits.longest);
   if (context.scene.has_interiors()) media_at(context.scene, ray.origin, ray.time, walk.media);
-  grow(walk, camera_direction_density(context.camera, ray), limits.roulette_depth, kept, &listener);
+  grow(walk, camera_direction_density(context.camera, ray), limits, kept, &listener);
 }
 
 bool walk_from_luminaire(const Scene& scene, const LightSampler& lights, float time, const WalkLimits& limits,
                          SampleContext& sample, std::vector<KeptVertex>& kept, EmittedLight& light,
                          const EmissionTargets* targets, WalkListener* listener) {
   kept.clear();
-  if (targets ? !targets->sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light)
-              : !sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light))
-    return false;
+  const bool leaves = targets ? targets->sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light)
+                              : sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light);
+  if (!leaves && !light.placed) return false;
   KeptVertex& first = kept.emplace_back();
   first.kind = Vertex::Kind::luminaire;
   first.infinite = light.infinite;
   first.point = light.point;
   first.forward = light.choice * (light.infinite ? light.direction : light.position);
+  if (!leaves) return false;
   Growing walk(scene, sample, light.ray, limits.longest, Transport::importance, light.throughput());
   if (scene.has_interiors() && !light.infinite) {
     media_at(scene, light.ray.origin, time, walk.media);
     first.media = sample.arena.make<MediumStack>(walk.media);
   }
   // From infinity, places in the scene are given by where the ray crosses the disc around it.
-  grow(walk, light.infinite ? 1 : light.direction, limits.roulette_depth, kept, listener);
+  grow(walk, light.infinite ? 1 : light.direction, limits, kept, listener);
   return true;
 }
 

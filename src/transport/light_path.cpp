@@ -94,6 +94,17 @@ bool PathSpace::weigh_camera(LightPath& path, const Ray& ray) const {
   return !path.f.black();
 }
 
+namespace {
+
+/// Lets `out` be another direction, and the media stay those on its side: a walk from a luminaire had come from the other one.
+void turn(PathVertex& v, const Vector3& out, Arena& arena) {
+  MediumStack other;
+  if (media_towards(v, out, other) == &other) v.point.media = v.media = arena.make<MediumStack>(other);
+  v.out = out;
+}
+
+}  // namespace
+
 bool PathSpace::complete(LightPath& path) const {
   std::vector<PathVertex>& x = path.x;
   const int k = path.length();
@@ -104,7 +115,7 @@ bool PathSpace::complete(LightPath& path) const {
   for (int i = 0; i < k; ++i) {
     const Vector3 way = at(i + 1).point.position - at(i).point.position;
     if (!(length_squared(way) > 0)) return false;
-    at(i).out = normalize(way);
+    turn(at(i), normalize(way), *path.arena);
   }
   for (int i = 1; i < k; ++i)
     if (path.specular(i) && !fill_specular(path, i)) return false;

@@ -73,7 +73,7 @@ bool choose_luminaire(const LightSampler& lights, float which, float time, Emitt
   if (!choice.luminaire || !(choice.probability > 0)) return false;
   light.luminaire = choice.luminaire;
   light.choice = choice.probability;
-  light.infinite = false;
+  light.infinite = light.placed = false;
   light.ray = {};
   light.ray.time = time;
   return true;
@@ -98,9 +98,11 @@ bool sample_emitted_light(const Scene& scene, const LightSampler& lights, const 
   } else {
     const SurfaceSample s = luminaire.sample_area(position, time);
     if (!(s.density > 0)) return false;
+    light.placed = true;
+    light.point = s.point;
+    light.position = s.density;
     const DirectionSample d = luminaire.emission->sample(s.point, direction);
     if (!(d.density > 0)) return false;
-    light.position = s.density;
     light.direction = d.density;
     begin_at_point(s, d.direction, w, light);
   }

@@ -35,13 +35,15 @@ void WalkPair::from_camera(const Ray& ray, const WalkLimits& limits, LightListen
     void emitted(int length, const Spectrum& light) override { listener.found({0, length + 1, false, light}); }
     void crossed_luminaire() override { walks.meet(walks.camera_vertices(), listener); }
   } growing(*this, listener);
+  directions_ = limits.directions;
   walk_from_camera(context_, ray, limits, sample_, camera_, growing);
 }
 
 void WalkPair::from_luminaire(float time, const WalkLimits& limits) {
   SampleContext light{light_wavelengths_, sample_.numbers.fork("light"), sample_.arena, {}, nullptr, sample_.abort};
   EmittedLight emitted;
-  walk_from_luminaire(context_.scene, lights_, time, limits, light, light_, emitted);
+  walk_from_luminaire(context_.scene, lights_, time, {limits.longest, limits.roulette_depth, directions_}, light, light_,
+                      emitted);
   if (light_.size() > 1) direct_ = sampled_density(lights_, light_[1], light_[0], light_[1].out);
 }
 
@@ -97,7 +99,8 @@ std::optional<FoundLight> WalkPair::sample_luminaire(int t) const {
     ConnectedPath path{&x0, 1, camera_.data(), t, 0, 0, 0, 0, 0, 0, !c->delta, weights_.merging};
     path.begun = begun_density(lights_, z, x0, c->direction);
     path.direct = sampled_density(lights_, z, x0, c->direction);
-    path.light_last_from_camera = vertex_density(c->density_at_z, z, x0, c->direction, c->chance, front_);
+    const float at_z = camera_density(directions_, z, z.out, c->direction, c->density_at_z);
+    path.light_last_from_camera = vertex_density(at_z, z, x0, c->direction, c->chance, front_);
     path.camera_last_from_light = vertex_density(c->density_at_luminaire, x0, z, -c->direction, c->chance, front_);
     path.camera_before_from_light = before_from(camera_, t, c->direction, Transport::importance);
     if (path.begun > 0 && path.direct > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
@@ -114,7 +117,8 @@ std::optional<FoundLight> WalkPair::connect(int s, int t) const {
   if (weights_.weighted) {
     ConnectedPath path{light_.data(),   s, camera_.data(), t, 0, 0, 0, 0, direct_, light_[0].forward, can_be_met(light_[0]),
                        weights_.merging};
-    path.light_last_from_camera = vertex_density(c->density_at_z, z, y, c->direction, c->chance, front_);
+    const float at_z = camera_density(directions_, z, z.out, c->direction, c->density_at_z);
+    path.light_last_from_camera = vertex_density(at_z, z, y, c->direction, c->chance, front_);
     path.light_before_from_camera = before_from(light_, s, -c->direction, Transport::radiance);
     path.camera_last_from_light = vertex_density(c->density_at_y, y, z, -c->direction, c->chance, front_);
     path.camera_before_from_light = before_from(camera_, t, c->direction, Transport::importance);
@@ -150,7 +154,8 @@ std::optional<FoundLight> WalkPair::merge(const Photon& photon, int t) const {
     ConnectedPath path{nullptr, int(photon.vertices), camera_.data(), t, 0, 0, photon.weight.forward, 0, 0, 0,
                        true,    weights_.merging};
     path.camera_before_from_light = before_from(camera_, t, photon.out, Transport::importance);
-    const float back = scattering_density(z, z.out, photon.out, Transport::radiance);
+    const float back =
+        camera_density(directions_, z, z.out, photon.out, scattering_density(z, z.out, photon.out, Transport::radiance));
     found.weight = merging_weight(path, photon.weight, back, weights_.heuristic);
   }
   return found;
@@ -159,7 +164,9 @@ std::optional<FoundLight> WalkPair::merge(const Photon& photon, int t) const {
 float WalkPair::before_from(const std::vector<KeptVertex>& walk, int count, const Vector3& from, Transport transport) const {
   if (count < 2) return 0;
   const KeptVertex &last = walk[size_t(count - 1)], &before = walk[size_t(count - 2)];
-  return vertex_density(scattering_density(last, from, last.out, transport), last, before, last.out, last.chance, front_);
+  float density = scattering_density(last, from, last.out, transport);
+  if (transport == Transport::radiance) density = camera_density(directions_, last, from, last.out, density);
+  return vertex_density(density, last, before, last.out, last.chance, front_);
 }
 
 void WalkPair::record() const {

@@ -57,6 +57,22 @@ TEST_F(OptionErrors, WhatMeansNothingIsRefused) {
   EXPECT_TRUE(says("--renderers: 'PathTracer' is named twice")) << err;
 }
 
+TEST_F(OptionErrors, WhatALaterOneWouldUndoIsRefused) {
+  EXPECT_TRUE(refused({"--set", "renderer.max_depth=2", "--set", "renderer=LightTracer"})
+                  .starts_with("--set: 'renderer' would undo what --set says of 'renderer.max_depth' before it"))
+      << err;
+  EXPECT_TRUE(refused({"--set", "scene.objects[0].shader.color=0.2", "--set", "scene.objects[0].shader=PhongShader"})
+                  .starts_with("--set: 'scene.objects[0].shader' would undo"))
+      << err;
+  EXPECT_TRUE(refused({"--set", "seed=3", "--seed", "4"}).starts_with("--seed: 'seed' is set already, by --set")) << err;
+  EXPECT_TRUE(refused({"--set", "image.width=4", "--size", "8x8"}).starts_with("--size: 'image.width' is set already")) << err;
+  EXPECT_TRUE(refused({"--fps", "30"}).starts_with("--fps: there are no frames")) << err;
+  EXPECT_EQ(run({"render", scene, "--set", "renderer=LightTracer", "--set", "renderer.max_depth=2", "--samples", "1", "--set",
+                 "renderer.roulette_depth=3"}),
+            0)
+      << err;
+}
+
 TEST_F(OptionErrors, APathGoesByMembers) {
   EXPECT_TRUE(has(refused({"--set", "ball.radius=2"}),
                   "a path goes by members, not by names of the file, and 'ball' is scene.objects[0]"))

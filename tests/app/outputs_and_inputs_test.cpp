@@ -1,6 +1,7 @@
 // No output takes the place of a file that is read, none is found to be impossible after hours, and none is written twice.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstring>
@@ -194,6 +195,31 @@ TEST_F(OutputsTest, devices_are_written_to_not_replaced) {
   ASSERT_EQ(run({"save", scene, "-o", "/dev/stdout"}), 0) << err;
   EXPECT_NE(out.find("Job {"), std::string::npos) << out;
   EXPECT_TRUE(fs::is_symlink("/dev/stdout"));
+}
+
+// Behind a link to a folder ".." is not the folder that the link stands in.
+TEST_F(OutputsTest, an_input_behind_a_linked_folder_is_not_overwritten) {
+  const std::string scene = write_scene("scene.etd");
+  fs::create_directories(folder / "real/sub");
+  fs::create_directory_symlink("real/sub", folder / "linked");
+  fs::copy_file(folder / "texture.hdr", folder / "real/texture.hdr");
+  std::string text = file_text(folder / "scene.etd");
+  const std::string name = "\"texture.hdr\"";
+  folder.write("behind.etd", text.replace(text.find(name), name.size(), "\"linked/../texture.hdr\""));
+  expect_refused({"render", folder / "behind.etd", "-o", folder / "real/texture.hdr"}, "real/texture.hdr", "texture.hdr");
+}
+
+// A link to where no file is yet stays a link; a pipe that nobody reads does not hold the program for ever.
+TEST_F(OutputsTest, links_stay_and_pipes_do_not_hold) {
+  const std::string scene = write_scene("scene.etd", "");
+  fs::create_symlink("target.npy", folder / "link.npy");
+  ASSERT_EQ(run({"render", scene, "-o", "link.npy"}), 0) << err;
+  EXPECT_TRUE(fs::is_symlink(folder / "link.npy"));
+  EXPECT_TRUE(fs::is_regular_file(folder / "target.npy"));
+  ASSERT_EQ(::mkfifo((folder / "pipe.npy").c_str(), 0600), 0);
+  EXPECT_NE(run({"render", scene, "-o", "pipe.npy", "-o", "file.npy"}), 0);
+  EXPECT_TRUE(says("'pipe.npy': it is a pipe that nobody reads")) << err;
+  EXPECT_TRUE(exists("file.npy"));
 }
 
 }  // namespace

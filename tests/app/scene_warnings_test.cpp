@@ -83,6 +83,27 @@ TEST(SceneWarnings, MembersWithoutEffect) {
          {"instance", "sides"}, "front");
   expect("BruteForceScene { shader: Lambertian {}, objects: [ Sphere { " + matt + " } ] }\n" + sky, "without effect",
          {"nested scene", "shader"}, "Lambertian");
+  expect("Instance { scene: BruteForceScene { transform: scale(3), objects: [ Sphere { " + matt + " } ] } }\n" + sky,
+         "without effect", {"scene in an instance", "transform"}, "scale");
+  expect("Instance { shading_normals: clipped, scene: BruteForceScene { objects: [ Sphere { " + matt + " } ] } }\n" + sky,
+         "without effect", {"instance", "shading_normals"}, "clipped");
+  expect("Point { emission: DiffuseEmission { sides: back } }\n" + sky, "without effect", {"no surface", "sides"}, "back");
+  expect("Environment { transform: translate(1, 0, 0), emission: EnvironmentEmission {} }\n", "without effect",
+         {"infinitely far", "transform"}, "translate");
+}
+
+TEST(SceneWarnings, MembersOfTheJobsOwnScene) {
+  const Ref<Job> job = load_job_text(R"(Job { renderer: PathTracer { samples: 1 }
+    camera: PerspectiveCamera { from: [0, 0, 3], to: [0, 0, 0] }
+    image: ImageBuffer { width: 4, height: 4 }
+    scene: BruteForceScene { transform: scale(3), objects: [
+      Environment { emission: EnvironmentEmission {} }, Sphere { shader: Lambertian {} } ] } })",
+                                     "scene.etd");
+  prepare_tree(*job);
+  const std::vector<SceneWarning> list = scene_warnings(*job);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].at.line, 4);
+  EXPECT_NE(list[0].text.find("'transform' has no effect: of the job's scene"), std::string::npos) << list[0].text;
 }
 
 const std::string tetrahedron = "positions: [[0,0,0], [1,0,0], [0,1,0], [0,0,1]], triangles: [[0,2,1], [0,1,3], [0,3,2], ";

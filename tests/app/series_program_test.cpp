@@ -67,11 +67,32 @@ TEST_F(SeriesProgramTest, whole_frames_are_left_out) {
   ASSERT_EQ(run({"render", "film.etd", "--frame", "2", "--samples", "1", "-o", "f2.exr"}), 0) << err;
   ASSERT_EQ(run(command), 0) << err;
   EXPECT_TRUE(says("'f1.exr' cannot be read: it is rendered again")) << err;
-  EXPECT_TRUE(says("'f2.exr' is of another version of the file, or other options")) << err;
+  EXPECT_TRUE(says("'f2.exr' is of another version of the file or of one that it names, or of other options")) << err;
   EXPECT_TRUE(has(out, "f3.exr is there already")) << out;
   EXPECT_TRUE(exists("f0.exr"));
   ASSERT_EQ(run(command), 0) << err;
   for (const char* name : {"f0", "f1", "f2", "f3"}) EXPECT_TRUE(has(out, std::string(name) + ".exr is there already")) << out;
+}
+
+TEST_F(SeriesProgramTest, what_files_hold_that_are_included_or_named_counts_too) {
+  const auto with_color = [&](const char* color, const char* texel) {
+    folder.write("paint.etd", std::string("paint = Lambertian { color: ") + color + " }\n");
+    folder.write("texel.ppm", std::string("P3 1 1 255 ") + texel + " 9 9\n");
+  };
+  with_color("0.5", "8");
+  folder.write("part.etd", R"(include "paint.etd"
+    Job { renderer: PathTracer { samples: 1 }, camera: PerspectiveCamera { from: [0, 0, 3], to: [0, 0, 0] }
+      image: ImageBuffer { width: 4, height: 4 }
+      scene: BvhScene { objects: [ Sphere { shader: paint }, Environment { emission: EnvironmentEmission { file: "texel.ppm" } } ] } })");
+  const std::vector<std::string> command = {"render", "part.etd", "-o", "p.exr", "--skip-existing"};
+  ASSERT_EQ(run(command), 0) << err;
+  ASSERT_EQ(run(command), 0) << err;
+  EXPECT_TRUE(has(out, "p.exr is there already")) << out;
+  for (const auto& [color, texel] : {std::pair("0.4", "8"), std::pair("0.4", "7")}) {
+    with_color(color, texel);
+    ASSERT_EQ(run(command), 0) << err;
+    EXPECT_TRUE(says("'p.exr' is of another version of the file or of one that it names")) << err;
+  }
 }
 
 TEST_F(SeriesProgramTest, checkpoints_are_of_each_frame) {

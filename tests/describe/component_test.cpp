@@ -85,6 +85,22 @@ TEST(Registry, KnowsClassesAndTheirMembers) {
   EXPECT_EQ(&made->class_info(), widget);
 }
 
+/// A widget that weighs nothing.
+class Balloon final : public Gadget {
+ public:
+  static void describe(Description<Balloon>& d) { d.summary("floats").without("weight", "it floats"); }
+};
+static const Register<Balloon> registered_balloon;
+
+TEST(Registry, ClassesAreWithoutMembersThatMeanNothingToThem) {
+  const ClassInfo* balloon = Registry::instance().find("Balloon");
+  ASSERT_NE(balloon, nullptr);
+  EXPECT_EQ(balloon->find("weight"), nullptr);
+  EXPECT_NE(balloon->parent->find("weight"), nullptr);
+  const Ref<Component> made = Registry::instance().create("Balloon");
+  EXPECT_EQ(error_of(*made, "weight", number(1)), "Balloon has no member 'weight': it floats");
+}
+
 TEST(Registry, SuggestsNames) {
   try {
     Registry::instance().create("Wigdet");

@@ -11,22 +11,39 @@ namespace {
 
 struct Cone {
   double inner, outer;
-  bool linear = false;
+  std::string_view edge = "smooth";
 };
-constexpr Cone cones[] = {{20, 30},          {0, 45},         {40, 40},       {0.05, 0.1},   {60, 130},
-                          {180, 180},        {0, 180},        {15, 20, true}, {0, 45, true}, {40, 40, true},
-                          {0.05, 0.1, true}, {60, 130, true}, {0, 180, true}, {1, 2.5, true}};
+constexpr Cone cones[] = {{20, 30},
+                          {0, 45},
+                          {40, 40},
+                          {0.05, 0.1},
+                          {60, 130},
+                          {180, 180},
+                          {0, 180},
+                          {15, 20, "linear"},
+                          {0, 45, "linear"},
+                          {40, 40, "linear"},
+                          {0.05, 0.1, "linear"},
+                          {60, 130, "linear"},
+                          {0, 180, "linear"},
+                          {1, 2.5, "linear"},
+                          {15, 20, "square"},
+                          {40, 40, "square"},
+                          {0.05, 0.1, "square"},
+                          {0, 180, "square"}};
 
-/// The integral of the profile over all directions: for a linear edge 2 pi (1 - (sin b - sin a) / (b - a)), by parts.
+/// The integral of the profile over all directions: for a linear edge 2 pi (1 - (sin b - sin a) / (b - a)), by parts; else the
+/// mean over the edge of t^2 (3 - 2 t), 1/2, or of t^2, 1/3.
 double solid_angle(const Cone& c) {
   const double a = c.inner * M_PI / 180, b = c.outer * M_PI / 180;
-  if (!c.linear || a == b) return M_PI * (one_minus_cosine(c.inner) + one_minus_cosine(c.outer));
+  const double h = one_minus_cosine(c.inner), beyond = one_minus_cosine(c.outer) - h;
+  if (c.edge != "linear" || a == b) return 2 * M_PI * (h + beyond / (c.edge == "square" ? 3 : 2));
   return 2 * M_PI * (1 - (std::sin(b) - std::sin(a)) / (b - a));
 }
 
 std::string spot(const Cone& c, const std::string& more = "") {
   return "SpotEmission { inner_angle: " + std::to_string(c.inner) + ", outer_angle: " + std::to_string(c.outer) +
-         (c.linear ? ", edge: linear" : "") + more + " }";
+         ", edge: " + std::string(c.edge) + more + " }";
 }
 
 TEST(SpotEmission, FallsOffBetweenItsAngles) {
@@ -56,6 +73,18 @@ TEST(SpotEmission, ALinearEdgeFallsWithTheAngle) {
     const double a = angle * M_PI / 180, wanted = 3 * std::clamp((20 - angle) / 5, 0.0, 1.0);
     const Vector3 d{float(std::sin(a) * 0.6), float(std::sin(a) * 0.8), float(std::cos(a))};
     EXPECT_NEAR(double(lamp->emission->radiance(p, d, wavelengths())[0]), wanted, 1e-5) << angle;
+  }
+}
+
+TEST(SpotEmission, ASquareEdgeFallsWithTheSquare) {
+  const Ref<SceneObject> lamp = prepared_as<SceneObject>(
+      "Point { emission: SpotEmission { radiance: 3, inner_angle: 10, outer_angle: 60, edge: square } }");
+  const SurfacePoint p = lamp->sample_area({}, 0).point;
+  const double inner = std::cos(10 * M_PI / 180), outer = 0.5;
+  for (const double t : {0.0, 0.25, 0.5, 0.9, 1.0}) {
+    const double c = outer + t * (inner - outer);
+    const Vector3 d{float(std::sqrt(1 - c * c)), 0, float(c)};
+    EXPECT_NEAR(double(lamp->emission->radiance(p, d, wavelengths())[0]), 3 * t * t, 1e-5) << t;
   }
 }
 

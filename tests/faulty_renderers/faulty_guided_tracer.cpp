@@ -1,7 +1,7 @@
 // A guided path tracer with a fault, of the same parts as GuidedPathTracer. What guides is the same everywhere: it looks
 // upwards.
 
-#include "etendue/guiding/direction_tree.h"
+#include "etendue/guiding/lobe_mixture.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/roulette.h"
@@ -13,7 +13,7 @@ namespace {
 class FaultyGuidedTracer final : public Renderer {
   Fault fault = Fault::none;
   int max_depth = 64, roulette_depth = 5;
-  DirectionTree guide_;
+  SeenLobes guide_;
 
  public:
   static void describe(Description<FaultyGuidedTracer>& d) {
@@ -23,10 +23,10 @@ class FaultyGuidedTracer final : public Renderer {
     describe_roulette_depth<&FaultyGuidedTracer::roulette_depth>(d);
   }
   FaultyGuidedTracer() {
-    for (int i = 0; i < 4; ++i) guide_.add(normalize(Vector3{i < 2 ? 1.0f : -1.0f, i % 2 ? 1.0f : -1.0f, 1}), 2, {0.5f, 0.5f});
-    guide_.add({0.6f, 0, -0.8f}, 1, {0.5f, 0.5f});
-    guide_.add({-0.6f, -0.1f, -0.8f}, 1, {0.5f, 0.5f});
-    guide_.refine(GuideTarget::mean, 1, 1);
+    LobeMixture lobes;
+    lobes.set({}, 0, {{0, 0, 1}, 0, 2, 0.8f});
+    lobes.set({}, 1, {{0.6f, 0, -0.8f}, 0, 1, 0.2f});
+    guide_ = SeenLobes(lobes, {});
   }
   PathClasses finds() const override { return all_paths & ~(delta_caustics | delta_caustics_in_mirrors); }
 
@@ -48,8 +48,7 @@ class FaultyGuidedTracer final : public Renderer {
       });
       std::optional<ScatterSample> next;
       if (guided && u.lobe_choice < share) {
-        float density = 0;
-        const Vector3 in = guide_.sample(u.direction, density);
+        const Vector3 in = guide_.sample(u.lobe_choice / share, u.direction);
         next = scattered_towards(v, in, mixed(in, scattering_density(v, v.out, in, Transport::radiance)), Transport::radiance);
       } else {
         next = walk.sample_direction(guided ? (u.lobe_choice - share) / (1 - share) : u.lobe_choice, u.direction);

@@ -258,6 +258,39 @@ TEST(MitsubaSurface, TheTwoSidesOfTwosided) {
   }
 }
 
+// As PyPI's mitsuba 3.9.1 evaluates its emitter 'sunsky': z is up, with to_world what that makes of z, and the sun stands where
+// the world says. Mitsuba 0.6 has y for up.
+TEST(MitsubaLight, ASkyStandsUprightAndItsSunWhereTheWorldSays) {
+  struct Row {
+    const char *version, *name, *sun, *to_world, *up;
+  };
+  const Row rows[] = {{"3.0.0", "sun_direction", "0.3, 0.2, 0.8", "", "0, 0, 1"},
+                      {"3.0.0", "sun_direction", "0.3, 0.8, 0.2", "<rotate x=\"1\" angle=\"-90\"/>", "0, 1, 0"},
+                      {"0.6.0", "sunDirection", "0.3, 0.8, 0.2", "", "0, 1, 0"}};
+  for (const Row& row : rows) {
+    const auto luminance = [&](const std::string& target) {
+      const std::string look = "<transform name=\"" + std::string(row.version[0] == '0' ? "toWorld" : "to_world") + "\">";
+      Imported read =
+          import_text(scene(sensor("<float name=\"fov\" value=\"0.1\"/>" + look + "<lookat origin=\"0, 0, 0\" target=\"" +
+                                   target + "\" up=\"0.5, 0.4, 0.1\"/></transform>") +
+                                "<integrator type=\"path\"/><emitter type=\"sunsky\"><vector name=\"" + row.name +
+                                "\" value=\"" + row.sun + "\"/>" + look + row.to_world + "</transform></emitter>",
+                            row.version));
+      if (!read.job) {
+        ADD_FAILURE() << read.told();
+        return 0.0;
+      }
+      read.job->renderer->samples = 16;
+      read.job->outputs.clear();
+      return double(test::measure(read.job).mean.y);
+    };
+    const double zenith = luminance(row.up);
+    EXPECT_GT(luminance(row.sun), 1000 * zenith) << row.version << row.to_world;
+    const std::string down = std::string(row.up) == "0, 0, 1" ? "0, 0, -1" : "0, -1, 0";
+    EXPECT_LT(luminance(down), zenith / 2) << row.version << row.to_world;
+  }
+}
+
 TEST(MitsubaLight, AProjectorsPictureKeepsItsShape) {
   const TemporaryFolder folder;
   test::write_image(folder.write("map.exr", ""), {8, 2, 3, NumberType::single}, std::vector<float>(size_t(8 * 2 * 3), 1.0f));

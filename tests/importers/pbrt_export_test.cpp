@@ -57,6 +57,14 @@ void expect_same(const std::string& objects, const std::string& told = "",
 
 const std::string sky = "Environment { emission: DiffuseEmission { radiance: rgb(0.4, 0.5, 0.6) } }\n";
 
+// Squares, where pbrt's disk has sectors of rings; and what goes around goes around.
+TEST(PbrtExport, TexturesOfDiscs) {
+  const std::string squares = "shader: Lambertian { color: CheckerMap { first: 0.1, second: 0.9, repeat: [3, 5, 1] } } }\n";
+  expect_same("Disc { radius: 2 m, transform: rotate(-60, \"x\"), " + squares + sky,
+              "a Disc with these surface coordinates becomes triangles\n");
+  expect_same("Disc { radius: 2 m, transform: rotate(-60, \"x\"), coordinates: around, " + squares + sky);
+}
+
 TEST(PbrtExport, ShapesAndTransforms) {
   expect_same(
       sky +

@@ -56,6 +56,8 @@ TEST(Comprehension, NamesAreItsOwn) {
   EXPECT_EQ(counts("[ LanguagePart { count: i } for i in [0, n] ]", "n = i\ni = 50"), (Ints{0, 50}));
   EXPECT_EQ(part_errors("LanguagePart { indices: [i for i in 0..2], count: i }"),
             "1:51: 'i' is not defined (did you mean 'pi'?)");
+  EXPECT_EQ(part_errors("LanguagePart { indices: [i for i in 0..2 for i in 3..5] }"),
+            "1:46: there is a 'for i' already, at line 1:32");
   EXPECT_EQ(part("LanguagePart { modes: [mode for mode in [\"hidden\", \"visible\"]] }")->modes,
             (std::vector<LanguageMode>{LanguageMode::hidden, LanguageMode::visible}));
 }

@@ -114,6 +114,22 @@ TEST(ImageMap, InterpolatesAndWraps) {
   EXPECT_EQ(map("black", "nearest")->scalar(at(1.25f, 0.75f)), 0);
 }
 
+TEST(ImageMap, MayBeContinuedOtherwiseAboveAndBelow) {
+  const ImageFile file("four.exr", {2, 2, 1, NumberType::single}, four);
+  for (const char* const interpolation : {"nearest", "bilinear"}) {
+    const auto map = [&](const char* wrap, const char* wrap_v) {
+      return create<ObjectMap>("ImageMap",
+                               {{"file", file.path}, {"interpolation", interpolation}, {"wrap", wrap}, {"wrap_v", wrap_v}});
+    };
+    // The rows are 0.1 0.2 above and 0.3 0.4 below.
+    EXPECT_NEAR(map("repeat", "clamp")->scalar(at(1.25f, 5.0f)), 0.1f, 1e-6f);
+    EXPECT_NEAR(map("clamp", "repeat")->scalar(at(5.0f, 1.25f)), 0.4f, 1e-6f);
+    EXPECT_NEAR(map("clamp", "mirror")->scalar(at(-3.0f, 1.25f)), 0.1f, 1e-6f);
+    EXPECT_EQ(map("repeat", "black")->scalar(at(1.25f, 5.0f)), 0);
+    EXPECT_NEAR(map("mirror", "same")->scalar(at(1.25f, 1.25f)), 0.2f, 1e-6f);
+  }
+}
+
 // A thousand times as far out as it is wide, places in texels are beyond what whole numbers count.
 TEST(ImageMap, FarBesideAWideImageIsItsBorder) {
   std::vector<float> ramp(2'200'000, 0.5f);

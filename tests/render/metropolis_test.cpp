@@ -171,6 +171,25 @@ INSTANTIATE_TEST_SUITE_P(PathSpace, Mutations,
                          ::testing::Values("BidirectionalMutation", "LensMutation", "CausticMutation", "MultiChainMutation",
                                            "ManifoldMutation"));
 
+// A ball within rough glass of a higher priority is hidden, so the picture is the same without it. Walks from the lamp go
+// through the glass against the order in which the vertices of paths stand.
+TEST(Metropolis, PathsThroughRoughGlassKnowTheirMedia) {
+  const auto light = [](const std::string& inner) {
+    return means(test::rendered(job_of(R"(Job { renderer: PathSpaceMetropolis { max_depth: 3, large_steps: 1 }
+      camera: PerspectiveCamera { from: [0, 0, -5], to: [0, 0, 0], fov: 26 }
+      image: ImageBuffer { width: 8, height: 8 }
+      scene: BvhScene { objects: [
+        Sphere { radius: 1, priority: 1, shader: Dielectric { ior: 1.5, roughness: 0.4 } }
+        Sphere { centre: [0, 3, 3], radius: 1, emission: DiffuseEmission { radiance: 20 } }
+        )" + inner + " ] } }",
+                                       1024),
+                                two_threads)
+                     ->picture())["Y"];
+  };
+  const double alone = light("");
+  EXPECT_NEAR(light("Sphere { radius: 0.6, shader: Dielectric { ior: 2.5, roughness: 0.4 } }"), alone, 0.01 * alone);
+}
+
 TEST(Metropolis, RefusesWhatItCannotMutate) {
   const auto refused = [](const std::string& renderer, const std::string& more = "") {
     return complaint([&] { rendered(job_of(ball_text(renderer, "width: 2", "0.5", more), 16), two_threads); });
@@ -179,6 +198,12 @@ TEST(Metropolis, RefusesWhatItCannotMutate) {
       has(refused("PrimarySampleMetropolis {}", "wavelengths: GridWavelengths {}\n"), "GridWavelengths cannot be mutated"));
   EXPECT_TRUE(has(refused("PrimarySampleMetropolis { inner: PrimarySampleMetropolis {} }"), "no paths that could be mutated"));
   EXPECT_EQ(refused("PrimarySampleMetropolis {}"), "");
+  // What would have no effect.
+  EXPECT_TRUE(
+      has(refused("PrimarySampleMetropolis { inner: PathTracer { samples: 9 } }"), "say it of the PrimarySampleMetropolis"));
+  EXPECT_TRUE(
+      has(refused("PrimarySampleMetropolis { inner: PathTracer { sampler: IndependentSampler {} } }"), "has no effect"));
+  EXPECT_TRUE(has(refused("PrimarySampleMetropolis { light_sampler: PowerLightSampler {} }"), "inner.light_sampler"));
   EXPECT_TRUE(has(refused("PathSpaceMetropolis { mutations: [] }"), "there must be some"));
 }
 

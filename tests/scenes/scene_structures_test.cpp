@@ -260,6 +260,41 @@ TEST(SceneStructures, AllHitsOfAShortRay) {
   }
 }
 
+// An object may stand in a scene and, in the same place, in others that this one holds: who has met one of them is told of the
+// others, whatever comes first.
+TEST(SceneStructures, AllHitsOnOneObjectInSeveralScenes) {
+  for (const char* structure : all_structures) {
+    if (structure == std::string("EmbreeScene")) continue;  // gathers hits only where there are interiors
+    const Ref<SceneObject> ball = object("Sphere", {});
+    const Ref<SceneObject> nested = scene(structure, {ball});
+    const Ref<SceneObject> instance = ref_cast<SceneObject>(Registry::instance().create("Instance"));
+    set(*instance, "scene", Value(Ref<Component>(nested)));
+    prepare_tree(*instance);
+    Ray r = ray({0, 0, 1.5f}, {0, 0, -1});
+    r.maximum = 1;
+    for (const std::vector<Ref<SceneObject>>& objects :
+         {std::vector{ball, nested, instance}, {instance, ball, nested}, {nested, instance, ball}}) {
+      const Ref<Scene> s = scene(structure, objects);
+      HitList list;
+      Hit& met = list.hits[0];
+      ASSERT_TRUE(ball->intersect(r, met));
+      list.size = 1;
+      s->all(r, list);
+      int on_ball = 0, in_nested = 0, in_instance = 0;
+      for (int i = 0; i < list.size; ++i) {
+        const Hit& hit = list.hits[i];
+        EXPECT_EQ(hit.object, ball.get()) << structure;
+        on_ball += hit.depth == 0;
+        in_nested += hit.depth == 1 && hit.scenes[0] == nested.get();
+        in_instance += hit.depth == 1 && hit.scenes[0] == instance.get();
+      }
+      EXPECT_GE(on_ball, 1) << structure;
+      EXPECT_EQ(in_nested, 1) << structure;
+      EXPECT_EQ(in_instance, 1) << structure;
+    }
+  }
+}
+
 /// z = 0, everywhere.
 class TestFloor final : public SceneObject {
  public:

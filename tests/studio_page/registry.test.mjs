@@ -47,7 +47,7 @@ const hosts = {
   Output: ["Job", "outputs"],
 };
 /** Kinds that only one class takes: that class is put into its own place first. */
-const inside = { Mutation: ["PathSpaceMetropolis", "mutations"], TrimmingCurve: ["NurbsSurface", "trimming"] };
+const inside = { Mutation: ["PathSpaceMetropolis", "mutations"], TrimmingCurve: ["NurbsSurface", "trimming"], Denoiser: ["DenoisedOutput", "denoiser"] };
 
 const classes = JSON.parse(run("classes", "--json"));
 const byName = new Map(classes.map((c) => [c.name, c]));
@@ -60,6 +60,14 @@ const hostOf = (name) => (fromInfinity.has(name) ? ["sky", "emission"] : null) ?
 /** What members take: a class of no such kind (importers and exporters are the program's) has no place in a document. */
 const taken = [...new Set(classes.flatMap((c) => c.members.filter((m) => m.type === "component").map((m) => m.class)))];
 const concrete = classes.filter((c) => !c.abstract && taken.some((kind) => isA(c.name, kind)));
+
+/** Of a class: the class that is put into its place first, if any, and where the two go. */
+function placeOf(name) {
+  const nested = Object.entries(inside).find(([kind]) => isA(name, kind))?.[1];
+  const [host, slot] = hostOf(nested ? nested[0] : name) ?? [];
+  assert.ok(host, `there is a place for ${name}`);
+  return { nested, host, slot };
+}
 
 /** All values, with components written out where they stand; without places and identifiers. */
 function values(components, root) {
@@ -78,6 +86,7 @@ const some = "AgXToneMap,MixMap,GaussianFilter,PathTracer,Sphere,Conductor,Envir
 const chosen = process.env.ETENDUE_CLASSES ?? some;
 const only = chosen === "all" ? null : chosen.split(",");
 test("every class is created and every member edited; saved, read again, undone", { timeout: 3000000 }, async (t) => {
+  for (const info of concrete) placeOf(info.name);
   const studio = await startStudio(t, base, "--threads", "1");
   const browser = await openBrowser(t);
   const page = await openPage(t, browser, studio.address, { viewport: { width: 1280, height: 1400 } });
@@ -88,9 +97,7 @@ test("every class is created and every member edited; saved, read again, undone"
   let edits = 0;
   const outcomes = { changed: 0, refused: [], withFile: [], problems: [] };
   for (const info of concrete.filter((c) => !only || only.includes(c.name))) {
-    const nested = Object.entries(inside).find(([kind]) => isA(info.name, kind))?.[1];
-    const [host, slot] = hostOf(nested ? nested[0] : info.name) ?? [];
-    assert.ok(host, `there is a place for ${info.name}`);
+    const { nested, host, slot } = placeOf(info.name);
     let id = 0;
     try {
       await page.evaluate((name) => driver.select(name), host);

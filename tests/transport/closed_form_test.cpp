@@ -39,8 +39,8 @@ TEST(ClosedForm, FurnaceReachesItsLimit) {  // L = 1 / (1 - 0.8)
 TEST(ClosedForm, GuidedFurnaceReachesItsLimit) {  // L = 1 / (1 - 0.8)
   const std::string sphere =
       std::string("Sphere { radius: 1, shader: Lambertian { color: 0.8 }, emission: ") + unit_emission + " }";
-  for (const char* more : {"", ", next_event: false", ", target: \"second_moment\""}) {
-    const auto m = measure(job_text(std::string("GuidedPathTracer { max_depth: 10000, samples: 1024") + more + " }",
+  for (const char* more : {"", ", next_event: false", ", learn_share: false, region_samples: 8"}) {
+    const auto m = measure(job_text(std::string("GuidedPathTracer { max_depth: 10000, samples: 256") + more + " }",
                                     "PerspectiveCamera { from: [0.3, 0.1, 0.2] m, to: [0, 0, 1] m, fov: 90 deg }", 16, sphere));
     expect_value(m, 5);
   }

@@ -88,6 +88,27 @@ INSTANTIATE_TEST_SUITE_P(
                       GroupCase{"whitted", "WhittedRenderer {}", 1, 0.5, 16}),
     [](const auto& info) { return info.param.name; });
 
+// In fog, by photons in all three ways: the light of both lamps is that of the two groups, which differ as the lamps do.
+TEST(LightGroups, AreOfPhotonsInMedia) {
+  for (const char* media : {"points", "along_rays", "beams"}) {
+    const auto render = test::rendered(job_of(fmt::format(R"(bulb = DiffuseEmission {{ radiance: 3 }}
+          lamp = DiffuseEmission {{ radiance: 1 }}
+          Job {{ renderer: ProgressivePhotonMapper {{ media: {}, photon_walks: 4000 }}
+            camera: PerspectiveCamera {{ from: [0, 0, 0], to: [0, 0, 1], fov: 60 }}
+            image: ImageBuffer {{ width: 6, height: 6, layers: ["light.bulb", "light.lamp"] }}
+            scene: BruteForceScene {{ objects: [
+              Sphere {{ radius: 2, shader: PassThrough {{}}, interior: HomogeneousVolume {{ scattering: 0.5, absorption: 0.1 }} }}
+              Point {{ position: [0, 1, 1], emission: bulb }}, Point {{ position: [0, -1, 1], emission: lamp }} ] }} }})",
+                                                          media),
+                                              128),
+                                       two_threads);
+    expect_whole(render->picture());
+    std::map<std::string, double> mean = means(render->picture());
+    EXPECT_NEAR(mean["light.bulb.Y"], 3 * mean["light.lamp.Y"], 0.1 * mean["light.bulb.Y"]) << media;
+    EXPECT_EQ(mean["light.rest.Y"], 0) << media;
+  }
+}
+
 // What no name says is the rest; several names make one group; an object's name and its emission's are both its own.
 TEST(LightGroups, AreOfNames) {
   const auto found = [](const std::string& layers) {

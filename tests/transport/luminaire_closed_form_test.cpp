@@ -80,5 +80,16 @@ TEST(ClosedFormLuminaires, LightSeenThroughABoundaryThatIsNotThere) {
                2);
 }
 
+// A ball whose every place sends radiance 1 within 80 degrees of +z, seen from there: a disc of 1, pi/4 of the picture. Most of
+// those directions lead into the ball from most places, and those places are seen all the same.
+TEST(ClosedFormLuminaires, WhereNoLightLeavesInMostDirections) {
+  const char* const ball =
+      "Sphere { emission: SpotEmission { axis: [0,0,1], inner_angle: 80 deg, outer_angle: 80 deg, radiance: 1 } }";
+  const char* const camera = "OrthographicCamera { from: [0,0,5], to: [0,0,0], up: [0,1,0], width: 2 }";
+  for (const char* renderer :
+       {"PathTracer { samples: 64 }", "LightTracer { samples: 2048 }", "BidirectionalPathTracer { samples: 64 }"})
+    expect_value(measure(job_text(renderer, camera, 16, ball)), M_PI / 4, 0.01);
+}
+
 }  // namespace
 }  // namespace etendue::test

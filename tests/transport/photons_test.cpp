@@ -134,5 +134,13 @@ TEST(Photons, shrink_as_knaus_and_zwicker_say) {
   EXPECT_NEAR(shrunk_area(99999, 0.7) * std::pow(100000.0, 0.3) * std::tgamma(1.7), 1, 1e-4);
 }
 
+// Walks from the camera end where photons are looked for, and of glowing gas there are none.
+TEST(VertexConnectionMerging, AloneDoesNotFindTheLightOfMediaOnSurfaces) {
+  const auto merging = ref_cast<Renderer>(Registry::instance().create("VertexConnectionMerging"));
+  EXPECT_TRUE(merging->finds() & emitting_media);
+  set(*merging, "connecting", Value(false));
+  EXPECT_FALSE(merging->finds() & emitting_media);
+}
+
 }  // namespace
 }  // namespace etendue::test

@@ -346,6 +346,14 @@ class Description {
     return *this;
   }
 
+  /// The class does not have this member of its interface, as it would have no effect; `why` is told whoever sets it.
+  Description& without(const std::string& name, std::string why) {
+    if (std::erase_if(info_.members, [&](const Member& m) { return m.name == name; }) == 0)
+      throw Error("there is no member '" + name + "' that the class could be without");
+    info_.absent.push_back({name, std::move(why)});
+    return *this;
+  }
+
   /// A plain value where this class's interface is expected becomes an object of this class with that member set.
   Description& literal(std::string member) {
     info_.literal = std::move(member);

@@ -107,12 +107,18 @@ struct Member {
   void (*store)(Component&, const Member&, const Value&) = nullptr;
 };
 
+/// A member of its interface that a class does not have.
+struct AbsentMember {
+  std::string name, why;  ///< why: what is told whoever sets it, "its paths come from luminaires"
+};
+
 class ClassInfo {
  public:
   std::string name;
   const ClassInfo* parent = nullptr;  ///< null for interfaces that stand at the top
   std::string summary, source;
   std::vector<Member> members;           ///< inherited ones first
+  std::vector<AbsentMember> absent;      ///< those of its parents that mean nothing to it
   Ref<Component> (*create)() = nullptr;  ///< null: abstract
   std::type_index type = typeid(void);
   std::string provider;  ///< "" for built-in parts, else the plugin's file

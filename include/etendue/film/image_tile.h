@@ -59,9 +59,10 @@ class ImageTile {
   /// Adds a sample at a film point (pixels; centres at half-integers), in the pixel (px, py) it belongs to. Bad values
   /// are noted and count as zero.
   /// `weight` says for how many samples it counts, beside the filter: a pixel is sum f weight value / sum f weight.
-  /// `by_length`, when given, holds the parts of the value by path length, for `ImageBuffer::path_lengths`.
+  /// `parts`, when given, holds the parts of the value for the picture's layers: by path length, then by
+  /// light group, as PictureFormat counts them.
   void contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, float weight = 1,
-                  std::span<const Spectrum> by_length = {});
+                  std::span<const Spectrum> parts = {});
   /// Adds light that did not come through a pixel of its own (light tracing): what one path brings to the mean radiance over
   /// the whole picture. To a pixel it brings f value W H / N, with f the filter there, W H the pixels of the whole picture, of
   /// a crop too, and N all the paths that were counted (count_path). May lie anywhere in the picture. (px, py) and sample say
@@ -85,7 +86,7 @@ class ImageTile {
   void note_large(const LargeSample&);
   static void keep_larger(std::vector<LargeSample>&, const LargeSample&, size_t most);
   void add_light(Point2 film, int px, int py, const Xyz&, float weight);
-  void add_lengths(Point2 film, int px, int py, const Wavelengths&, float weight, std::span<const Spectrum> by_length);
+  void add_parts(Point2 film, int px, int py, const Wavelengths&, float weight, std::span<const Spectrum> parts);
   size_t own_pixel(int px, int py) const { return size_t(py - area_.y0) * size_t(area_.width()) + size_t(px - area_.x0); }
 
   std::shared_ptr<const PictureFormat> format_;
@@ -94,7 +95,7 @@ class ImageTile {
   PixelArea area_, extent_;             // those of them that are in the picture, and all in the picture they count for
   std::vector<double> light_;           // X Y Z and Y^2 by the filter, per pixel of the extent
   bool lit_ = false;                    // whether any of it is not zero
-  std::vector<double> lengths_;         // X Y Z per path length and pixel of the extent
+  std::vector<double> parts_;           // X Y Z per part and pixel of the extent
   std::vector<std::uint32_t> samples_;  // in each pixel of the area
   std::vector<double> weights_;         // what they count for beyond their number, when they do
   std::vector<double> features_;        // feature_values per pixel of the area

@@ -45,6 +45,9 @@ struct PhotonBeam {
   std::uint32_t vertices : 29 = 0;       ///< of its walk before what it is scattered at; 1: it comes straight from a luminaire
   bool single : 1 = false;               ///< it holds the hero wavelength alone
   bool caustic : 1 = false;              ///< it came from the luminaire by specular scattering alone, once or more
+  std::int32_t luminaire = -1;           ///< SceneObject::luminaire_index of that
+
+  const SceneObject* from(const Scene& scene) const { return luminaire < 0 ? nullptr : scene.luminaires()[size_t(luminaire)]; }
 
   /// l_0 m: what the chance to end begins after.
   static constexpr float certain_depth = 2;
@@ -117,7 +120,8 @@ class BeamMap {
     float near = 0, far = reach;
     for (int axis = 0; axis < 3; ++axis) {
       const float a = (box.low[axis] - origin[axis]) * inverse[axis], b = (box.high[axis] - origin[axis]) * inverse[axis];
-      // In this order 0 / 0, of a ray that lies in the side of a box, leaves both as they are.
+      // Of a ray that lies in the side of a box one of them is 0 / 0, and the box may count as missed. That loses nothing: it
+      // is larger by the radius than all beams in it.
       near = std::max(near, std::min(a, b));
       far = std::min(far, std::max(a, b));
     }

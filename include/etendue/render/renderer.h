@@ -69,6 +69,9 @@ class Renderer : public Component {
   std::vector<Advice> misses(const SceneTraits&) const;
 
  protected:
+  /// Of a renderer inside, whose samples this one takes: fails where the description says of them in there what only counts
+  /// out here, and would have no effect.
+  void refuse_samples_of(const Renderer& inner) const;
   /// What `start` makes, when sampler and light sampler are ready. By default a process that asks `radiance`.
   virtual std::unique_ptr<RenderProcess> begin(const RenderContext&) const;
 };

@@ -13,6 +13,7 @@
 // These densities only weigh strategies against one another, and for that need be the same whichever strategy made
 // the path: S and s_b are means over the path's wavelengths, and specular scattering counts 1.
 
+#include <optional>
 #include <vector>
 
 #include "etendue/camera.h"
@@ -36,11 +37,36 @@ struct KeptVertex : Vertex {
   bool connectable() const { return on_surface() ? scatters_smoothly() : kind != Kind::escape; }
 };
 
+template <bool clear>
+class Walk;
+
+/// Who chooses directions of walks from the camera where not scattering alone does: a guide.
+class CameraDirections {
+ public:
+  virtual ~CameraDirections() = default;
+  struct Choice {
+    std::optional<ScatterSample> next;  ///< its density is that of whatever might have chosen it; empty: absorbed
+    float more = 1;                     ///< that density, over the one of scattering alone
+  };
+  /// Where a walk goes on from its last vertex.
+  virtual Choice sample(const Walk<false>&, float choice, Point2 u) = 0;
+  /// With which density [1/sr] a walk that came from `out` goes on to `in`, where scattering alone has `scatter`.
+  virtual float density(const Vertex&, const Vector3& out, const Vector3& in, float scatter) const = 0;
+};
+
 /// How long walks are.
 struct WalkLimits {
-  int longest = 64;        ///< segments
-  int roulette_depth = 5;  ///< segments before Russian roulette may end a walk
+  int longest = 64;                        ///< segments
+  int roulette_depth = 5;                  ///< segments before Russian roulette may end a walk
+  CameraDirections* directions = nullptr;  ///< of walks from the camera, and in the densities of others as if from there; null:
+                                           ///< scattering alone chooses them
 };
+
+/// Density [1/sr] with which a walk from the camera that came from `out` goes on to `in`.
+inline float camera_density(const CameraDirections* directions, const Vertex& v, const Vector3& out, const Vector3& in,
+                            float scatter) {
+  return directions ? directions->density(v, out, in, scatter) : scatter;
+}
 
 /// What is told of a walk while it grows.
 struct WalkListener {
@@ -57,8 +83,6 @@ struct WalkListener {
 };
 
 class EmissionTargets;
-template <bool clear>
-class Walk;
 
 /// Fills a kept vertex with what a walk has come to, for algorithms that let walks grow by themselves; set `keeps` of the walk.
 /// `before` is the vertex before, and `density` that of the direction it was left in [1/sr], 1 after a specular lobe (where
@@ -70,7 +94,8 @@ void keep(const Walk<false>&, const KeptVertex& before, float density, const Lig
 void walk_from_camera(const RenderContext&, const Ray&, const WalkLimits&, SampleContext&, std::vector<KeptVertex>& walk,
                       WalkListener&);
 
-/// A walk that begins at a luminaire, chosen by power. False: no light leaves there, and the walk is empty. The context's
+/// A walk that begins at a luminaire, chosen by power. False: no light leaves there in the direction that was chosen; the walk
+/// is the place on the luminaire alone, which may be seen from elsewhere, or empty. The context's
 /// wavelengths and numbers are the walk's. `targets`, if any: it goes towards one of them.
 bool walk_from_luminaire(const Scene&, const LightSampler&, float time, const WalkLimits&, SampleContext&,
                          std::vector<KeptVertex>& walk, EmittedLight&, const EmissionTargets* targets = nullptr,

@@ -17,6 +17,7 @@ struct EmittedLight {
   float position = 0;   ///< [1/m^2] on the luminaire; of one at infinity: across the ray
   float direction = 0;  ///< [1/sr]
   bool infinite = false;
+  bool placed = false;  ///< `point` and `position` hold, though no light may leave there in the direction that was chosen
   /// What the light's throughput begins with.
   Spectrum throughput() const { return radiance / (choice * position * direction); }
 };

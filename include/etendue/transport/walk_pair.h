@@ -47,10 +47,10 @@ class WalkPair {
  public:
   WalkPair(const RenderContext&, const LightSampler&, SampleContext&, const StrategyWeights&);
 
-  /// Lets the camera's walk grow. `listener` hears of light that media send (s = 0) and of luminaires passed straight through;
-  /// those at the walk's vertices are for `meet`.
+  /// Lets the camera's walk grow; whoever chooses its directions (WalkLimits) is in the weights from then on. `listener` hears
+  /// of light that media send (s = 0) and of luminaires passed straight through; those at the walk's vertices are for `meet`.
   void from_camera(const Ray&, const WalkLimits&, LightListener&);
-  /// Lets the light's walk grow, by numbers of its own ("light"). It has no vertices when no light leaves.
+  /// Lets the light's walk grow, by numbers of its own ("light"); after the camera's. It has no vertices when no light leaves.
   void from_luminaire(float time, const WalkLimits&);
 
   int camera_vertices() const { return int(camera_.size()); }
@@ -58,6 +58,7 @@ class WalkPair {
   /// z_{t-1} and y_{s-1}.
   const KeptVertex& camera_vertex(int t) const { return camera_[size_t(t - 1)]; }
   const KeptVertex& light_vertex(int s) const { return light_[size_t(s - 1)]; }
+  const std::vector<KeptVertex>& camera_walk() const { return camera_; }
   /// Whether mirrors and clear surfaces alone lie between the lens and z_{t-1}.
   bool by_mirrors(int t) const;
   const Wavelengths& light_wavelengths() const { return light_wavelengths_; }
@@ -88,6 +89,7 @@ class WalkPair {
   std::vector<KeptVertex>&camera_, &light_;
   Wavelengths light_wavelengths_;
   const LightFront front_;
+  CameraDirections* directions_ = nullptr;
   float direct_ = 0;  ///< density of y_0 when it is sampled as seen from y_1
 };
 

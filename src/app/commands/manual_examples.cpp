@@ -60,6 +60,7 @@ constexpr Example examples[] = {
     {"UvTransformMap", "UvTransformMap { map: BricksMap { repeat: [16, 24] }, angle: 30 deg }"},
     {"AddMap", "AddMap { first: NoiseMap { size: 0.3 m }, second: CheckerMap { second: 0.3, repeat: [16, 8, 1] } }"},
     {"MixMap", "MixMap { first: srgb(0.8, 0.2, 0.1), second: srgb(0.1, 0.2, 0.6), amount: FbmMap { size: 0.5 m } }"},
+    {"RgbProductMap", "RgbProductMap { first: RgbProductMap { first: NoiseMap { size: 0.3 m } }, factor: [1, 0.5, 0.2] }"},
     {"MultiplyMap", "MultiplyMap { first: NoiseMap { size: 0.3 m }, second: CheckerMap { first: 0.5, repeat: [16, 8, 1] } }"},
     {"TriplanarMap", "TriplanarMap { map: BricksMap { repeat: [4, 8] } }"},
     {"PlanarMap", "PlanarMap { map: BricksMap { repeat: [4, 8] } }"},

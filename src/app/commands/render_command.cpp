@@ -86,9 +86,21 @@ std::string reason_text(Ended ended) {
 std::string passes_text(const Render& render) {
   const std::optional<IndexRange>& passes = render.settings().steps;
   if (!passes) return "";
-  const auto step = std::int64_t(render.samples_per_step());
-  return fmt::format("passes {}:{} of 0:{}, {} sample{} per pixel each\n", passes->begin, passes->end,
-                     (render.job().renderer->samples + step - 1) / step, step, step == 1 ? "" : "s");
+  const std::uint32_t step = render.samples_per_step();
+  std::vector<std::string> made;
+  std::uint32_t count = 0;
+  for (const IndexRange& done : render.samples_done()) {
+    const std::uint32_t begin = std::max(done.begin / step, passes->begin),
+                        end = std::min((done.end + step - 1) / step, passes->end);
+    if (begin >= end) continue;
+    made.push_back(fmt::format("{}:{}", begin, end));
+    count += end - begin;
+  }
+  const std::string asked =
+      count < passes->end - passes->begin ? fmt::format(" ({}:{} were asked for)", passes->begin, passes->end) : "";
+  return fmt::format("passes {}{} of 0:{}, {} sample{} per pixel each\n",
+                     made.empty() ? "none" : fmt::format("{}", fmt::join(made, ", ")), asked,
+                     (std::uint32_t(render.job().renderer->samples) + step - 1) / step, step, step == 1 ? "" : "s");
 }
 
 /// The files that were written.

@@ -108,7 +108,8 @@ std::string what_lacks(const Image& picture, const Job& job, const RenderOptions
   const bool cropped = !said("full_width").empty() || !options.crop.empty();
   if (!cropped && (picture.width != job.image->width || picture.height != job.image->height)) return "has another size";
   const std::string hash = said("file_hash"), samples = said("samples");
-  if (!hash.empty() && hash != options.file_hash()) return "is of another version of the file, or other options";
+  if (!hash.empty() && hash != job.metadata.at("file_hash"))
+    return "is of another version of the file or of one that it names, or of other options";
   const bool counted = !options.open_ended() && job.time_limit == 0 && job.error_limit == 0;
   int count = 0;
   std::from_chars(samples.data(), samples.data() + samples.size(), count);

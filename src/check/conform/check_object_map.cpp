@@ -138,12 +138,11 @@ class MapTrial {
     // averages of it know nothing of what is beyond: they only come near the mean.
     for (const char* nonlinear : {"HypertextureMap", "MarbleMap", "TurbulenceMap", "CellularMap"})
       if (map_.class_info().name == nonlinear) return;
-    const auto wraps = [&](const char* how) {
-      if (!map_.class_info().find("wrap")) return false;
-      const Value value = get(map_, "wrap");
-      return value.as<std::string>() && *value.as<std::string>() == how;
-    };
-    if (wraps("black") || wraps("clamp")) return;
+    for (const char* member : {"wrap", "wrap_v"}) {
+      if (!map_.class_info().find(member)) continue;
+      const Value value = get(map_, member);
+      if (const auto* how = value.as<std::string>(); how && (*how == "black" || *how == "clamp")) return;
+    }
     constexpr int side = 24;
     for (const float width : {0.05f, 0.4f, 3.0f}) {
       statistics::Mean difference;

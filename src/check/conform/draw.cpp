@@ -7,6 +7,7 @@
 #include "etendue/describe/color.h"
 #include "etendue/language/language.h"
 #include "etendue/scene.h"
+#include "shader_trial.h"
 
 namespace etendue::conform {
 namespace {
@@ -269,6 +270,30 @@ Drawn part_with_files(const ClassInfo& info, const Fixtures& fixtures, std::mt19
   return finished([&] { return drawer.with_defaults(info, false, true); });
 }
 
+namespace {
+
+/// Whether light leaves simple objects with an emission; one that is asked for a power refuses objects that none leaves, which
+/// says nothing of the class. Other parts: true.
+bool emits(const Ref<Component>& part) {
+  const Ref<EmissionShader> emission = ref_cast<EmissionShader>(part);
+  if (!emission || emission->only_at_infinity()) return true;
+  bool all = true;
+  for (const char* name : {"Rectangle", "Sphere"}) {
+    const Ref<SceneObject> host = ref_cast<SceneObject>(Registry::instance().create(name));
+    host->emission = emission;
+    try {
+      host->prepare();
+      emission->power(*host, spread_wavelengths(550));
+    } catch (const Error&) {
+      all = false;
+    }
+    emission->prepare();  // the host it remembers is gone
+  }
+  return all;
+}
+
+}  // namespace
+
 Drawn draw_part(const ClassInfo& info, const Fixtures& fixtures, std::mt19937_64& random) {
   Drawer drawer(fixtures, random);
   const std::string defaults = write_description(*create(info));
@@ -277,7 +302,7 @@ Drawn draw_part(const ClassInfo& info, const Fixtures& fixtures, std::mt19937_64
   for (int i = 0; i < tries; ++i) {
     drawn = finished([&] { return drawer.with_random(info, 0, 0.75 - 0.6 * i / tries); });
     // One with all defaults says nothing new, but some classes have no others.
-    if (drawn.part && (drawn.text != defaults || i >= 4)) break;
+    if (drawn.part && emits(drawn.part) && (drawn.text != defaults || i >= 4)) break;
   }
   return drawn;
 }

@@ -46,8 +46,7 @@ void ShapedEmission::prepare_amounts(std::string_view name) {
     integral_ = integrate_spectrum(quantity_, [&](float lambda) {
       const float value = constant_->at(lambda, ColorUse::radiance);
       if (!(value >= 0 && std::isfinite(value)))
-        fail(name, "must be neither negative nor infinite, and is " + std::to_string(value) + " at " +
-                       std::to_string(int(lambda)) + " nm");
+        fail(name, "must be neither negative nor infinite, and is " + fmt::format("{} at {} nm", value, int(lambda)));
       return value;
     });
     if (amount_asked() && !(integral_ > 0))

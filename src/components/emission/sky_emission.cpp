@@ -55,7 +55,7 @@ class SkyEmission final : public EmissionShader {
     std::array<float, SkyModel::channels> albedo;
     for (int c = 0; c < SkyModel::channels; ++c) {
       const float value = ground_albedo->at(SkyModel::wavelength(c), ColorUse::reflectance);
-      if (!(value >= 0 && value <= 1)) fail("ground_albedo", "must lie within 0 and 1, and is " + std::to_string(value));
+      if (!(value >= 0 && value <= 1)) fail("ground_albedo", "must lie within 0 and 1, and is " + fmt::format("{}", value));
       albedo[size_t(c)] = value;
     }
     if (!(turbidity >= 1 && turbidity <= 10)) fail("turbidity", "must lie within 1 and 10");

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "etendue/exporter.h"
+#include "files/contained_file.h"
 #include "files/input_files.h"
 #include "files/regular_file.h"
 #include "files/whole_file.h"
@@ -47,6 +48,7 @@ std::string Exporting::write_beside(const std::string& what, const std::string& 
 }
 
 std::string Exporting::copy_beside(const std::string& path) {
+  if (const auto inner = contained_file(path)) return unpack_beside(path, *inner);
   std::error_code error;
   const fs::path here = fs::weakly_canonical(fs::absolute(folder_.empty() ? fs::path(".") : fs::path(folder_)), error);
   const fs::path from = fs::weakly_canonical(fs::absolute(path), error);
@@ -70,6 +72,39 @@ std::string Exporting::copy_beside(const std::string& path) {
   } while (!is_free(target));
   taken_paths_.insert(target);
   beside_.push_back({target, {}, from.string()});
+  return name;
+}
+
+// An image within a model, which other programs cannot open there, becomes a file of its own.
+std::string Exporting::unpack_beside(const std::string& path, const ContainedFile& inner) {
+  std::error_code error;
+  const fs::path container = fs::weakly_canonical(fs::absolute(inner.container), error);
+  note_input(container.string());
+  std::string& name = copied_[container.string() + "#" + inner.name];
+  if (!name.empty()) return name;
+  // "model.glb#images[3].png" is called "model-images_3.png" behind the stem.
+  const fs::path last(inner.name);
+  std::string plain;
+  for (const char c : last.stem().string())
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      plain += c;
+    else if (c == '[' || c == '_' || c == '-')
+      plain += '_';
+  std::string bytes;
+  try {
+    bytes = read_regular_file(path);
+  } catch (const Error& reason) {
+    throw Error(fmt::format("cannot read '{}': {}", path, reason.what()));
+  }
+  std::string target;
+  const std::string whole = fmt::format("{}-{}", container.stem().string(), plain), ending = last.extension().string();
+  do {
+    const int number = numbers_["copy of " + whole + ending]++;
+    name = number == 0 ? fmt::format("{}-{}{}", stem_, whole, ending) : fmt::format("{}-{}-{}{}", stem_, number, whole, ending);
+    target = (fs::path(folder_) / name).string();
+  } while (!is_free(target));
+  taken_paths_.insert(target);
+  beside_.push_back({target, std::move(bytes), {}});
   return name;
 }
 

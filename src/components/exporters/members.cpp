@@ -61,6 +61,16 @@ AnimatedTransform transform_of(const Component& of, std::string_view member) {
 }
 const std::string& class_of(const Component& c) { return c.class_info().name; }
 
+bool textured(const Component* shader) {
+  if (!shader) return false;
+  const std::string& type = class_of(*shader);
+  if (type == "ImageMap" || type == "CheckerMap" || type == "UvTransformMap") return true;
+  for (const Member& m : shader->class_info().members)
+    if (m.kind == Kind::component && !m.list)
+      if (const Ref<Component> inner = part_of(*shader, m.name); inner && textured(inner.get())) return true;
+  return false;
+}
+
 Color constant_of(const Component& map) { return class_of(map) == "ConstantMap" ? color_of(map, "value") : nullptr; }
 
 std::optional<std::array<double, 3>> written_rgb(const Color& c) {

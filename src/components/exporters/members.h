@@ -14,7 +14,7 @@
 
 namespace etendue {
 
-// Members of a part by name; what is of another kind, or no member of it, is 0, false, "" or null. Numbers that floats hold are
+// Members of a part by name, which it must have; what is of another kind is 0, false, "" or null. Numbers that floats hold are
 // as they would be written (0.3, not 0.30000001192092896), angles are in degrees, files are paths that can be opened.
 double number_of(const Component&, std::string_view member);
 bool truth_of(const Component&, std::string_view member);
@@ -25,6 +25,8 @@ Color color_of(const Component&, std::string_view member);
 AnimatedTransform transform_of(const Component&, std::string_view member);
 const std::string& class_of(const Component&);
 
+/// Whether any map of a shader looks at surface coordinates; null: none does.
+bool textured(const Component* shader);
 /// The value of a map that is the same everywhere; null: it is not.
 Color constant_of(const Component& map);
 /// The components of a colour that was written as rgb(...), perhaps times a number; nothing: it was written otherwise.

@@ -19,7 +19,7 @@ inline double luminaire_power(const SceneObject& luminaire) {
   }
   const double watts = sum / sets * double(range);
   if (!(watts >= 0 && std::isfinite(watts)))
-    luminaire.emission->fail({}, "the power of the luminaire is not a finite number: " + std::to_string(watts) + " W");
+    luminaire.emission->fail({}, "the power of the luminaire is not a finite number: " + fmt::format("{} W", watts));
   return watts;
 }
 

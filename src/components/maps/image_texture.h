@@ -10,6 +10,12 @@ namespace etendue {
 
 /// What lies outside an image.
 enum class Wrap : std::uint8_t { repeat, mirror, clamp, black };
+/// To its left and right, and above and below it.
+struct Wraps {
+  Wrap u, v;
+  Wraps(Wrap both) : u(both), v(both) {}  // NOLINT: one may stand for both
+  Wraps(Wrap along_u, Wrap along_v) : u(along_u), v(along_v) {}
+};
 
 /// An image on the unit square, (0, 0) at its lower left corner.
 class ImageTexture {
@@ -30,11 +36,11 @@ class ImageTexture {
   // Lookups write `channels` numbers. Where a coordinate is no number, all are 0.
 
   /// The texel.
-  virtual void nearest(Point2 at, Wrap, float* out) const = 0;
+  virtual void nearest(Point2 at, Wraps, float* out) const = 0;
   /// Between the four nearest texels.
-  virtual void bilinear(Point2 at, Wrap, float* out) const = 0;
+  virtual void bilinear(Point2 at, Wraps, float* out) const = 0;
   /// The mean over the footprint's ellipse, which is widened to no less than its length over `maximum_anisotropy`.
-  virtual void mean(Point2 at, const UvFootprint&, Wrap, float* out) const = 0;
+  virtual void mean(Point2 at, const UvFootprint&, Wraps, float* out) const = 0;
   /// How many texels the ellipse is long.
   virtual float texels_along(const UvFootprint&) const = 0;
   static constexpr int maximum_anisotropy = 32;

@@ -31,7 +31,7 @@ class BidirectionalMutation final : public Mutation {
     if (l < 0) return {};
     const double v = choices.next();
     const int more = v < 0.25 ? -1 : v < 0.5 ? 1 : 0;
-    if (r + more < 1) return {};
+    if (r + more < 1 || r + more > longest) return {};  // the way back would never be chosen
     space.begin(y, x, l);
     const std::vector<PathVertex> rest(x.x.begin() + l + r, x.x.end());
     if (!space.join(y, rest, r + more, choices)) return {};

@@ -44,10 +44,12 @@ class AdaptiveSampling final : public Renderer {
          "of eight samples in the mean, and the error is known after eight of them. They depend on those before, so parts "
          "cannot be rendered apart, samples cannot be replayed, and a crop has other samples than the whole picture.",
          "Kirk & Arvo 1991, Unbiased sampling techniques for image synthesis")
+        .without("light_sampler", "the renderer inside chooses luminaires (inner.light_sampler)")
+        .without("map_filter", "the renderer inside has it (inner.map_filter)")
         .member<&AdaptiveSampling::inner>(
             "inner", "",
-            "the renderer, whose samples must stay in their own pixels; its light_sampler is said there, but how many samples "
-            "there are, their sampler and map_filter out here: each is refused at the other place")
+            "the renderer, whose samples must stay in their own pixels; how many samples there are and their sampler are said "
+            "out here, and refused in there")
         .member<&AdaptiveSampling::most>("most", "1", "samples of a pixel, in relation to the mean; 1: as many everywhere",
                                          range(1, 1024), soft(1, 64), logarithmic)
         .member<&AdaptiveSampling::dark>(
@@ -60,6 +62,7 @@ class AdaptiveSampling final : public Renderer {
   std::uint32_t samples_per_step(std::uint32_t) const override { return mean_samples; }
   bool steps_depend() const override { return true; }
   Estimator estimator() const override { return Estimator::correlated; }
+  void prepare() override { map_filter = inner ? inner->map_filter : 0; }
   Expectation expectation() const override { return inner ? inner->expectation() : Expectation::unbiased; }
   PathClasses finds() const override { return inner ? inner->finds() : no_paths; }
 
@@ -246,11 +249,6 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
   }
 }
 
-/// Whether the description gives this member, be it what it would be anyway.
-bool is_written(const Component& component, std::string_view member) {
-  return component.origin && std::ranges::any_of(component.origin->members, [&](const auto& m) { return m.first == member; });
-}
-
 std::unique_ptr<RenderProcess> AdaptiveSampling::begin(const RenderContext& context) const {
   if (!inner) fail("inner", "needs a renderer whose samples it takes");
   if (inner->splats())
@@ -259,12 +257,7 @@ std::unique_ptr<RenderProcess> AdaptiveSampling::begin(const RenderContext& cont
              " brings light to other places of the film than a sample's own pixel: there is no more or less of it in a pixel");
   if (inner->estimator() == Estimator::correlated || inner->steps_depend())
     fail("inner", inner->class_info().name + " does not take its samples one by one, independent of each other");
-  for (const char* name : {"samples", "sampler"})
-    if (is_written(*inner, name)) inner->fail(name, "has no effect here: say it of the AdaptiveSampling around");
-  if (is_written(*this, "light_sampler"))
-    fail("light_sampler", "has no effect here: the renderer that is 'inner' chooses the lights, inner.light_sampler");
-  if (inner->map_filter != map_filter && inner->map_filter != 0)
-    fail("inner", "its map_filter is not looked at: AdaptiveSampling has one");
+  refuse_samples_of(*inner);
   return std::make_unique<AdaptiveProcess>(*this, context);
 }
 

@@ -25,6 +25,7 @@ class AmbientOcclusionRenderer final : public Renderer {
          "a grey from 0 (enclosed) to 1 (open). Where the camera sees nothing it is 1. Surfaces are seen from both sides.",
          "Zhukov, Iones & Kronin 1998, An ambient light illumination model; Landis 2002, Production-ready global "
          "illumination")
+        .without("light_sampler", "it looks at no luminaires")
         .group("Rays")
         .member<&AmbientOcclusionRenderer::distance>("distance", "m", "what is farther away blocks nothing; 0: all does",
                                                      at_least(0), soft(0.01, 100), logarithmic)

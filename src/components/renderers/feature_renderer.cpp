@@ -23,6 +23,7 @@ class FeatureRenderer final : public Renderer {
     d.summary(
          "Shows what the first surfaces are like instead of light, in colours of linear sRGB, the same for every sample of a "
          "place. Where nothing is met it is black.")
+        .without("light_sampler", "it looks at no luminaires")
         .member<&FeatureRenderer::feature>(
             "feature", "",
             "normal, shading_normal: 0.5 + 0.5 n as (r, g, b), n pointing to the surface's front. depth: the distance from the "

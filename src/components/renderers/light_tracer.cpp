@@ -21,6 +21,7 @@ class LightTracer final : public Renderer {
   static void describe(Description<LightTracer>& d) {
     d.summary("Paths from the luminaires, connected to the lens at every vertex: best for caustics on what is seen directly.",
               "Arvo 1986, Backward ray tracing; Dutré, Lafortune & Willems 1993; Veach 1997, section 10.1");
+    d.without("map_filter", "its paths come from luminaires, and what they meet is not averaged");
     d.group("Paths");
     describe_max_depth<&LightTracer::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
     describe_roulette_depth<&LightTracer::roulette_depth>(d);

@@ -44,6 +44,7 @@ class PathSpaceMetropolis final : public Renderer {
   static void describe(Description<PathSpaceMetropolis>& d) {
     d.summary("Metropolis light transport that mutates paths themselves.",
               "Veach & Guibas 1997, Metropolis light transport; Veach 1997, chapter 11");
+    d.without("map_filter", "its chains know places on surfaces, and not how wide a pixel is there");
     d.group("Paths");
     describe_max_depth<&PathSpaceMetropolis::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
     d.member<&PathSpaceMetropolis::mutations>("mutations", "", "ways in which paths are changed");

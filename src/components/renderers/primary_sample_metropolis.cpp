@@ -24,7 +24,12 @@ class PrimarySampleMetropolis final : public Renderer {
     d.summary(
          "Metropolis light transport in primary sample space: mutates the numbers that another renderer's paths are made of.",
          "Kelemen et al. 2002; Veach & Guibas 1997")
-        .member<&PrimarySampleMetropolis::inner>("inner", "", "the renderer whose paths are mutated")
+        .without("light_sampler", "the renderer inside chooses luminaires (inner.light_sampler)")
+        .without("map_filter", "the renderer inside has it (inner.map_filter)")
+        .member<&PrimarySampleMetropolis::inner>(
+            "inner", "",
+            "the renderer whose paths are mutated; how many samples there are and their sampler are said out here, and refused "
+            "in there")
         .member<&PrimarySampleMetropolis::direct>(
             "direct", "",
             "whether paths of one or two segments are found by the renderer inside, sample by sample, and not by chains");
@@ -33,6 +38,7 @@ class PrimarySampleMetropolis final : public Renderer {
                     &PrimarySampleMetropolis::deviation, &PrimarySampleMetropolis::even_errors>(d);
   }
 
+  void prepare() override { map_filter = inner ? inner->map_filter : 0; }
   PathClasses finds() const override { return inner ? inner->finds() : no_paths; }
   Expectation expectation() const override { return inner ? inner->expectation() : Expectation::unbiased; }
   bool splats() const override { return true; }
@@ -64,6 +70,7 @@ std::unique_ptr<RenderProcess> PrimarySampleMetropolis::begin(const RenderContex
   if (inner->estimator() == Estimator::correlated)
     fail("inner", "has no paths that could be mutated: those of a step share light that the numbers of one do not make");
   if (inner->steps_depend()) fail("inner", "learns in its own steps, of which none are taken here: only its paths are");
+  refuse_samples_of(*inner);
   const Ref<Renderer> short_paths = direct ? for_direct_light(*inner) : nullptr;
   return std::make_unique<MutatedPaths>(
       *this, context, ChainSettings{mutations_per_sample, chains, bootstrap, large_steps, deviation, even_errors},

@@ -203,7 +203,7 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     const auto add_beam = [&](const PhotonBeam& b, float s, float t, float density) {
       if (walk.length + int(b.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(ray(t), ray.time, -ray.direction, -b.direction);
-      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.single, to) * (phase / density));
+      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.single, to) * (phase / density), b.from(context.scene));
     };
     beams_.along(context.scene, medium, ray, reach, numbers, add_beam);
     caustic_beams_.along(context.scene, medium, ray, reach, numbers, add_beam);

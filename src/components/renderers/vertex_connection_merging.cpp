@@ -12,7 +12,11 @@
 // with it. r shrinks from step to step, so that what blur there is goes away (transport/photons.h).
 //
 // The n walks of a step have numbers of their own: they are independent of those that samples connect to.
+//
+// Where `guided`, the camera's walk learns where to go, as in bidirectional path tracing; weights of photons know of it, too.
 
+#include "etendue/guiding/guided_directions.h"
+#include "etendue/render/learned_guide.h"
 #include "etendue/render/photon_process.h"
 #include "etendue/render/shrinking_bias.h"
 #include "etendue/transport/renderer_members.h"
@@ -28,6 +32,8 @@ class VertexConnectionMerging final : public Renderer, public ShrinkingBias {
   bool connecting = true, merging = true;
   std::int64_t photon_walks = 0, most_photons = 50'000'000;
   float radius = 2, alpha = 0.75f;
+  bool guided = false;
+  int memory = 512;
 
   static void describe(Description<VertexConnectionMerging>& d) {
     d.summary(
@@ -48,17 +54,25 @@ class VertexConnectionMerging final : public Renderer, public ShrinkingBias {
     d.group("Photons");
     describe_photons<&VertexConnectionMerging::photon_walks, &VertexConnectionMerging::most_photons>(d);
     describe_shrinking_radius<&VertexConnectionMerging::radius, &VertexConnectionMerging::alpha>(d);
+    d.group("Guide");
+    describe_guide<&VertexConnectionMerging::guided, &VertexConnectionMerging::memory>(d);
   }
 
   bool splats() const override { return connecting; }
   PathClasses finds() const override {
-    const PathClasses lost = merging ? subsurface_light : subsurface_light | delta_caustics_in_mirrors;
-    return connecting || merging ? all_paths & ~lost : no_paths;
+    if (!connecting && !merging) return no_paths;
+    PathClasses lost = subsurface_light;
+    if (!merging) lost |= delta_caustics_in_mirrors;
+    if (!connecting) lost |= emitting_media;  // walks from the camera end at the first place that photons are looked for
+    return all_paths & ~lost;
   }
   Expectation expectation() const override { return merging ? Expectation::consistent : Expectation::unbiased; }
   double bias_width(std::uint32_t step) const override { return merging ? std::sqrt(shrunk_area(step, double(alpha))) : 0; }
   Estimator estimator() const override { return merging ? Estimator::correlated : Estimator::independent; }
-  std::uint32_t samples_per_step(std::uint32_t usual) const override { return merging ? 1 : usual; }
+  std::uint32_t samples_per_step(std::uint32_t usual) const override {
+    return merging ? 1 : guided ? LearnedGuide::samples_per_step(usual) : usual;
+  }
+  bool steps_depend() const override { return guided; }
 
  private:
   std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
@@ -67,18 +81,36 @@ class VertexConnectionMerging final : public Renderer, public ShrinkingBias {
 class VertexConnectionMergingProcess final : public PhotonProcess {
  public:
   VertexConnectionMergingProcess(const VertexConnectionMerging& r, const RenderContext& c)
-      : PhotonProcess(r, c), settings_(r), first_radius_(double(r.radius) * double(seen_pixel_width(c))) {}
+      : PhotonProcess(r, c), settings_(r), first_radius_(double(r.radius) * double(seen_pixel_width(c))) {
+    if (r.guided) guide_.emplace(GuideSettings{}, size_t(r.memory) << 20);
+  }
 
   void prepare_step(Schedule& schedule, const Step& step) override {
     if (!settings_.merging) return;
     share(step);
+    std::optional<GuidedDirections> directions;  // of walks from luminaires nothing but densities is asked
+    if (guide_) directions.emplace(guide_->guide(), false);
     photons_ = make_photons(schedule, step,
                             {.walks = std::uint64_t(settings_.photon_walks),
                              .most = std::uint64_t(settings_.most_photons),
-                             .limits = {settings_.max_depth - 1, settings_.roulette_depth},
+                             .limits = {settings_.max_depth - 1, settings_.roulette_depth, directions ? &*directions : nullptr},
                              .radius = first_radius_,
                              .shrinking = double(settings_.alpha),
                              .weighted = settings_.connecting ? &settings_.heuristic : nullptr});
+  }
+
+  void step(Schedule& schedule, const Step& step) override {
+    if (!guide_) return PhotonProcess::step(schedule, step);
+    guide_->begin_step(context.image.sampled_area(), step, settings_.max_depth);
+    guide_->learn(schedule, film_paths<GuideSample>(schedule, step));
+  }
+  std::optional<ShownLobes> lobes(const Point3& position, const Normal3& normal) const override {
+    if (!guide_) return {};
+    return guide_->lobes(position, normal);
+  }
+  std::vector<std::byte> save_state() const override { return guide_ ? guide_->save() : PhotonProcess::save_state(); }
+  void load_state(std::span<const std::byte> bytes) override {
+    if (guide_) guide_->load(bytes);
   }
 
   std::optional<ShownPhotons> photons(size_t most) const override {
@@ -93,7 +125,11 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
     WalkPair walks(context, *settings_.light_sampler, sample,
                    {settings_.heuristic, connecting, merges ? photons_.merging : Merging{}});
     Found found{walks, sample, connecting};
-    walks.from_camera(camera_ray, {max_depth, roulette_depth}, found);
+    const bool teaches = guide_ && guide_->teaches(sample);
+    std::optional<GuidedDirections> directions;
+    if (guide_) directions.emplace(guide_->guide(), teaches);
+    found.teaches = teaches;
+    walks.from_camera(camera_ray, {max_depth, roulette_depth, directions ? &*directions : nullptr}, found);
     if (connecting) walks.from_luminaire(camera_ray.time, {max_depth - 1, roulette_depth});
 
     for (int t = 2; t <= walks.camera_vertices() && !sample.aborted(); ++t) {
@@ -112,6 +148,8 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
     }
     for (int s = 2; s <= walks.light_vertices() && s <= max_depth && !sample.aborted(); ++s)
       if (walks.light_vertex(s).connectable()) found.add(walks.connect_to_lens(s));
+    if (teaches)
+      for (const GuideSample& each : directions->learned(walks.camera_walk(), found.arrived)) sample.record(each);
     walks.record();
     return found.radiance;
   }
@@ -122,11 +160,17 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
     const WalkPair& walks;
     SampleContext& sample;
     const bool connecting;
+    bool teaches = false;
     Spectrum radiance;
+    std::vector<Spectrum> arrived;  // by strategies of t vertices from the camera, if that teaches a guide
 
     Found(const WalkPair& w, SampleContext& at, bool connects) : walks(w), sample(at), connecting(connects) {}
     void found(const FoundLight& light) override {
-      if (connecting || walks.by_mirrors(light.t)) add_found(sample, walks.light_wavelengths(), light, radiance);
+      if (!connecting && !walks.by_mirrors(light.t)) return;
+      add_found(sample, walks.light_wavelengths(), light, radiance);
+      if (!teaches || light.t < 2) return;
+      if (arrived.size() <= size_t(light.t)) arrived.resize(size_t(light.t) + 1);
+      arrived[size_t(light.t)] += light.light * light.weight;
     }
     void add(const std::optional<FoundLight>& light) {
       if (light) found(*light);
@@ -136,6 +180,7 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
   const VertexConnectionMerging& settings_;
   const double first_radius_;  // [m]
   Photons photons_;
+  std::optional<LearnedGuide> guide_;
 };
 
 std::unique_ptr<RenderProcess> VertexConnectionMerging::begin(const RenderContext& context) const {

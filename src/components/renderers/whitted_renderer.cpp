@@ -23,6 +23,7 @@ class WhittedRenderer final : public Renderer {
   static void describe(Description<WhittedRenderer>& d) {
     d.summary("Classical ray tracing: shadow rays to luminaires without extent, perfect mirrors and refraction.",
               "Whitted 1980, An improved illumination model for shaded display");
+    d.without("light_sampler", "each luminaire is asked at every surface, and none chosen");
     d.group("Paths");
     describe_max_depth<&WhittedRenderer::max_depth>(
         d, "; each more may double the work where surfaces both reflect and refract", range(1, 64));

@@ -103,7 +103,8 @@ class BvhScene final : public Scene {
     const ShearedRay<Floats> sheared(ray);
     traverse(bvh_, ray, ray.maximum, [&](std::uint32_t first, std::uint32_t count) {
       if (count & WideNode::objects) {
-        for (std::uint32_t i = first; i < first + (count & ~WideNode::objects); ++i) objects_[i]->all_hits(ray, list);
+        for (std::uint32_t i = first; i < first + (count & ~WideNode::objects); ++i)
+          if (!holds(list, objects_[i])) objects_[i]->all_hits(ray, list);
         return false;
       }
       for (std::uint32_t i = first; i < first + count; ++i) {
@@ -138,6 +139,14 @@ class BvhScene final : public Scene {
   }
 
  private:
+  /// Whether a hit on one of this scene's own objects is in a list already: whoever asks with a hit that he has wants the
+  /// others.
+  static bool holds(const HitList& list, const SceneObject* object) {
+    for (int i = 0; i < list.size; ++i)
+      if (list.hits[i].object == object && list.hits[i].depth == 0) return true;
+    return false;
+  }
+
   void name(const Block& block, int lane, Hit& hit) const {
     hit.object = primitives_.owner(block.owner[lane]);
     hit.primitive = block.number[lane];

@@ -179,9 +179,12 @@ bool Instance::occludes(const Ray& ray) const {
 void Instance::all_hits(const Ray& ray, HitList& list) const {
   Transform scratch;
   const Transform& t = placed(transform, ray.time, scratch);
-  const int before = list.size;
-  scene->all(t.identity() ? ray : ray_into(t, ray), list);
-  for (int i = before; i < list.size; ++i) note_way_out(list.hits[i]);
+  HitList inside;  // of that scene alone: what is in the list already is elsewhere, be it on the same object
+  scene->all(t.identity() ? ray : ray_into(t, ray), inside);
+  for (int i = 0; i < inside.size; ++i) {
+    note_way_out(inside.hits[i]);
+    list.add(inside.hits[i]);
+  }
 }
 
 void Instance::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& point) const {

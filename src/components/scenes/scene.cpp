@@ -293,9 +293,13 @@ bool Scene::intersect(const Ray& ray, Hit& hit) const {
 void Scene::all_hits(const Ray& ray, HitList& list) const {
   Transform scratch;
   const Transform& t = placed(transform, ray.time, scratch);
-  const int before = list.size;
-  all(t.identity() ? ray : ray_into(t, ray), list);
-  for (int i = before; i < list.size; ++i) list.hits[i].scenes[list.hits[i].depth++] = this;
+  HitList inside;  // of this scene alone: what is in the list already is elsewhere, be it on the same object
+  all(t.identity() ? ray : ray_into(t, ray), inside);
+  for (int i = 0; i < inside.size; ++i) {
+    Hit& hit = inside.hits[i];
+    hit.scenes[hit.depth++] = this;
+    list.add(hit);
+  }
 }
 
 bool Scene::occludes(const Ray& ray) const {

@@ -121,6 +121,9 @@ void Parser::comprehension(Node& list) {
     if (loop) {
       if (token_.type != TokenType::name || !is_name(token_.text)) unexpected("a name behind 'for'");
       const Token name = take();
+      for (const Label& before : list.labels)
+        if (before.text == name.text)
+          fail(fmt::format("there is a 'for {}' already, at {}", name.text, place(before.at, name.at)), name.at);
       label = {name.text, name.at};
       if (!token_.is_word("in")) unexpected(fmt::format("'in' behind 'for {}'", name.text));
       take();

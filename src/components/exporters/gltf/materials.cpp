@@ -88,6 +88,17 @@ Writer::Look Writer::look_of(const Component& map, ColorUse use) {
       if (auto t = texture(*inner, scale[0], scale[1], number_of(map, "angle") * std::numbers::pi / 180, shift[0], shift[1]))
         return {{1, 1, 1}, std::move(t)};
   }
+  if (type == "RgbProductMap" && numbers_of(map, "offset") == std::vector<double>{0, 0, 0}) {
+    const Ref<Component> first = part_of(map, "first"), second = part_of(map, "second");
+    const Color other = second ? constant_of(*second) : nullptr;
+    if (first && other) {
+      Look made = look_of(*first, use);
+      const std::array<double, 3> more = rgb_of(other, use);
+      const std::vector<double> factor = numbers_of(map, "factor");
+      for (size_t i = 0; i < 3; ++i) made.factor[i] *= factor[i] * more[i];
+      return made;
+    }
+  }
   if (type == "MultiplyMap" && !part_of(map, "third")) {
     const Ref<Component> first = part_of(map, "first"), second = part_of(map, "second");
     if (first && second) {
@@ -125,23 +136,26 @@ std::optional<Json> Writer::texture(const Component& image, double scale_u, doub
   const std::string file = word_of(image, "file");
   std::string ending = std::filesystem::path(file).extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  if ((ending != ".png" && ending != ".jpg" && ending != ".jpeg") || file.find('#') != std::string::npos) {
+  if (ending != ".png" && ending != ".jpg" && ending != ".jpeg") {
     exporting.inexact("images are PNG or JPEG files in glTF: another becomes a grey of 0.5", &image);
     return std::nullopt;
   }
   if (!word_of(image, "channel").empty()) exporting.inexact("the choice of an image's channels is left out", &image);
   if (class_of(image) == "ImageMap" && word_of(image, "transfer") == "linear")
     exporting.inexact("the colours of an image are encoded as sRGB in glTF", &image);
-  const std::string wrap = word_of(image, "wrap");
-  if (wrap == "black") exporting.inexact("an image that is black outside is clamped in glTF", &image);
+  const std::string wrap = word_of(image, "wrap"), above = word_of(image, "wrap_v");
+  const std::string wrap_v = above.empty() || above == "same" ? wrap : above;
+  if (wrap == "black" || wrap_v == "black") exporting.inexact("an image that is black outside is clamped in glTF", &image);
   const bool nearest = word_of(image, "interpolation") == "nearest";
-  size_t& known = textures_[{file, wrap + (nearest ? " nearest" : "")}];
+  size_t& known = textures_[{file, wrap + " " + wrap_v + (nearest ? " nearest" : "")}];
   if (known == 0) {
     constexpr int clamp = 33071, mirror = 33648, repeated = 10497, filter_nearest = 9728, filter_linear = 9729;
-    const int continued = wrap == "mirror" ? mirror : (wrap == "clamp" || wrap == "black" ? clamp : repeated);
+    const auto code = [](const std::string& w) {
+      return w == "mirror" ? mirror : (w == "clamp" || w == "black" ? clamp : repeated);
+    };
     document_["images"].push_back(image_entry(file, ending));
     document_["samplers"].push_back(
-        {{"wrapS", continued}, {"wrapT", continued}, {"magFilter", nearest ? filter_nearest : filter_linear}});
+        {{"wrapS", code(wrap)}, {"wrapT", code(wrap_v)}, {"magFilter", nearest ? filter_nearest : filter_linear}});
     document_["textures"].push_back(
         {{"source", document_["images"].size() - 1}, {"sampler", document_["samplers"].size() - 1}});
     known = document_["textures"].size();

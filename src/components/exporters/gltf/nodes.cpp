@@ -124,7 +124,7 @@ std::optional<size_t> Writer::light_node(const SceneObject& o, bool& is_light) {
                      {"outerConeAngle", number_of(*e, "outer_angle") * degree}};
     const std::vector<double> axis = numbers_of(*e, "axis");
     way = {axis[0], axis[1], axis[2]};
-    if (word_of(*e, "edge") == "linear") exporting.inexact("the edge of a spot is smooth in glTF", e.get());
+    if (word_of(*e, "edge") != "square") exporting.inexact("the edge of a spot falls as t^2 in glTF", e.get());
   }
   DoublePoint3 from;
   const std::vector<double> at = numbers_of(o, type == "Distant" ? "direction" : "position");

@@ -1,5 +1,6 @@
 // Colours and textures.
 
+#include "components/exporters/baked_images.h"
 #include "writer.h"
 
 namespace etendue::mitsuba_export {
@@ -28,6 +29,11 @@ void Writer::texture(Node parent, const char* name, const Component& m, ColorUse
     n.append_attribute("type") = plugin;
     return n;
   };
+  if (type == "RgbProductMap") {
+    Ref<Component>& made = baked_[&m];
+    if (!made) made = baked_product(exporting, m);
+    if (made) return texture(parent, name, *made, use, coordinates, uv);
+  }
   if (type == "UvTransformMap") {
     const std::vector<double> scale = numbers_of(m, "scale"), shift = numbers_of(m, "shift");
     const Transform step = Transform::translate({shift[0], shift[1], 0}) *
@@ -48,6 +54,8 @@ void Writer::texture(Node parent, const char* name, const Component& m, ColorUse
     const std::string wrap = word_of(m, "wrap");
     if (wrap == "black") exporting.inexact("a picture that is black outside is repeated in Mitsuba", &m);
     if (wrap == "mirror" || wrap == "clamp") text(n, "wrap_mode", wrap);
+    if (const std::string above = word_of(m, "wrap_v"); above != "same" && above != wrap)
+      exporting.inexact("a picture is continued along v as it is along u in Mitsuba", &m);
     if (word_of(m, "transfer") == "linear") truth(n, "raw", true);
     const std::vector<double> repeat = numbers_of(m, "repeat");
     transform(n, "to_uv", turn_over * Transform::scale({repeat[0], repeat[1], 1}) * own);

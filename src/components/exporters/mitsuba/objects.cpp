@@ -15,17 +15,6 @@ Node plugin(Node parent, const char* tag, const char* type) {
   return n;
 }
 
-/// Whether any map of a shader looks at surface coordinates.
-bool textured(const Component* part) {
-  if (!part) return false;
-  const std::string& type = class_of(*part);
-  if (type == "ImageMap" || type == "CheckerMap" || type == "UvTransformMap") return true;
-  for (const Member& m : part->class_info().members)
-    if (m.kind == Kind::component && !m.list)
-      if (const Ref<Component> inner = part_of(*part, m.name); inner && textured(inner.get())) return true;
-  return false;
-}
-
 }  // namespace
 
 void Writer::objects(Node parent, const Scene& scene, const Transform& outer) {

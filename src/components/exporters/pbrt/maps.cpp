@@ -1,5 +1,6 @@
 // Maps as textures.
 
+#include "components/exporters/baked_images.h"
 #include "writer.h"
 
 namespace etendue::pbrt_export {
@@ -30,6 +31,8 @@ std::string Writer::image(const Component& map, const std::string& more, bool nu
     exporting.inexact("an image that is mirrored beyond its edges is repeated", &map);
   else
     text += fmt::format(" \"string wrap\" \"{}\"", wrap);
+  if (const std::string above = word_of(map, "wrap_v"); above != "same" && above != wrap)
+    exporting.inexact("an image is continued along v as it is along u", &map);
   if (word_of(map, "interpolation") == "nearest") text += " \"string filter\" \"point\"";
   if (transfer == "linear") text += " \"string encoding\" \"linear\"";
   if (transfer == "gamma2.2") text += " \"string encoding\" \"gamma 2.2\"";
@@ -43,6 +46,11 @@ std::string Writer::image(const Component& map, const std::string& more, bool nu
 }
 
 std::string Writer::texture(const Component& map, bool numbers) {
+  if (class_of(map) == "RgbProductMap") {
+    Ref<Component>& made = baked_[&map];
+    if (!made) made = baked_product(exporting, map);
+    if (made) return texture(*made, numbers);
+  }
   const std::string key = numbers ? "float" : "spectrum";
   // The same map may be asked for as numbers and as colours: two textures.
   std::string& known = textures_[&map];

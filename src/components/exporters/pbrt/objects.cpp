@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "components/exporters/triangles/facets.h"
 #include "writer.h"
 
 namespace etendue::pbrt_export {
@@ -59,7 +60,16 @@ std::string Writer::shape(const SceneObject& object, const std::string& more, bo
     const std::vector<double> r = numbers_of(object, "radii");
     return moved("centre") + fmt::format("Scale {} {} {}\nShape \"sphere\"{}\n", r[0], r[1], r[2], more);
   }
+  // pbrt's discs have surface coordinates that go around.
+  const bool disc = name == "Disc" || name == "Annulus";
+  const bool as_disc = disc && (word_of(object, "coordinates") == "around" || !textured(object.shader.get()));
+  if (name == "Disc" && !as_disc) {
+    bool curved = false;
+    exporting.inexact("a Disc with these surface coordinates becomes triangles", &object);
+    return mesh(*facets_of(object, curved), more);
+  }
   if (name == "Disc") return fmt::format("Shape \"disk\" \"float radius\" {}{}\n", number_of(object, "radius"), more);
+  if (name == "Annulus" && !as_disc) exporting.inexact("surface coordinates of an Annulus go around in pbrt", &object);
   if (name == "Annulus")
     return fmt::format("Shape \"disk\" \"float radius\" {} \"float innerradius\" {} \"float phimax\" {}{}\n",
                        number_of(object, "radius"), number_of(object, "inner_radius"), number_of(object, "sweep"), more);

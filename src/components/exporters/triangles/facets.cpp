@@ -96,11 +96,13 @@ ExportedMesh box(const SceneObject& o) {
   return mesh;
 }
 
-/// A disc at a height, whose front is up or down; of rings that end in its middle.
-void disc(ExportedMesh& mesh, double radius, double z, bool up, bool polar) {
+/// A disc at a height, whose front is up or down; of rings that end in its middle. Its surface coordinates are a Disc's.
+void disc(ExportedMesh& mesh, double radius, double z, bool up, const std::string& coordinates) {
   grid(mesh, around, 1, [&](double u, double v) {
     const double turn = up ? u : 1 - u, r = 1 - v, x = r * std::cos(turn * pi_twice), y = r * std::sin(turn * pi_twice);
-    return Corner{{radius * x, radius * y, z}, {0, 0, up ? 1.0 : -1.0}, polar ? r : (x + 1) / 2, polar ? turn : (y + 1) / 2};
+    const double s = coordinates == "polar" ? r : coordinates == "around" ? turn : (x + 1) / 2;
+    const double t = coordinates == "polar" ? turn : coordinates == "around" ? v : (y + 1) / 2;
+    return Corner{{radius * x, radius * y, z}, {0, 0, up ? 1.0 : -1.0}, s, t};
   });
 }
 
@@ -112,7 +114,7 @@ ExportedMesh cylinder(const SceneObject& o) {
     return Corner{{radius * n.x, radius * n.y, (v - 0.5) * height}, n, u, v};
   });
   if (truth_of(o, "caps"))
-    for (const bool up : {false, true}) disc(mesh, radius, (up ? 0.5 : -0.5) * height, up, true);
+    for (const bool up : {false, true}) disc(mesh, radius, (up ? 0.5 : -0.5) * height, up, "polar");
   return mesh;
 }
 
@@ -125,7 +127,7 @@ std::optional<ExportedMesh> facets_of(const SceneObject& o, bool& curved) {
   if (type == "Cylinder" && number_of(o, "sweep") == 360) return cylinder(o);
   if (type == "Disc") {
     ExportedMesh mesh;
-    disc(mesh, number_of(o, "radius"), 0, true, word_of(o, "coordinates") == "polar");
+    disc(mesh, number_of(o, "radius"), 0, true, word_of(o, "coordinates"));
     return mesh;
   }
   curved = false;

@@ -151,6 +151,10 @@ std::vector<float> Accessor::floats() const {
   return values;
 }
 
+bool Accessor::whole_numbers() const {
+  return width == 1 && !normalized && (component == uint8 || component == uint16 || component == uint32);
+}
+
 std::vector<std::uint32_t> Accessor::indices() const {
   if (width != 1) throw Error(fmt::format("accessors[{}]: indices are single numbers", index_));
   require_memory(double(count) * sizeof(std::uint32_t), "it");

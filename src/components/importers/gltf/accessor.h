@@ -19,6 +19,8 @@ struct Accessor {
   std::vector<float> floats() const;
   /// The same straight to where `count * width` floats have room.
   void floats(float* to) const;
+  /// Whether its numbers are whole ones, not negative, and mean that.
+  bool whole_numbers() const;
   /// As whole numbers, not negative.
   std::vector<std::uint32_t> indices() const;
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 
+#include "components/importers/permissions.h"
 #include "data_uri.h"
 #include "files/contained_file.h"
 #include "files/gzip.h"
@@ -55,25 +56,34 @@ bool register_parts(const std::vector<std::string>& endings) {
     return Document::open(container)->image_bytes(name);
   });
   return register_mesh_format(endings, [](const std::string& path, const std::string& part) {
-    return read_primitive(*Document::open(path), PartName::parse(part));
+    const PartName name = PartName::parse(part);
+    return read_primitive(*Document::open(path, nullptr, name.converted_at), name);
   });
 }
 
-std::shared_ptr<const Document> Document::open(const std::string& path, const Importing* given) {
-  static auto& known = *new std::map<std::string, Opened>;
+std::shared_ptr<const Document> Document::open(const std::string& path, const Importing* given, double time) {
+  static auto& known = *new std::map<std::pair<std::string, double>, Opened>;
   const std::lock_guard lock(mutex);
   std::error_code none;
   const auto written = std::filesystem::last_write_time(path, none);
   const auto size = std::filesystem::file_size(path, none);
-  if (const auto found = known.find(path);
+  const auto converter = converters().find(ending_of_contents(path));
+  if (given) time = given->options().time;
+  if (converter == converters().end()) time = 0;  // what moves in a glTF file is told by the names of its parts
+  const std::pair key(path, time);
+  if (const auto found = known.find(key);
       found != known.end() && found->second.written == written && found->second.size == size && size != 0)
     return found->second.document;
-  const Importing own(path, {});
+  ImportOptions options = import_permissions();
+  options.time = time;
+  const Importing own(path, options);
   const Importing& importing = given ? *given : own;
   auto document = std::make_shared<Document>();
-  if (const auto converter = converters().find(ending_of_contents(path)); converter != converters().end()) {
+  if (converter != converters().end()) {
     require_regular_file(path);
     document->own_bytes_ = converter->second(path, importing);
+    document->converted_ = true;
+    document->time_ = time;
     document->read_container(path, &document->own_bytes_);
   } else {
     document->read_container(path, nullptr);
@@ -81,7 +91,7 @@ std::shared_ptr<const Document> Document::open(const std::string& path, const Im
   document->find_buffers(importing);
   constexpr size_t most = 8;
   if (known.size() >= most) known.clear();
-  known[path] = {written, size, document};
+  known[key] = {written, size, document};
   return document;
 }
 

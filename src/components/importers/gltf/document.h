@@ -24,9 +24,14 @@ struct Buffer {
 
 class Document {
  public:
-  /// Opens a file, or gives it as it was opened before. Files of other formats are converted (see register_converter). With an
-  /// Importing its options say which other files may be opened. Throws Error, or with no Importing the reason alone.
-  static std::shared_ptr<const Document> open(const std::string& path, const Importing* = nullptr);
+  /// Opens a file, or gives it as it was opened before. Files of other formats are converted (see register_converter), as they
+  /// are at a time [s]. With an Importing its options say that time and which other files may be opened. Throws Error, or with
+  /// no Importing the reason alone.
+  static std::shared_ptr<const Document> open(const std::string& path, const Importing* = nullptr, double time = 0);
+
+  /// Whether a program of ours made it of a file of another format, and at which time of that [s]; 0 of others.
+  bool converted() const { return converted_; }
+  double time() const { return time_; }
 
   const Json& json() const { return json_; }
   /// A member of one of the lists at the top: element("meshes", 3).
@@ -56,6 +61,8 @@ class Document {
   std::optional<Buffer> chunk_;  // of a .glb
   std::vector<Buffer> buffers_;
   std::string own_bytes_;  // of a converted file
+  bool converted_ = false;
+  double time_ = 0;
 };
 
 /// Lets meshes and images be read where they lie in files with these endings. At the program's start.

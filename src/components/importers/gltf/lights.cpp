@@ -11,7 +11,8 @@ constexpr double degrees = 180 / 3.14159265358979323846;
 
 Numbers vector(double x, double y, double z) { return Numbers{{x, y, z}, 1, Dimension::none}; }
 
-/// What of a transform only moves and turns: cameras and lights have no size.
+}  // namespace
+
 Transform without_stretch(const Transform& t) {
   Transform::DoubleMatrix m = t.exact();
   for (size_t c = 0; c < 3; ++c) {
@@ -21,8 +22,6 @@ Transform without_stretch(const Transform& t) {
   }
   return Transform(m);
 }
-
-}  // namespace
 
 // The file counts light in candela and lux, colours of surfaces that shine in candela per square metre. All are told here so
 // that 1 cd/m^2 has the luminance Y = 1 (it is 683 lm/W * 106.857 nm = 72984 times less in SI units, which changes exposure
@@ -43,10 +42,11 @@ Ref<Component> make_light(Importing& importing, const Document& document, size_t
     if (spot) {
       const Json& cone = object_in(light, "spot");
       const double outer = number(cone, "outerConeAngle", 45 / degrees), inner = number(cone, "innerConeAngle", 0);
-      if (!(outer > 0 && outer <= 90.01 / degrees && inner >= 0 && inner < outer)) throw Error("its cone has no right angles");
+      if (!(outer > 0 && outer <= 90.01 / degrees && inner >= 0 && inner <= outer)) throw Error("its cone has no right angles");
       set_member(*emission, "outer_angle", Number{outer, Dimension::angle}, at);
       set_member(*emission, "inner_angle", Number{inner, Dimension::angle}, at);
       set_member(*emission, "axis", vector(0, 0, -1), at);
+      set_member(*emission, "edge", "square", at);
     }
     if (number(light, "range", 0) > 0) importing.inexact("a light reaches farther than its 'range', as light does", at);
     Ref<Component> object = importing.make(distant ? "Distant" : "Point", at, name);

@@ -6,6 +6,9 @@
 
 namespace etendue::gltf {
 
+/// What of a transform only moves and turns: cameras and lights have no size.
+Transform without_stretch(const Transform&);
+
 /// A luminaire of KHR_lights_punctual.
 Ref<Component> make_light(Importing&, const Document&, size_t light, const Transform&);
 

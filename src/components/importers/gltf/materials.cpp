@@ -46,6 +46,7 @@ const Material& Materials::get(std::optional<size_t> material, bool colored, boo
   Material made;
   made.made = make_surface(importing_, surface, at());
   made.uv_set = uv_set_.value_or(0);
+  made.by_tangents = surface.normals || surface.anisotropy.value > 0;
   // A strength is given to lamps alone; without it what shines no more than white may be a screen.
   const bool strong = material && has_extension(document_.element("materials", *material), "KHR_materials_emissive_strength");
   made.lamp = !surface.unlit && std::ranges::any_of(surface.emission.value, [&](double x) { return x > (strong ? 0.0 : 1.0); });
@@ -71,6 +72,7 @@ Surface Materials::read(const Json& m) {
     const double scale = gltf::number(object_in(m, "normalTexture"), "scale", 1);
     s.normals = SurfaceNormals{*normals, scale, false};
   }
+  if (document_.converted()) read_described(object_in(extensions, "ETENDUE_surface"), s);
   const std::string mode = text(m, "alphaMode", "OPAQUE");
   if (mode == "OPAQUE") s.opacity = 1.0;
   if (mode == "MASK") s.opacity_cutoff = gltf::number(m, "alphaCutoff", 0.5);
@@ -114,6 +116,7 @@ void Materials::read_specular_glossiness(const Json& old, Surface& s) {
     s.roughness.texture = map;
     s.roughness.channel = "A";
     s.roughness.inverted = true;
+    s.roughness.inverted_share = std::clamp(glossiness, 0.0, 1.0);
     importing_.inexact("KHR_materials_pbrSpecularGlossiness with a texture: its colours of reflections are left out", at());
   } else if (strongest > 0.25 && diffuse < 0.1) {
     s.metalness = 1;
@@ -160,7 +163,14 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
     // The ratio of roughnesses alpha is 1 / (1 - a) in Principled and in glTF (alpha + (1 - alpha) s^2) / alpha.
     const double strength = gltf::number(e, "anisotropyStrength", 0);
     const double alpha = std::max(s.roughness.value * s.roughness.value, 1e-3);
-    s.anisotropy = 1 - alpha / (alpha + (1 - alpha) * strength * strength);
+    const double along = alpha + (1 - alpha) * strength * strength;
+    s.anisotropy = 1 - alpha / along;
+    // glTF keeps the alpha across and stretches that along; Principled, given the ratio, keeps the sum of their squares.
+    if (!s.roughness.texture)
+      s.roughness.value = std::pow((along * along + alpha * alpha) / 2, 0.25);
+    else if (strength != 0)
+      importing_.inexact("stretched highlights whose roughness is an image's are as large as without stretching, not longer",
+                         at());
     if (find(e, "anisotropyTexture") || gltf::number(e, "anisotropyRotation", 0) != 0)
       importing_.inexact("stretched highlights lie along u, whatever their texture or rotation", at());
   }
@@ -182,7 +192,7 @@ void Materials::read_volume(const Json& extensions, Surface& s) {
 
 void Materials::note_unknown(const Json& extensions) {
   for (const auto& [name, value] : extensions.items())
-    if (!is_known_material_extension(name))
+    if (!is_known_material_extension(name) && !(document_.converted() && name == "ETENDUE_surface"))
       importing_.inexact(fmt::format("the extension {} of materials is not known", name), at());
 }
 
@@ -229,8 +239,9 @@ std::optional<SurfaceTexture> Materials::texture(const Json& object, const char*
       const Json& s = document_.element("samplers", *sampler);
       constexpr size_t clamped = 33071, mirrored = 33648, repeated = 10497, nearest = 9728;
       const size_t u = whole(s, "wrapS").value_or(repeated), v = whole(s, "wrapT").value_or(repeated);
-      made.wrap = u == clamped ? "clamp" : (u == mirrored ? "mirror" : "repeat");
-      if (u != v) importing_.inexact("a texture is continued along v as it is along u", at());
+      const auto named = [](size_t code) { return code == clamped ? "clamp" : (code == mirrored ? "mirror" : "repeat"); };
+      made.wrap = named(u);
+      made.wrap_v = named(v);
       made.nearest = whole(s, "magFilter") == nearest;
     }
     // Of the file's coordinates: T R S with v downwards. Turned over, the turn keeps its sense and the rest follows.
@@ -242,6 +253,12 @@ std::optional<SurfaceTexture> Materials::texture(const Json& object, const char*
     made.shift = {offset[0] + sine * scale[1], 1 - c * scale[1] - offset[1]};
     return made;
   });
+}
+
+std::optional<SurfaceTexture> Materials::image_texture(size_t index, bool* has_alpha) {
+  const Image& found = image(index);
+  if (has_alpha) *has_alpha = found.has_alpha;
+  return found.texture;
 }
 
 const Materials::Image& Materials::image(size_t index) {

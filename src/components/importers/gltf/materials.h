@@ -12,7 +12,8 @@ namespace etendue::gltf {
 struct Material {
   MadeSurface made;
   size_t uv_set = 0;
-  bool lamp = false;  ///< it shines more than a display's white, or has a strength
+  bool by_tangents = false;  ///< an image of normals or stretched highlights
+  bool lamp = false;         ///< it shines more than a display's white, or has a strength
 };
 
 /// Whether an extension of materials is read, or changes nothing that a path tracer shows.
@@ -24,6 +25,11 @@ class Materials {
 
   /// The same each time for the same; `colored`: vertices have colours, `faded`: and alpha. None: the default material.
   const Material& get(std::optional<size_t> material, bool colored, bool faded);
+
+  /// An image of the file, laid over the unit square; none, with a note: it cannot be read.
+  std::optional<SurfaceTexture> image_texture(size_t index, bool* has_alpha = nullptr);
+  // What files of our own converters say (described.h).
+  SurfaceColor described_color(const Json&);
 
  private:
   struct Image {
@@ -42,6 +48,9 @@ class Materials {
   SurfaceNumber number(const Json& object, const char* factor, double otherwise, const char* texture_key, const char* channel);
   const Image& image(size_t index);
   void note_unknown(const Json& extensions);
+  std::optional<SurfaceTexture> described_texture(const Json&, bool* has_alpha);
+  SurfaceNumber described_number(const Json&);
+  void read_described(const Json&, Surface&);
   Location at() const { return importing_.at(); }
 
   Importing& importing_;

@@ -114,7 +114,7 @@ MeshData read(const Document& document, const Json& primitive, const PartName& p
   }
   if (find(attributes, "COLOR_0")) read_colors(attribute(document, attributes, "COLOR_0", n, {3, 4}), mesh);
   append_triangles(mode_of(primitive), corner_list(document, primitive, n), mesh.triangles);
-  if (part.of_node) bend(document, primitive, part.owner, Pose(document, part.moment), mesh);
+  if (part.of_node) bend(document, primitive, part.owner, Pose(document, part.moment), part.uv_set, mesh);
   compact(mesh);
   if (mesh.triangles.empty()) throw Error("it has no triangles");
   return mesh;
@@ -122,10 +122,45 @@ MeshData read(const Document& document, const Json& primitive, const PartName& p
 
 }  // namespace
 
+double differing_tangents(const Document& document, const Json& primitive, size_t uv_set) {
+  const Json& attributes = object_in(primitive, "attributes");
+  const size_t n = Accessor(document, needed_whole(attributes, "POSITION")).count;
+  const std::string uv_name = fmt::format("TEXCOORD_{}", uv_set);
+  if (!find(attributes, uv_name.c_str()) || !find(attributes, "NORMAL")) return 0;
+  const std::vector<float> places = attribute(document, attributes, "POSITION", n, {3}).floats();
+  const std::vector<float> normals = attribute(document, attributes, "NORMAL", n, {3}).floats();
+  const std::vector<float> uvs = attribute(document, attributes, uv_name.c_str(), n, {2}).floats();
+  const std::vector<float> tangents = attribute(document, attributes, "TANGENT", n, {4}).floats();
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  append_triangles(mode_of(primitive), corner_list(document, primitive, n), triangles);
+  const auto vector = [](const std::vector<float>& list, size_t i) { return Vector3{list[i], list[i + 1], list[i + 2]}; };
+  constexpr float within = 0.94f;  // the cosine of 20 degrees
+  size_t all = 0, differing = 0;
+  for (const auto& t : triangles) {
+    const Vector3 a = vector(places, 3 * t[1]) - vector(places, 3 * t[0]),
+                  b = vector(places, 3 * t[2]) - vector(places, 3 * t[0]);
+    const auto grown = [&](size_t corner, size_t k) { return uvs[2 * t[corner] + k] - uvs[2 * t[0] + k]; };
+    const float u1 = grown(1, 0), v1 = grown(1, 1), u2 = grown(2, 0), v2 = grown(2, 1), area = u1 * v2 - u2 * v1;
+    if (!(area != 0)) continue;
+    // dp/du and, as v runs downwards in the file, the direction against dp/dv.
+    const Vector3 along = (v2 * a - v1 * b) * (area > 0 ? 1.0f : -1.0f), up = (u2 * a - u1 * b) * (area > 0 ? 1.0f : -1.0f);
+    for (const std::uint32_t corner : t) {
+      const Vector3 normal = vector(normals, 3 * corner), tangent = vector(tangents, 4 * corner);
+      const Vector3 flat = along - dot(normal, along) * normal;
+      const float lengths = length(flat) * length(tangent), side = dot(cross(normal, tangent), up) * tangents[4 * corner + 3];
+      if (!(lengths > 0 && lengths < infinity)) continue;
+      ++all;
+      if (!(dot(flat, tangent) >= within * lengths) || side < 0) ++differing;
+    }
+  }
+  return all > 0 ? double(differing) / double(all) : 0;
+}
+
 std::string PartName::text() const {
   std::string all = fmt::format("{}[{}].primitives[{}]", of_node ? "nodes" : "meshes", owner, primitive);
   if (of_node && moment.animation) all += fmt::format(" at {} of animation {}", moment.time, *moment.animation);
   if (uv_set != 0) all += fmt::format(" with TEXCOORD_{}", uv_set);
+  if (converted_at != 0) all += fmt::format(" at second {}", converted_at);
   return all;
 }
 
@@ -143,6 +178,8 @@ PartName PartName::parse(const std::string& text) {
     }
     more = 0;
     if (std::sscanf(text.c_str() + end, " with TEXCOORD_%zu%n", &part.uv_set, &more) == 1 && more > 0) end += more;
+    more = 0;
+    if (std::sscanf(text.c_str() + end, " at second %lf%n", &part.converted_at, &more) == 1 && more > 0) end += more;
     if (size_t(end) == text.size() && part.text() == text) return part;
   }
   throw Error("a part of a glTF file is written like \"meshes[0].primitives[0]\", and not '" + text.substr(0, 60) + "'");

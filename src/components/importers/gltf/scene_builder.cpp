@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "accessor.h"
+#include "described.h"
 
 namespace etendue::gltf {
 
@@ -93,7 +94,29 @@ void SceneBuilder::add_node(size_t node) {
     add(ref_cast<SceneObject>(make_light(importing_, document_, needed_whole(light, "light"), place)));
     has_lights_ = true;
   }
+  if (const Json& described = extension(n, "ETENDUE_part"); document_.converted() && !described.empty())
+    add_described(described, plain_name(text(n, "name")), place);
   if (const auto mesh = whole(n, "mesh")) add_mesh(node, *mesh);
+}
+
+/// What a converter of ours describes itself.
+void SceneBuilder::add_described(const Json& json, const std::string& name, const Transform& place) {
+  const Ref<Component> object = described_part(importing_, document_, materials_, json, name);
+  if (!place.valid()) {
+    importing_.inexact("what is scaled to nothing is left out", at());
+    return;
+  }
+  const Transform stands = truth(json, "rigid", false) ? without_stretch(place) : place;
+  if (!stands.identity()) set(*object, "transform", Value(stands, at()));
+  if (truth(json, "lamp", false)) has_lights_ = true;
+  if (const Json* material = find(json, "material")) {
+    const Material& made = materials_.get(material->get<size_t>(), false, false);
+    set(*object, "shader", Value(made.made.shader, at()));
+    if (made.made.emission) set(*object, "emission", Value(made.made.emission, at()));
+    if (made.made.interior) set(*object, "interior", Value(made.made.interior, at()));
+    if (made.lamp) has_lights_ = true;
+  }
+  add(ref_cast<SceneObject>(object));
 }
 
 // A mesh that stands in one place is an object with a transform; one in several is stored once, as a scene.
@@ -117,6 +140,8 @@ void SceneBuilder::add_mesh(size_t node, size_t mesh) {
     }
     return;
   }
+  if (std::ranges::any_of(pose_.weights(node), [](double w) { return w != 0; }))
+    importing_.inexact("a mesh that EXT_mesh_gpu_instancing repeats is without what its morph targets add", at());
   const Ref<Scene> scene = shared(mesh);
   if (!scene) return;
   for (const Transform& t : placed) {
@@ -207,6 +232,14 @@ Ref<SceneObject> SceneBuilder::primitive(const Json& p, PartName part, const std
   if (colored) faded = Accessor(document_, needed_whole(attributes, "COLOR_0")).width == 4;
   const Material& material = materials_.get(whole(p, "material"), colored, faded);
   part.uv_set = material.uv_set;
+  if (material.by_tangents && find(attributes, "TANGENT"))
+    if (const double share = differing_tangents(document_, p, part.uv_set); share > 0.05)
+      importing_.inexact(
+          fmt::format("{:.0f} % of its TANGENT vectors lie otherwise than its surface coordinates run, which images of normals "
+                      "and stretched highlights follow here",
+                      100 * share),
+          at());
+  part.converted_at = document_.time();
   Ref<Component> object = importing_.make("TriangleMesh", at(), name);
   set_member(*object, "file", FilePath{importing_.path(), {}}, at());
   set_member(*object, "part", part.text(), at());
@@ -217,7 +250,7 @@ Ref<SceneObject> SceneBuilder::primitive(const Json& p, PartName part, const std
   return ref_cast<SceneObject>(object);
 }
 
-std::optional<MadeCamera> SceneBuilder::camera() const {
+std::optional<MadeCamera> SceneBuilder::camera() {
   if (cameras_.empty()) return std::nullopt;
   size_t which = 0;
   if (const auto said = importing_.parameter("camera")) {
@@ -233,7 +266,11 @@ std::optional<MadeCamera> SceneBuilder::camera() const {
     importing_.inexact(fmt::format("of its {} cameras the first is used; -D camera=NAME chooses another", cameras_.size()),
                        at());
   }
-  return make_camera(importing_, document_, cameras_[which].first, cameras_[which].second);
+  MadeCamera made = make_camera(importing_, document_, cameras_[which].first, cameras_[which].second);
+  const Json& camera = document_.element("cameras", cameras_[which].first);
+  if (document_.converted())
+    set_described_members(importing_, document_, materials_, extension(camera, "ETENDUE_part"), *made.camera);
+  return made;
 }
 
 }  // namespace etendue::gltf

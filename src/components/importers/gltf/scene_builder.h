@@ -17,7 +17,7 @@ class SceneBuilder {
 
   Ref<Scene> build();
   /// The camera to look through, when the scene has one; after `build`.
-  std::optional<MadeCamera> camera() const;
+  std::optional<MadeCamera> camera();
   /// Whether there are lamps; after `build`. What merely glows does not light a scene.
   bool has_lights() const { return has_lights_; }
 
@@ -27,6 +27,7 @@ class SceneBuilder {
   std::vector<size_t> roots();
   void count_uses(const std::vector<size_t>& order);
   void add_node(size_t node);
+  void add_described(const Json&, const std::string& name, const Transform&);
   void add_mesh(size_t node, size_t mesh);
   std::vector<Transform> places_of(size_t node);
   std::vector<Ref<SceneObject>> primitives(size_t mesh, const PartName& whose);

@@ -14,7 +14,27 @@ Accessor of_vertices(const Document& document, const Json& attributes, const cha
   return accessor;
 }
 
-void morph(const Document& document, const Json& primitive, const std::vector<double>& weights, MeshData& mesh) {
+/// Adds so much of a target's colours and surface coordinates, whose v runs downwards.
+void morph_attributes(const Document& document, const Json& target, float weight, size_t uv_set, MeshData& mesh) {
+  const size_t n = mesh.positions.size();
+  const std::string uvs = fmt::format("TEXCOORD_{}", uv_set);
+  if (find(target, uvs.c_str()) && !mesh.uvs.empty()) {
+    const std::vector<float> moved = of_vertices(document, target, uvs.c_str(), n, 2).floats();
+    for (size_t v = 0; v < n; ++v)
+      mesh.uvs[v] = {mesh.uvs[v].x + weight * moved[2 * v], mesh.uvs[v].y - weight * moved[2 * v + 1]};
+  }
+  if (!find(target, "COLOR_0")) return;
+  const size_t width = Accessor(document, needed_whole(target, "COLOR_0")).width == 3 ? 3 : 4;
+  const std::vector<float> moved = of_vertices(document, target, "COLOR_0", n, width).floats();
+  for (VertexAttribute& a : mesh.attributes) {
+    const bool alpha = a.name == "alpha";
+    if ((a.name != "color" && !alpha) || (alpha && width < 4)) continue;
+    for (size_t i = 0; i < a.values.size(); ++i)
+      a.values[i] += weight * (alpha ? moved[4 * i + 3] : moved[width * (i / 3) + i % 3]);
+  }
+}
+
+void morph(const Document& document, const Json& primitive, const std::vector<double>& weights, size_t uv_set, MeshData& mesh) {
   const Json& targets = list_in(primitive, "targets");
   const size_t n = mesh.positions.size();
   for (size_t i = 0; i < std::min(targets.size(), weights.size()); ++i) {
@@ -32,8 +52,13 @@ void morph(const Document& document, const Json& primitive, const std::vector<do
           mesh.normals[v] =
               Normal3(Vector3(mesh.normals[v]) + weight * Vector3{moved[3 * v], moved[3 * v + 1], moved[3 * v + 2]});
       }
+      morph_attributes(document, targets[i], weight, uv_set, mesh);
     });
   }
+  if (std::ranges::any_of(targets, [](const Json& t) { return find(t, "COLOR_0") != nullptr; }))
+    for (VertexAttribute& a : mesh.attributes)
+      if (a.name == "color" || a.name == "alpha")
+        for (float& x : a.values) x = std::min(std::max(x, 0.0f), 1.0f);
 }
 
 /// From the skin's coordinates to the scene's, for each joint.
@@ -89,8 +114,8 @@ void skin_vertices(const Document& document, const Json& attributes, const std::
 
 }  // namespace
 
-void bend(const Document& document, const Json& primitive, size_t node, const Pose& pose, MeshData& mesh) {
-  morph(document, primitive, pose.weights(node), mesh);
+void bend(const Document& document, const Json& primitive, size_t node, const Pose& pose, size_t uv_set, MeshData& mesh) {
+  morph(document, primitive, pose.weights(node), uv_set, mesh);
   const auto skin = whole(document.element("nodes", node), "skin");
   if (!skin) return;
   within(fmt::format("skins[{}]", *skin),

@@ -1,5 +1,7 @@
 // MeshImporter: files of triangles alone, without materials.
 
+#include <algorithm>
+
 #include "components/importers/models/surface.h"
 #include "components/objects/meshes/mesh_data.h"
 #include "etendue/scene.h"
@@ -11,14 +13,19 @@ namespace {
 class MeshImporter final : public Importer {
  public:
   static void describe(Description<MeshImporter>& d) {
-    d.summary("STL, OFF and PLY files: triangles, in the colours of their vertices if they have any.");
+    d.summary("STL, OFF and PLY files: triangles, in the colours of their vertices or else of their faces if they have any.");
   }
   std::vector<std::string> extensions() const override { return {"off", "ply", "stl"}; }
 
   Ref<Component> import(Importing& importing) const override {
     const Location at = importing.at();
+    bool of_faces = false;  // colours
     try {
-      read_mesh(importing.path());  // what is wrong with it is told now, and not when it is rendered
+      const MeshData read = read_mesh(importing.path());  // what is wrong with it is told now, and not when it is rendered
+      const auto has = [](const std::vector<VertexAttribute>& list, const char* name) {
+        return std::ranges::any_of(list, [&](const VertexAttribute& a) { return a.name == name; });
+      };
+      of_faces = has(read.face_attributes, "face_color") && !has(read.attributes, "color");
     } catch (const Error& error) {
       throw Error(error.what(), at);
     }
@@ -27,6 +34,7 @@ class MeshImporter final : public Importer {
     surface.roughness = 0.5;
     const MadeSurface made = make_surface(importing, surface, at);
     Ref<Component> colors = importing.make("AttributeMap", at);
+    if (of_faces) set_member(*colors, "name", "face_color", at);
     set_member(*colors, "otherwise", 0.7, at);
     set(*made.shader, "base_color", Value(colors, at));
     Ref<Component> mesh = importing.make("TriangleMesh", at);

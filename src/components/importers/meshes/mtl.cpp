@@ -15,7 +15,7 @@ namespace {
 struct Texture {
   SurfaceTexture image;
   std::string channel;
-  double bump = 1;
+  double bump = 1, base = 0, gain = 1;  // what it says is base + gain * texel
   bool has_alpha = false, has_colors = false;
 };
 
@@ -134,7 +134,7 @@ class MtlReader {
         texture.bump = n.empty() ? 1 : n[0];
       } else if (option == "-mm") {
         const std::vector<double> n = numbers(2);
-        if (n.size() == 2 && (n[0] != 0 || n[1] != 1)) importing_.inexact("a texture's range (-mm) is left out", at);
+        if (n.size() == 2) texture.base = n[0], texture.gain = n[1];
       } else if (option == "-imfchan") {
         const std::string channel = lower(lines.keyword());
         if (channel == "r" || channel == "g" || channel == "b") texture.channel = char(std::toupper(channel[0]));
@@ -142,9 +142,10 @@ class MtlReader {
       } else if (option == "-clamp") {
         if (lower(lines.keyword()) == "on") placed.wrap = "black";
       } else if (option == "-boost" || option == "-texres") {
-        numbers(1);
-      } else {  // -blendu, -blendv, -cc, -type: how it is filtered
-        lines.keyword();
+        if (const std::vector<double> n = numbers(1); option == "-boost" && !n.empty() && n[0] != 0)
+          importing_.inexact("a texture is not made sharper (-boost)", at);
+      } else if (lower(lines.keyword()) == "on" && option == "-cc") {  // -blendu, -blendv, -type: how it is filtered
+        importing_.inexact("a texture's correction of colours (-cc) is left out", at);
       }
       lines.at_end();
     }
@@ -181,12 +182,23 @@ class MtlReader {
   }
 
   static void put(const Texture* texture, SurfaceColor& color) {
-    if (texture) color.texture = texture->image;
+    if (!texture) return;
+    color.texture = texture->image;
+    for (size_t i = 0; i < 3; ++i) {
+      color.offset[i] = color.value[i] * texture->base;
+      color.value[i] *= texture->gain;
+    }
   }
   static void put(const Texture* texture, SurfaceNumber& number) {
     if (!texture) return;
     number.texture = texture->image;
     number.channel = texture->channel;
+    if (texture->gain == 0) {
+      number = number.value * texture->base;
+      return;
+    }
+    number.offset = number.value * texture->base;
+    number.value *= texture->gain;
   }
 
   void base(const Said& said, Surface& s) const {
@@ -213,7 +225,7 @@ class MtlReader {
   // and alpha is the square of the roughness.
   static void phong(const Said& said, Surface& s) {
     s.roughness = std::pow(2 / (std::max(said.number("ns", 0), 0.0) + 2), 0.25);
-    const std::array<double, 3> reflected = said.color("ks", 0);
+    const std::array<double, 3> reflected = said.color("ks", said.texture("map_ks") ? 1 : 0);
     const double most = strongest(reflected), illum = said.number("illum", 2);
     if (most <= 0 || illum < 2) {
       s.specular = 0;
@@ -250,22 +262,33 @@ class MtlReader {
     if (!holes) holes = said.texture("map_tr");
     if (!holes) return;
     if (s.opacity.value == 0) s.opacity = 1;
+    const double most = s.opacity.value;
     put(holes, s.opacity);
     s.opacity.inverted = !said.texture("map_d");
+    if (s.opacity.inverted && s.opacity.offset != 0) {  // most * (1 - base - gain * texel)
+      s.opacity.inverted = false;
+      s.opacity.value *= -1;
+      s.opacity.offset = most - s.opacity.offset;
+    }
     if (holes->channel.empty() && holes->has_alpha) s.opacity.channel = "A";
   }
 
   void shape(const Said& said, Surface& s) const {
-    if (const double sheen = said.number("ps", 0); sheen > 0) {
+    const Texture* sheens = said.texture("map_ps");
+    if (const double sheen = said.number("ps", sheens ? 1 : 0); sheen > 0) {
       s.sheen_color = sheen;
       s.sheen_roughness = 0.5;
+      put(sheens, s.sheen_color);
+      if (sheens) s.sheen_color.texture->transfer = "linear";  // a number, not a colour
     }
+    if (said.texture("map_ns"))
+      importing_.inexact("an image of the exponent Ns is left out: it is the same everywhere", said.at);
     s.coat = said.number("pc", 0);
     s.coat_roughness = said.number("pcr", 0);
     s.anisotropy = std::clamp(said.number("aniso", 0), 0.0, 1.0);
     if (said.number("anisor", 0) != 0) importing_.inexact("stretched highlights lie along u, whatever 'anisor' says", said.at);
     if (const Texture* normals = said.texture("norm"))
-      s.normals = SurfaceNormals{normals->image, 1, false};
+      s.normals = SurfaceNormals{normals->image, normals->bump, false};
     else if (const Texture* bumps = said.texture("map_bump")) {
       if (bumps->has_colors && is_of_normals(bumps->image.file)) {
         s.normals = SurfaceNormals{bumps->image, bumps->bump, false};

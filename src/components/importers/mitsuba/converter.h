@@ -66,6 +66,7 @@ class Converter {
   Ref<Component> group(const Element&);
   void set_surface(Component& object, const Element& shape, Uv);
   bool textured(const Element&);
+  bool tilts(const Element&);  ///< whether bumps or an image of normals are among the bsdfs it is made of
 
   // surfaces
   struct Surface {
@@ -140,7 +141,7 @@ class Converter {
   Importing& importing_;
   std::map<std::pair<const Element*, Uv>, Surface> surfaces_;
   std::map<const Element*, Ref<Component>> media_, groups_;
-  std::map<const Element*, bool> textured_;
+  std::map<const Element*, bool> textured_, tilts_;
 };
 
 }  // namespace etendue::mitsuba

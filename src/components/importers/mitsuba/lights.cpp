@@ -170,20 +170,29 @@ Ref<Component> Converter::environment(const Element& e) {
   return object;
 }
 
+// The sky's own up is y in Mitsuba 0.x, as here, and z in version 3; the sun's direction is the world's in both.
 Ref<Component> Converter::sky(const Element& e) {
+  const Transform y_to_z(Transform::DoubleMatrix{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0});
+  TransformValue stands = e.transform();
+  if (!e.old) stands.transform = stands.transform * AnimatedTransform(y_to_z);
   Ref<Component> emission = make("SkyEmission", e, "");
   set_member(*emission, "sun", e.type != "sky", e.at);
   if (e.has("turbidity")) set_member(*emission, "turbidity", e.number("turbidity", 3), e.location_of("turbidity"));
   if (e.has("albedo")) set_member(*emission, "ground_albedo", spectrum_of(e, "albedo", 0.3), e.location_of("albedo"));
-  if (e.has("sun_direction"))
-    set_member(*emission, "sun_direction", three(e.vector("sun_direction", {0, 1, 0})), e.location_of("sun_direction"));
-  else
+  if (e.has("sun_direction")) {
+    const DoubleVector3 sun = e.vector("sun_direction", {0, 1, 0});
+    const Transform& world = stands.transform.still();
+    const DoublePoint3 end = world.back(DoublePoint3{sun.x, sun.y, sun.z}), begin = world.back(DoublePoint3{0, 0, 0});
+    set_member(*emission, "sun_direction", three({end.x - begin.x, end.y - begin.y, end.z - begin.z}),
+               e.location_of("sun_direction"));
+  } else {
     inexact(e, "the sun's place by date and time is not read: it stands in the direction (1, 1, 1)");
+  }
   if (e.has("scale")) set_member(*emission, "scale", e.number("scale", 1), e.location_of("scale"));
   inexact(e, fmt::format("'{}' is a model of measured skies whose brightness differs from Mitsuba's", e.type));
   Ref<Component> object = make("Environment", e);
   set_member(*object, "emission", emission, e.at);
-  set_transform(*object, e.transform(), e.location_of("to_world"));
+  set_transform(*object, stands, e.location_of("to_world"));
   return object;
 }
 

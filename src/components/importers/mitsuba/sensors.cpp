@@ -185,7 +185,7 @@ Ref<Component> Converter::filter(const Element& film) {
   } else if (e.type == "mitchell" || e.type == "catmullrom") {
     filter = make("MitchellFilter", e);
     const bool mitchell = e.type == "mitchell";
-    set_member(*filter, "b", mitchell ? e.number("b", e.number("A", 1. / 3)) : 0, e.at);
+    set_member(*filter, "b", mitchell ? e.number("b", 1. / 3) : 0, e.at);
     set_member(*filter, "c", mitchell ? e.number("c", 1. / 3) : 0.5, e.at);
   } else if (e.type == "lanczos") {
     filter = make("LanczosFilter", e);

@@ -140,6 +140,15 @@ bool Converter::textured(const Element& e) {
   return false;
 }
 
+bool Converter::tilts(const Element& e) {
+  if (const auto [known, is_new] = tilts_.emplace(&e, false); !is_new) return known->second;
+  if (e.tag == "bsdf" && (e.type == "bumpmap" || e.type == "normalmap")) return tilts_[&e] = true;
+  for (const Property& p : e.properties)
+    if (const auto* nested = std::get_if<Nested>(&p.value); nested && nested->element->tag == "bsdf" && tilts(*nested->element))
+      return tilts_[&e] = true;
+  return false;
+}
+
 /// Whether a shape's front is found in the world, where a mirroring transform has turned its triangles round: a sphere's, and
 /// that of a mesh whose normals are those of its triangles. Elsewhere normals are carried along.
 bool Converter::front_by_world(const Element& e) {
@@ -172,6 +181,9 @@ void Converter::set_surface(Component& object, const Element& e, Uv uv) {
     looks = {make("Lambertian", e, ""), false};  // half of the light is reflected, as there
   }
   if (looks.shader) set_member(object, "shader", looks.shader, e.at);
+  // Light that a normal which is not the triangle's own would send through the surface is lost there.
+  const bool smooth = (e.type == "obj" || e.type == "ply" || e.type == "serialized") && !e.boolean("face_normals", false);
+  if (looks.shader && (smooth || tilts(e))) set_member(object, "shading_normals", "clipped", e.at);
   const char* const front = flipped ? "back" : "front";
   if (looks.shader && !looks.both_sides) set_member(object, "sides", front, e.at);
   if (flipped && looks.both_sides && looks.shader && looks.shader->class_info().name == "Dielectric")

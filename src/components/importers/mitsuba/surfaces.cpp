@@ -201,9 +201,14 @@ Converter::Surface Converter::tilted(const Element& e, Uv uv, const std::string&
     }
     shader = make("NormalMapShader", e, name);
     set(*shader, "map", texture(*map, uv));
+    set_member(*shader, "green", "across", e.at);
   }
   set_member(*shader, "shader", inner.shader, e.at);
-  e.ignore({"flip_invalid_normals", "use_shadowing_function"});
+  if (!e.old && e.boolean("use_shadowing_function", true))
+    inexact(e, fmt::format("'{}' here is without the shadowing function by which Mitsuba darkens where a tilted normal leaves "
+                           "the surface's own",
+                           e.type));
+  e.ignore({"flip_invalid_normals"});
   return {shader, inner.both_sides};
 }
 

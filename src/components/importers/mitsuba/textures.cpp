@@ -110,15 +110,15 @@ Value Converter::bitmap(const Element& e, Uv uv) {
     set_member(*image, "interpolation", "nearest", e.location_of("filter_type"));
   else if (filter != "bilinear")
     importing_.inexact(fmt::format("filter_type '{}' is taken for 'bilinear'", filter), e.location_of("filter_type"));
-  std::string wrap = e.string("wrap_mode", "");
-  if (wrap.empty()) wrap = e.string("wrap_mode_u", "repeat");
-  if (e.string("wrap_mode_v", wrap) != wrap)
-    importing_.inexact("an image has one wrap mode: that of u counts for v too", e.location_of("wrap_mode_v"));
-  if (wrap == "zero" || wrap == "one") {
-    if (wrap == "one") importing_.inexact("wrap mode 'one' is taken for 'black'", e.location_of("wrap_mode"));
-    wrap = "black";
-  }
+  const auto continued = [&](const char* key, const std::string& otherwise) {
+    const std::string said = e.string(key, otherwise);
+    if (said == "one") importing_.inexact("wrap mode 'one' is taken for 'black'", e.location_of(key));
+    return said == "zero" || said == "one" ? std::string("black") : said;
+  };
+  const std::string both = e.string("wrap_mode", "").empty() ? "repeat" : continued("wrap_mode", "repeat"),
+                    wrap = continued("wrap_mode_u", both), wrap_v = continued("wrap_mode_v", both);
   if (wrap != "repeat") set_member(*image, "wrap", wrap, e.location_of("wrap_mode"));
+  if (wrap_v != wrap) set_member(*image, "wrap_v", wrap_v, e.location_of("wrap_mode_v"));
   if (e.boolean("raw", false)) set_member(*image, "transfer", "linear", e.location_of("raw"));
   if (e.has("gamma")) {
     const double gamma = e.number("gamma", 0);

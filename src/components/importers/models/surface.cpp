@@ -34,6 +34,27 @@ class SurfaceMaker {
     return made;
   }
 
+  /// None: it is the same everywhere.
+  Ref<Component> color_map(const SurfaceColor& c) const {
+    const std::array<double, 3> none{0, 0, 0}, one{1, 1, 1};
+    Ref<Component> texture, vertices;
+    if (c.texture && (!c.black() || c.offset != none)) texture = image(*c.texture, {}, false);
+    if (c.by_vertex) {
+      vertices = part("AttributeMap");
+      set_member(*vertices, "otherwise", 1.0, at_);
+    }
+    const Ref<Component> map = texture ? texture : vertices;
+    const bool moved = texture && c.offset != none;
+    if (!map || (c.value == one && !moved && !(texture && vertices))) return map;
+    Ref<Component> all = part("RgbProductMap");
+    put(*all, "first", map, at_);
+    if (texture && vertices) put(*all, "second", vertices, at_);
+    const auto three = [](const std::array<double, 3>& x) { return Numbers{{x[0], x[1], x[2]}, 1, Dimension::none}; };
+    if (c.value != one) set_member(*all, "factor", three(c.value), at_);
+    if (moved) set_member(*all, "offset", three(c.offset), at_);
+    return all;
+  }
+
  private:
   Ref<Component> part(const char* class_name, const std::string& name = {}) const {
     return importing_.make(class_name, at_, name.empty() ? name : plain_name(name));
@@ -46,12 +67,17 @@ class SurfaceMaker {
     Ref<Component> map = part("ImageMap");
     set_member(*map, "file", FilePath{t.file, {}}, at_);
     if (!channel.empty()) set_member(*map, "channel", channel, at_);
-    if (linear) set_member(*map, "transfer", "linear", at_);
+    if (!t.transfer.empty())
+      set_member(*map, "transfer", t.transfer, at_);
+    else if (linear)
+      set_member(*map, "transfer", "linear", at_);
     set_member(*map, "wrap", t.wrap, at_);
+    const bool differ = !t.wrap_v.empty() && t.wrap_v != t.wrap;
+    if (differ) set_member(*map, "wrap_v", t.wrap_v, at_);
     if (t.nearest) set_member(*map, "interpolation", "nearest", at_);
     const auto pair = [](const std::array<double, 2>& p) { return Numbers{{p[0], p[1]}, 1, Dimension::none}; };
     std::array<double, 2> shift = t.shift;
-    if (t.wrap == "repeat" && std::abs(t.angle) < 1e-9)
+    if (t.wrap == "repeat" && !differ && std::abs(t.angle) < 1e-9)
       for (double& x : shift)
         if (std::abs(x - std::round(x)) < 1e-9) x = 0;
     if (std::abs(t.angle) < 1e-9 && shift[0] == 0 && shift[1] == 0) {
@@ -90,7 +116,7 @@ class SurfaceMaker {
       if (n.inverted) {
         Ref<Component> turned = part("RemapMap");
         put(*turned, "input", map, at_);
-        set_member(*turned, "to", Numbers{{1, 0}, 1, Dimension::none}, at_);
+        set_member(*turned, "to", Numbers{{1, 1 - n.inverted_share}, 1, Dimension::none}, at_);
         map = turned;
       }
     }
@@ -100,20 +126,13 @@ class SurfaceMaker {
       set_member(*vertices, "otherwise", 1.0, at_);
       map = map ? product(map, Value(vertices, at_)) : vertices;
     }
-    if (map && n.value != 1) map = product(map, Value(Number{n.value}, at_));
-    return map;
-  }
-
-  /// None: it is the same everywhere.
-  Ref<Component> color_map(const SurfaceColor& c) const {
-    Ref<Component> map;
-    if (c.texture && !c.black()) map = image(*c.texture, {}, false);
-    if (c.by_vertex) {
-      Ref<Component> vertices = part("AttributeMap");
-      set_member(*vertices, "otherwise", 1.0, at_);
-      map = map ? product(map, Value(vertices, at_)) : vertices;
+    if (map && n.offset != 0) {
+      Ref<Component> moved = part("RemapMap");
+      put(*moved, "input", map, at_);
+      set_member(*moved, "to", Numbers{{n.offset, n.offset + n.value}, 1, Dimension::none}, at_);
+      return moved;
     }
-    if (map && c.value != std::array<double, 3>{1, 1, 1}) map = product(map, color_value(c.value, at_));
+    if (map && n.value != 1) map = product(map, Value(Number{n.value}, at_));
     return map;
   }
 
@@ -193,18 +212,23 @@ class SurfaceMaker {
     return medium;
   }
 
+  // An image that is turned is only looked up elsewhere: its normals still lean along the mesh's own u and v.
   Ref<Component> with_normals(const Ref<Component>& shader) const {
     const SurfaceTexture& t = s_.normals->texture;
     Ref<Component> tilted = part("NormalMapShader");
     put(*tilted, "shader", shader, at_);
-    set_member(*tilted, "file", FilePath{t.file, {}}, at_);
-    if (s_.normals->strength != 1) set_member(*tilted, "strength", std::abs(s_.normals->strength), at_);
-    if (s_.normals->downwards) set_member(*tilted, "flip_y", true, at_);
-    if (t.scale[0] != 1 || t.scale[1] != 1)
-      set_member(*tilted, "repeat", Numbers{{t.scale[0], t.scale[1]}, 1, Dimension::none}, at_);
     const auto whole = [](double x) { return std::abs(x - std::round(x)) < 1e-6; };
-    if (std::abs(t.angle) > 1e-6 || !whole(t.shift[0]) || !whole(t.shift[1]))
-      importing_.inexact("an image of normals is not turned or shifted", at_);
+    const bool repeats = t.wrap == "repeat" && (t.wrap_v.empty() || t.wrap_v == t.wrap);
+    if (repeats && !t.nearest && std::abs(t.angle) < 1e-6 && whole(t.shift[0]) && whole(t.shift[1])) {
+      set_member(*tilted, "file", FilePath{t.file, {}}, at_);
+      if (t.scale[0] != 1 || t.scale[1] != 1)
+        set_member(*tilted, "repeat", Numbers{{t.scale[0], t.scale[1]}, 1, Dimension::none}, at_);
+    } else {
+      put(*tilted, "map", image(t, {}, true), at_);
+    }
+    if (const double strength = s_.normals->strength; std::isfinite(strength) && strength != 1)
+      set_member(*tilted, "strength", strength, at_);
+    if (s_.normals->downwards) set_member(*tilted, "flip_y", true, at_);
     return tilted;
   }
 
@@ -242,6 +266,11 @@ class SurfaceMaker {
 
 MadeSurface make_surface(Importing& importing, const Surface& surface, Location at) {
   return SurfaceMaker(importing, surface, at).make();
+}
+
+Ref<Component> surface_color_map(Importing& importing, const SurfaceColor& c, Location at) {
+  const Surface none;
+  return SurfaceMaker(importing, none, at).color_map(c);
 }
 
 Value color_value(const std::array<double, 3>& rgb, Location at) {

@@ -14,7 +14,9 @@ namespace etendue {
 struct SurfaceTexture {
   std::string file;  ///< to be opened (may lie in another: files/contained_file.h)
   std::string wrap = "repeat";
+  std::string wrap_v;  ///< above and below; "": as at the sides
   bool nearest = false;
+  std::string transfer;  ///< how its numbers are encoded; "": what it is used for says so
   // Surface coordinates, with v upwards, are scaled, then turned from u towards v, then shifted.
   std::array<double, 2> scale{1, 1}, shift{0, 0};
   double angle = 0;  ///< [rad]
@@ -26,15 +28,18 @@ struct SurfaceNumber {
   std::optional<SurfaceTexture> texture;
   std::string channel;                   ///< of the texture: "R", "G", "B", "A"; "": the mean of its colours
   bool inverted = false;                 ///< 1 minus the texture
+  double inverted_share = 1;             ///< of the texture that 1 is made less by
+  double offset = 0;                     ///< what is added to the product of the number and the texture
   std::string attribute;                 ///< times what vertices have of this name
   SurfaceNumber(double v) : value(v) {}  // NOLINT: a number is one
 };
 
-/// A linear sRGB colour, times a texture, times the colours of vertices.
+/// A linear sRGB colour, times a texture, times the colours of vertices: red, green and blue on their own.
 struct SurfaceColor {
   std::array<double, 3> value{};
   std::optional<SurfaceTexture> texture;
   bool by_vertex = false;
+  std::array<double, 3> offset{};                                 ///< what is added to the product where there is a texture
   SurfaceColor(double all) : value{all, all, all} {}              // NOLINT: a number is a grey
   SurfaceColor(const std::array<double, 3>& rgb) : value(rgb) {}  // NOLINT
   bool black() const { return value[0] <= 0 && value[1] <= 0 && value[2] <= 0; }
@@ -83,6 +88,9 @@ MadeSurface make_surface(Importing&, const Surface&, Location at);
 
 /// An image that can be read, or nothing and a note. `has_alpha` is told when asked for.
 std::optional<SurfaceTexture> readable_texture(Importing&, const std::string& file, Location at, bool* has_alpha = nullptr);
+
+/// A map of such a colour; none: it is the same everywhere.
+Ref<Component> surface_color_map(Importing&, const SurfaceColor&, Location at);
 
 // Ready to be set as members.
 Value color_value(const std::array<double, 3>& rgb, Location at);

@@ -47,7 +47,10 @@ void Directives::light_source() {
   need_world();
   const std::string type = text();
   Parameters p = parameters(type, 1);
-  if (r.in_object()) throw Error("an object that is instanced cannot hold lights", at_);
+  if (r.in_object()) {
+    r.importing.inexact("an object that is instanced cannot hold lights, in pbrt as here: this one is left out", at_);
+    return;
+  }
   make_light(r, type, std::move(p));
 }
 

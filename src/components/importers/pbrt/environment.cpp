@@ -72,7 +72,8 @@ void make_environment(Reader& reader, const Parameters& p) {
     set_member(*emission, "file", *file, p.place(name));
     if (!v3) set_member(*emission, "layout", "equal_area", at);
     set_member(*emission, "scale", image_scale(reader, p), at);
-    if (lux > 0) set_member(*emission, "illuminance", lux * luminous_unit * reader.exposure, at);
+    // The scale counts beside an illuminance too.
+    if (lux > 0) set_member(*emission, "illuminance", lux * luminous_unit * image_scale(reader, p), at);
   } else {
     const Parameter* given = p.find("L");
     const Color color =

@@ -112,7 +112,7 @@ void projection(Reader& reader, const Parameters& p) {
   set_member(*emission, "fov_axis", "smaller", p.at);
   set_member(*emission, "scale", p.number("scale", 1) * reader.exposure, p.at);
   if (const double power = p.number("power", -1); power > 0)
-    set_member(*emission, "luminous_flux", power * luminous_unit * reader.exposure, p.at);
+    set_member(*emission, "luminous_flux", power * p.number("scale", 1) * luminous_unit * reader.exposure, p.at);
   if (p.has("I")) reader.importing.inexact("the intensity of a projection light is that of its image", p.place("I"));
   reader.importing.inexact(
       "a projected image is even on a screen; pbrt's is even over directions, darker towards the edges of a screen", p.at);
@@ -155,8 +155,8 @@ Ref<Component> area_emission(Reader& reader, AreaLight& light, bool turned, size
     set_member(*emission, "radiance", light_of(reader, p, "L"), at);
   }
   if (power > 0) {
-    // pbrt has a light of this power for each triangle.
-    set_member(*emission, "luminous_flux", power * luminous_unit * reader.exposure * double(pieces), at);
+    // pbrt has a light of this power, times its scale, for each triangle.
+    set_member(*emission, "luminous_flux", power * p.number("scale", 1) * luminous_unit * reader.exposure * double(pieces), at);
     if (pieces > 1)
       reader.importing.inexact("each triangle of a light has the power given in pbrt; here they have it together, by area", at);
   }

@@ -64,6 +64,7 @@ Ref<Component> with_relief(Reader& reader, const Parameters& p, Ref<Component> s
       const Ref<Component> outer = reader.make("NormalMapShader", p.at);
       set_member(*outer, "shader", shader, p.at);
       set_member(*outer, "file", *file, p.at);
+      set_member(*outer, "green", "across", p.at);
       shader = outer;
     }
   return shader;

@@ -105,7 +105,8 @@ Ref<Component> hair(Reader& reader, const Parameters& p) {
 Ref<Component> subsurface(Reader& reader, const Parameters& p, bool kd) {
   const Location at = p.at;
   const Ref<Component> shader = reader.make("Subsurface", at);
-  const double scale = p.number("scale", 1), g = p.number("g", 0);
+  const double scale = p.number("scale", 1);
+  double g = p.number("g", 0);
   const Parameter* color = kd ? p.find("Kd") : p.find("reflectance");
   const auto constant = [&](const char* name, Color otherwise) {
     const Parameter* found = p.find(name);
@@ -126,9 +127,14 @@ Ref<Component> subsurface(Reader& reader, const Parameters& p, bool kd) {
     const Color mfp = constant("mfp", flat_spectrum(1));
     set_member(*shader, "mean_free_path", scale == 1 ? mfp : scaled_spectrum(scale, mfp), at);
   } else {
-    if (!p.text("name").empty()) reader.importing.inexact("a named medium is not known here: skin's default is taken", at);
-    const Color a = constant("sigma_a", rgb_color("srgb", 0.0011, 0.0024, 0.014));
-    const Color s = constant("sigma_s", rgb_color("srgb", 2.55, 3.21, 3.77));
+    const Measured* const named = measured_medium(reader, p, "name");
+    const Measured& known = named ? *named : whole_milk;
+    const auto coefficient = [&](const char* name, const std::array<double, 3>& otherwise) {
+      const Color color = rgb_color("srgb", otherwise[0], otherwise[1], otherwise[2]);
+      return named ? color : constant(name, color);
+    };
+    const Color a = coefficient("sigma_a", known.absorption), s = coefficient("sigma_s", known.scattering);
+    if (named) g = 0;  // its scattering is the reduced one already
     // By similarity: the reduced albedo a' of an isotropic medium reflects about
     // 1 - sqrt(1 - a') of ... van de Hulst's (1 - s)(1 - 0.139 s) / (1 + 1.17 s), s = sqrt((1 - a') / (1 - a' g')), g' = 0.
     const auto reduced = [&](float nm) { return s->at(nm, ColorUse::coefficient) * float(1 - g); };

@@ -53,6 +53,7 @@ Shape disk(Reader& reader, const Parameters& p) {
     set_member(*object, "inner_radius", inner, p.at);
     set_member(*object, "sweep", turn, p.at);
   }
+  set_member(*object, "coordinates", "around", p.at);
   return {object, Transform::translate({0, 0, p.number("height", 0)})};
 }
 

@@ -43,7 +43,12 @@ Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
     const DoubleVector3 a{v1.x, v1.y, v1.z}, b{v2.x, v2.y, v2.z}, c = cross(a, b);
     const Transform projection(Transform::DoubleMatrix{a.x, a.y, a.z, du, b.x, b.y, b.z, dv, c.x, c.y, c.z, 0});
     if (!projection.valid()) throw Error("v1 and v2 must be two directions", p.place("v1"));
-    return in_world(within("PlanarMap"), projection.inverse());
+    // v3 projects the places of the world themselves, whatever the directive's transform.
+    const Ref<Component> outer = within("PlanarMap");
+    if (reader.version != 3) return in_world(outer, projection.inverse());
+    set_member(*outer, "world", true, p.at);
+    set_member(*outer, "transform", projection.inverse(), p.at);
+    return outer;
   }
   if (mapping == "spherical" || mapping == "cylindrical") {
     // pbrt's s and t are (1 - v, u) of a SphericalMap, and (u + 1/2, v) of a CylindricalMap.

@@ -13,6 +13,7 @@ namespace etendue {
 namespace {
 
 enum class Interpolation : std::uint8_t { nearest, bilinear };
+enum class WrapV : std::uint8_t { same, repeat, mirror, clamp, black };  // Wrap, behind one more
 
 // The image's numbers are decoded to linear ones before they are interpolated or averaged. A footprint asks for a mean over it:
 // that over the ellipse in which a pixel sees the surface. Squares that are wider than the ellipse is long are given as they
@@ -36,6 +37,8 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
             "what is between the middles of texels: nearest: texels as squares; bilinear: mixtures of four",
             choices("nearest", "bilinear"))
         .member<&ImageMap::wrap>("wrap", "", "what lies outside the unit square", choices("repeat", "mirror", "clamp", "black"))
+        .member<&ImageMap::wrap_v>("wrap_v", "", "what lies above and below it; same: what `wrap` says for all sides",
+                                   choices("same", "repeat", "mirror", "clamp", "black"))
         .member<&ImageMap::color_space>("color_space", "", "primaries and white of the image's RGB", rgb_space_names())
         .member<&ImageMap::transfer>("transfer", "", "how its numbers are encoded; auto: srgb for integers, linear for floats",
                                      image_transfer_names())
@@ -81,6 +84,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
   FilePath file;
   Interpolation interpolation = Interpolation::bilinear;
   Wrap wrap = Wrap::repeat;
+  WrapV wrap_v = WrapV::same;
   std::string color_space = "srgb", transfer = automatic_transfer, channel;
   Vector2 repeat{1, 1};
 
@@ -114,7 +118,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
     rgb[0] = rgb[1] = rgb[2] = 0;
     float u = p.uv.x * repeat.x, v = p.uv.y * repeat.y;
     const ImageTexture* texture = tiles_.front().get();
-    Wrap outside = wrap;
+    Wraps outside(wrap, wrap_v == WrapV::same ? wrap : Wrap(int(wrap_v) - 1));
     if (tiled_) {
       float column = std::floor(u), row = std::floor(v);
       // The far border of a square belongs to it where no other begins.

@@ -193,8 +193,8 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
       const float length = distance(rounded(s[i]), rounded(s[i + 1]));
       if (!(std::abs(float(s[i].radius) - float(s[i + 1].radius)) < 0.99f * length))
         fail("radius", "in strand " + std::to_string(strand) +
-                           " the radius changes by more than the length of a piece, near (" + std::to_string(s[i].position[0]) +
-                           ", " + std::to_string(s[i].position[1]) + ", " + std::to_string(s[i].position[2]) + ")");
+                           " the radius changes by more than the length of a piece, near (" +
+                           fmt::format("{:.4g}, {:.4g}, {:.4g})", s[i].position[0], s[i].position[1], s[i].position[2]));
     }
     return kept;
   }
@@ -205,7 +205,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
       const double turned = double(strand) * 0.6180339887498949;
       cuts += append_tube(s, 2 * M_PI * (turned - std::floor(turned)), vertices_);
     } else if (const size_t bad = append_ribbon(s, vertices_); bad < s.size()) {
-      fail("normals", "strand " + std::to_string(strand) + " runs along its normal at u = " + std::to_string(s[bad].u));
+      fail("normals", "strand " + std::to_string(strand) + " runs along its normal at u = " + fmt::format("{:.3g}", s[bad].u));
     }
     if (vertices_.size() >= size_t(1) << 30) fail("points", "there are more than 2^30 pieces");
     for (size_t i = first; i + 1 < vertices_.size(); ++i)  // none between two flat ends in one place

@@ -53,7 +53,7 @@ class Polygon final : public TriangleObject {
       const bool outer = i < points.size();
       if (height > 1e-4f * size)
         fail(outer ? "points" : "holes", "the polygon is not planar: point " + std::to_string(outer ? i : i - points.size()) +
-                                             " is " + std::to_string(height) + " m off its plane");
+                                             " is " + fmt::format("{:.3g}", height) + " m off its plane");
     }
     MeshData mesh;
     mesh.centre = from;

@@ -9,13 +9,19 @@ class Annulus final : public PlacedObject {
  public:
   static void describe(Description<Annulus>& d) {
     d.summary(
-         "A flat ring about the origin in the xy plane, facing +z; surface coordinates are as on a Disc of its outer radius.")
+         "A flat ring about the origin in the xy plane, facing +z; surface coordinates are as on a Disc of its outer radius, "
+         "or "
+         "by `coordinates` those of the ring.")
         .group("Shape")
         .member<&Annulus::inner_radius>("inner_radius", "m", "of its hole; 0: none", at_least(0), Effect::rebuild, soft(0, 100))
         .member<&Annulus::radius>("radius", "m", "its outer radius", more_than(0), Effect::rebuild, soft(0.01, 100),
                                   logarithmic)
         .member<&Annulus::sweep>("sweep", "deg", "how much of a turn there is, from x towards y", Range{0, 360, true},
-                                 Effect::rebuild);
+                                 Effect::rebuild)
+        .member<&Annulus::coordinates>("coordinates", "",
+                                       "surface coordinates; square: those of the square around it; around: u from 0 to 1 over "
+                                       "the sweep, v from 0 at the outer radius to 1 at the inner",
+                                       choices("square", "around"));
   }
 
   void prepare() override {
@@ -35,6 +41,7 @@ class Annulus final : public PlacedObject {
   }
 
   float inner_radius = 0.5f, radius = 1, sweep = 360;
+  enum class Coordinates : std::uint8_t { square, around } coordinates = Coordinates::square;
 
  protected:
   Bounds3 own_bounds() const override {
@@ -53,18 +60,30 @@ class Annulus final : public PlacedObject {
   void own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const override {
     const DoubleRay r(ray);
     const double t = exact_distance(hit);
-    flat_point(r.at(t, 0), r.at(t, 1), 0, double(radius), true, double(radius), p);
+    point_at(r.at(t, 0), r.at(t, 1), p);
   }
 
   double own_area() const override { return sector_.share() * M_PI * (high_ - low_); }
 
   float own_sample(Point2 u, OwnPoint& p) const override {
     const double r = std::sqrt(low_ + double(u.y) * (high_ - low_)), phi = sector_.angle() * double(u.x);
-    flat_point(r * std::cos(phi), r * std::sin(phi), 0, double(radius), true, double(radius), p);
+    point_at(r * std::cos(phi), r * std::sin(phi), p);
     return float(1 / own_area());
   }
 
  private:
+  void point_at(double x, double y, OwnPoint& p) const {
+    flat_point(x, y, 0, double(radius), true, double(radius), p);
+    if (coordinates == Coordinates::square) return;
+    // (x, y) = (R - v (R - r)) (cos(u sweep), sin(u sweep)).
+    const double wide = double(radius) - double(inner_radius), length = std::hypot(x, y);
+    const double c = length > 0 ? x / length : 1, s = length > 0 ? y / length : 0;
+    const double about = sector_.angle() * std::max(length, 1e-6 * double(radius));
+    p.uv = {sector_.part(x, y), clamp(float((double(radius) - length) / wide), 0, 1)};
+    p.dpdu = {float(-about * s), float(about * c), 0};
+    p.dpdv = {float(-wide * c), float(-wide * s), 0};
+  }
+
   Sector sector_;
   double low_ = 0, high_ = 1;  // squares of the radii [m^2]
 };

@@ -7,19 +7,21 @@ namespace etendue {
 
 class Disc final : public SceneObject {
   float radius = 1;
-  enum class Coordinates : std::uint8_t { square, polar } coordinates = Coordinates::square;
+  enum class Coordinates : std::uint8_t { square, polar, around } coordinates = Coordinates::square;
 
  public:
   static void describe(Description<Disc>& d) {
     d.summary(
          "A disc about the origin in the xy plane, facing +z. u goes along x and v along y, from 0 to 1 over the square around "
-         "it; or, by `coordinates`, outwards and around.")
+         "it; or, by `coordinates`, outwards and around, or around and inwards.")
         .group("Shape")
         .member<&Disc::radius>("radius", "m", "its radius", more_than(0), Effect::rebuild, soft(0.01, 100), logarithmic)
-        .member<&Disc::coordinates>("coordinates", "",
-                                    "surface coordinates; square: those of the square around it; polar: u from 0 in the middle "
-                                    "to 1 at the rim, v from 0 to 1 around from x towards y",
-                                    choices("square", "polar"));
+        .member<&Disc::coordinates>(
+            "coordinates", "",
+            "surface coordinates; square: those of the square around it; polar: u from 0 in the middle "
+            "to 1 at the rim, v from 0 to 1 around from x towards y; around: u from 0 to 1 around from x "
+            "towards y, v from 0 at the rim to 1 in the middle",
+            choices("square", "polar", "around"));
   }
 
   void prepare() override {
@@ -73,10 +75,13 @@ class Disc final : public SceneObject {
       p.dpdv = 2 * w.axis_v;
       return;
     }
-    // (x, y) = u (cos 2 pi v, sin 2 pi v); in the middle, where v has no direction, that of v = 0.
+    // (x, y) = u (cos 2 pi v, sin 2 pi v), or with u and 1 - v changed about; in the middle, where there is no direction
+    // around, that of x.
     const float r = std::hypot(p.u, p.v), c = r > 0 ? p.u / r : 1, s = r > 0 ? p.v / r : 0;
-    p.dpdu = c * w.axis_u + s * w.axis_v;
-    p.dpdv = (2 * pi * std::max(r, 1e-6f)) * (c * w.axis_v - s * w.axis_u);
+    const Vector3 outwards = c * w.axis_u + s * w.axis_v;
+    const Vector3 about = (2 * pi * std::max(r, 1e-6f)) * (c * w.axis_v - s * w.axis_u);
+    p.dpdu = coordinates == Coordinates::polar ? outwards : about;
+    p.dpdv = coordinates == Coordinates::polar ? about : -outwards;
   }
 
   NormalCone normals() const override {
@@ -142,7 +147,8 @@ class Disc final : public SceneObject {
       p.uv = {(on_disc.x + 1) / 2, (on_disc.y + 1) / 2};
     } else {
       const float turn = std::atan2(on_disc.y, on_disc.x) / (2 * pi);
-      p.uv = {std::hypot(on_disc.x, on_disc.y), turn < 0 ? std::min(turn + 1, one_minus_epsilon) : turn};
+      const float r = std::hypot(on_disc.x, on_disc.y), whole = turn < 0 ? std::min(turn + 1, one_minus_epsilon) : turn;
+      p.uv = coordinates == Coordinates::polar ? Point2{r, whole} : Point2{whole, std::max(1 - r, 0.0f)};
     }
     p.dpdu = {};
     p.dpdv = {};

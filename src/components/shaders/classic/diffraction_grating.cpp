@@ -114,7 +114,7 @@ class DiffractionGrating final : public Shader {
       sum += (i == 0 ? 1 : 2) * double(efficiency[i]);
     }
     if (sum > 1 + 1e-5)
-      fail("efficiency", "all orders together would reflect " + std::to_string(sum) +
+      fail("efficiency", "all orders together would reflect " + fmt::format("{:.4g}", sum) +
                              " of the light (that of order 0, and twice that of each other)");
   }
 

@@ -12,9 +12,9 @@ namespace etendue {
 namespace {
 
 // An image of normals in the surface's own frame: red, green and blue in [0, 1] are x, y and z in [-1, 1], x along the
-// direction in which u grows, y across it on the side to which v grows, z along the shading normal (Cohen et al. 1998,
-// "Appearance-preserving simplification"). It is read by its numbers: a map of colours would make spectra of them, and three
-// directions do not survive that.
+// direction in which u grows, y across it on the side to which v grows (or, by `green`, always on its left), z along the
+// shading normal (Cohen et al. 1998, "Appearance-preserving simplification"). It is read by its numbers: a map of colours would
+// make spectra of them, and three directions do not survive that.
 //
 // Between texels the vectors are interpolated linearly. They are not averaged over what a pixel sees: the mean of tilted
 // normals is a flat surface, which is not how a rough one looks. The samples of a pixel average what the normals do instead.
@@ -26,6 +26,7 @@ class NormalMapShader final : public PerturbedNormalShader {
          "like that of an ImageMap, or by a map.",
          "Cohen, Olano & Manocha 1998, Appearance-preserving simplification")
         .member<&NormalMapShader::shader>("shader", "", "the surface that gets the normals", required)
+        .group("Image")
         .member<&NormalMapShader::file>(
             "file", "", "the image: red, green, blue in [0, 1] are x (along u), y (along v), z in [-1, 1]; none: `map`")
         .member<&NormalMapShader::map>(
@@ -33,19 +34,26 @@ class NormalMapShader final : public PerturbedNormalShader {
             "instead, a map that holds such red, green and blue: an ImageMap (mostly with transfer linear), an AttributeMap, "
             "or one of these below a UvTransformMap",
             Meaning::number, unless("file"))
-        .member<&NormalMapShader::strength>("strength", "1", "multiplies the tilt: 0 is flat, 1 as in the image", at_least(0),
-                                            soft(0, 2))
-        .member<&NormalMapShader::flip_y>("flip_y", "", "whether green grows against v, as in images made for DirectX")
         .member<&NormalMapShader::transfer>("transfer", "",
                                             "how the image's numbers are encoded; nearly all images of normals are linear",
                                             image_transfer_names(), when("file"))
-        .member<&NormalMapShader::repeat>("repeat", "1", "how many times the image is laid along u and along v", when("file"));
+        .member<&NormalMapShader::repeat>("repeat", "1", "how many times the image is laid along u and along v", when("file"))
+        .group("Tilt")
+        .member<&NormalMapShader::strength>(
+            "strength", "1", "multiplies the tilt: 0 is flat, 1 as in the image; negative, it tilts the other way", soft(0, 2))
+        .member<&NormalMapShader::green>(
+            "green", "",
+            "along which axis green tilts; v: to the side on which v grows, as glTF and most programs have it; across: to the "
+            "left of u, seen from the front (the cross product of the shading normal and the direction of u), as Mitsuba and "
+            "pbrt have it. They differ where coordinates run mirrored over the surface",
+            choices("v", "across"))
+        .member<&NormalMapShader::flip_y>("flip_y", "", "whether green tilts the other way, as in images made for DirectX");
   }
 
   void prepare() override {
     if (!shader) fail("shader", "a shader is needed");
     if (file.empty() && !map) fail("file", "an image file is needed, or a map");
-    if (!(strength >= 0 && strength < infinity)) fail("strength", "must be a finite number, 0 or more");
+    if (!std::isfinite(strength)) fail("strength", "must be a finite number");
     if (!(std::isfinite(repeat.x) && std::isfinite(repeat.y))) fail("repeat", "must be finite numbers");
     source_ = nullptr;
     if (file.empty()) {
@@ -71,6 +79,7 @@ class NormalMapShader final : public PerturbedNormalShader {
   FilePath file;
   Ref<ObjectMap> map;
   float strength = 1;
+  enum class Green : std::uint8_t { v, across } green = Green::v;
   bool flip_y = false;
   std::string transfer = "linear";
   Vector2 repeat{1, 1};
@@ -82,7 +91,7 @@ class NormalMapShader final : public PerturbedNormalShader {
     v.y *= flip_y ? -strength : strength;
     v.z = std::max(v.z, 1e-3f);
     Frame frame = tangent_frame(p);
-    if (dot(frame.t, p.dpdv) < 0) frame.t = -frame.t;  // v runs the other way round
+    if (green == Green::v && dot(frame.t, p.dpdv) < 0) frame.t = -frame.t;  // v runs the other way round
     return frame.to_world(v);
   }
 

@@ -1,0 +1,65 @@
+#include "etendue/render/learned_guide.h"
+
+#include "etendue/core/warp.h"
+
+namespace etendue {
+namespace {
+
+// Beside the guide there are states of it, being made and kept.
+GuideSettings within(GuideSettings settings, size_t memory) {
+  settings.memory = memory / 8;
+  return settings;
+}
+
+/// Of the paths of a step, which part it learns from: all of the first, later fewer, as learning costs time.
+double part_of(std::uint32_t step) { return std::max(std::min(8 / double(step + 1), 1.0), 0.125); }
+
+}  // namespace
+
+// Samples have half of the memory, copies made on the way included.
+LearnedGuide::LearnedGuide(GuideSettings settings, size_t memory)
+    : room_(double(memory) / 2 / (5 * sizeof(GuideSample))), guide_(within(settings, memory)) {}
+
+void LearnedGuide::begin_step(const PixelArea& area, const Step& step, int longest) {
+  const double paths = double(area.width()) * double(area.height()) * double(step.samples.end - step.samples.begin);
+  taught_ = std::uint64_t(std::min(room_ / longest / std::max(paths, 1.0), part_of(step.number)) * 0x1p32);
+}
+
+bool LearnedGuide::teaches(const SampleContext& sample) const {
+  const SampleKey key = sample.numbers.key();
+  return sample.records && (mix_bits(key.walk + key.sample) >> 32) < taught_;
+}
+
+void LearnedGuide::learn(Schedule& schedule, const std::vector<GuideSample>& samples) {
+  if (schedule.aborted()) return;
+  std::vector<size_t> end(guide_.regions() + 1, 0);
+  for (const GuideSample& s : samples) ++end[s.region + 1];
+  for (size_t r = 1; r < end.size(); ++r) end[r] += end[r - 1];
+  std::vector<const GuideSample*> sorted(samples.size());
+  for (const GuideSample& s : samples) sorted[end[s.region]++] = &s;
+  // Now `end` is of each region where its samples end, and those of the next begin.
+  schedule.collect<char>(guide_.regions(), [&](std::uint64_t item, auto&, Arena&) {
+    const auto r = std::uint32_t(item);
+    const size_t begin = r > 0 ? end[r - 1] : 0;
+    guide_.learn(r, std::span(sorted).subspan(begin, end[r] - begin));
+  });
+  guide_.divide();
+}
+
+ShownLobes LearnedGuide::lobes(const Point3& position, const Normal3& normal) const {
+  const Guide::Region& region = guide_.at(position, normal);
+  const SeenLobes seen(region.lobes(), position);
+  ShownLobes shown{{}, region.share()};
+  constexpr int parts = 4;  // of a cell, either way: lobes may be narrower than it
+  for (int row = 0; row < ShownLobes::rows; ++row)
+    for (int column = 0; column < ShownLobes::columns; ++column) {
+      float sum = 0;
+      for (int i = 0; i < parts * parts; ++i)
+        sum += seen.density(
+            ShownLobes::direction(row, column, (float(i / parts) + 0.5f) / parts, (float(i % parts) + 0.5f) / parts));
+      shown.density.push_back(shown.share > 0 ? sum / (parts * parts) : warp::sphere_density);
+    }
+  return shown;
+}
+
+}  // namespace etendue

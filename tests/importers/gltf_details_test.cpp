@@ -1,0 +1,196 @@
+// Details of glTF files, against the words and formulas of the specification and its extensions.
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "components/objects/meshes/mesh_data.h"
+#include "mitsuba_support.h"
+
+namespace etendue {
+namespace {
+
+using Json = nlohmann::json;
+using mitsuba_test::number;
+using mitsuba_test::part;
+
+/// A square of two triangles with a material; more accessors can be added.
+class Square {
+ public:
+  Square() {
+    json_ = {{"asset", {{"version", "2.0"}}},
+             {"buffers", Json::array()},
+             {"bufferViews", Json::array()},
+             {"accessors", Json::array()},
+             {"images", {{{"uri", "n.ppm"}}}},
+             {"textures", {{{"source", 0}}}},
+             {"materials", {{{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}}},
+             {"nodes", {{{"mesh", 0}}}},
+             {"scenes", {{{"nodes", {0}}}}},
+             {"scene", 0}};
+    json_["meshes"] = {{{"primitives", {{{"material", 0}, {"attributes", Json::object()}}}}}};
+    json_["meshes"][0]["primitives"][0]["indices"] = add<std::uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR", 1, 5123);
+    vertices("POSITION", {0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0}, 3);
+    vertices("NORMAL", {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+    vertices("TEXCOORD_0", {0, 1, 1, 1, 1, 0, 0, 0}, 2);  // v downwards
+  }
+  Json& primitive() { return json_["meshes"][0]["primitives"][0]; }
+  Json& material() { return json_["materials"][0]; }
+  Json& json() { return json_; }
+  int floats(const std::vector<float>& values, int width) {
+    return add<float>(values, "VEC" + std::to_string(width), size_t(width), 5126);
+  }
+  void vertices(const char* name, const std::vector<float>& values, int width) {
+    primitive()["attributes"][name] = floats(values, width);
+  }
+
+  std::string write(const TemporaryFolder& folder) const {
+    folder.write("n.ppm", "P6\n1 1\n255\n\x80\x80\xff");
+    folder.write("s.bin", binary_);
+    Json all = json_;
+    all["buffers"] = {{{"uri", "s.bin"}, {"byteLength", binary_.size()}}};
+    return folder.write("s.gltf", all.dump());
+  }
+  mitsuba_test::Imported import(const TemporaryFolder& folder) const {
+    mitsuba_test::Imported result;
+    const std::string path = write(folder);
+    Importing importing(path, {});
+    try {
+      scene_ = ref_cast<Scene>(importer_of(path)->import(importing));
+      result.notes = importing.notes();
+    } catch (const Error& e) {
+      result.errors = {e};
+    }
+    return result;
+  }
+  /// What its shader is, and what was told.
+  const Component& shader(const TemporaryFolder& folder, std::string& told) const {
+    told = import(folder).told();
+    return part(*scene_->objects.at(0), "shader");
+  }
+
+ private:
+  template <class T>
+  int add(const std::vector<T>& values, const std::string& type, size_t width, int component) {
+    json_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", values.size() * sizeof(T)}});
+    binary_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    json_["accessors"].push_back({{"bufferView", int(json_["bufferViews"].size()) - 1},
+                                  {"componentType", component},
+                                  {"type", type},
+                                  {"count", values.size() / width}});
+    return int(json_["accessors"].size()) - 1;
+  }
+  Json json_;
+  std::string binary_;
+  mutable Ref<Scene> scene_;
+};
+
+// 3.9.3: scaled normal = normalize((sampled * 2 - 1) * vec3(scale, scale, 1)).
+TEST(GltfDetails, NormalsOfNegativeScaleTiltTheOtherWay) {
+  const TemporaryFolder folder;
+  Square square;
+  square.material()["normalTexture"] = {{"index", 0}, {"scale", -1.5}};
+  std::string told;
+  const Component& shader = square.shader(folder, told);
+  EXPECT_EQ(told, "");
+  EXPECT_EQ(number(shader, "strength"), -1.5);
+}
+
+// A tangent is where u grows; bitangent = cross(normal, tangent.xyz) * tangent.w is against the file's v, which runs downwards.
+TEST(GltfDetails, TangentsThatCoordinatesDoNotGiveAreTold) {
+  const TemporaryFolder folder;
+  const auto told = [&](float x, float y, float w, bool mapped) {
+    Square square;
+    std::vector<float> tangents;
+    for (int i = 0; i < 4; ++i) tangents.insert(tangents.end(), {x, y, 0, w});
+    square.vertices("TANGENT", tangents, 4);
+    if (mapped) square.material()["normalTexture"] = {{"index", 0}};
+    std::string notes;
+    square.shader(folder, notes);
+    return notes;
+  };
+  EXPECT_EQ(told(1, 0, 1, true), "");
+  EXPECT_NE(told(1, 0, -1, true).find("100 % of its TANGENT"), std::string::npos);
+  EXPECT_NE(told(0.7071f, 0.7071f, 1, true).find("100 % of its TANGENT"), std::string::npos);
+  EXPECT_EQ(told(0, 1, 1, false), "") << "nothing follows them";
+}
+
+// 3.7.2.2: an attribute is base + sum of weight * target; colours are clamped to [0, 1] afterwards.
+TEST(GltfDetails, MorphTargetsMoveColoursAndCoordinates) {
+  const TemporaryFolder folder;
+  Square square;
+  square.vertices("COLOR_0", {.5f, .5f, .5f, 1, .5f, .5f, .5f, 1, .5f, .5f, .5f, 1, .5f, .5f, .5f, 1}, 4);
+  const int color = square.floats({.4f, 0, 0, -1, 0, .4f, 0, -1, 0, 0, 4, -1, 0, 0, -4, -1}, 4),
+            uv = square.floats({.2f, 0, 0, .2f, 0, 0, 0, 0}, 2);
+  square.primitive()["targets"] = {{{"COLOR_0", color}, {"TEXCOORD_0", uv}}};
+  square.json()["meshes"][0]["weights"] = {0.5};
+  const MeshData mesh = read_mesh(square.write(folder), "nodes[0].primitives[0]");
+  ASSERT_EQ(mesh.attributes.size(), 2u);
+  const std::vector<float> expected{.7f, .5f, .5f, .5f, .7f, .5f, .5f, .5f, 1, .5f, .5f, 0};
+  for (size_t i = 0; i < 12; ++i) EXPECT_NEAR(mesh.attributes[0].values.at(i), expected[i], 1e-6f) << i;
+  for (const float alpha : mesh.attributes[1].values) EXPECT_NEAR(alpha, 0.5f, 1e-6f);
+  EXPECT_NEAR(mesh.uvs[0].x, 0.1f, 1e-6f);
+  EXPECT_NEAR(mesh.uvs[1].y, -0.1f, 1e-6f);  // 1 - (1 + 0.1)
+}
+
+// KHR_materials_anisotropy: alpha_b = alpha, alpha_t = mix(alpha, 1, strength^2), alpha = roughness^2. OpenPBR, which
+// Principled is: alpha_t = r^2 sqrt(2 / (1 + (1 - a)^2)), alpha_b = (1 - a) alpha_t.
+TEST(GltfDetails, AnisotropyStretchesAlongAndKeepsWidth) {
+  const TemporaryFolder folder;
+  for (const double roughness : {0.2, 0.6})
+    for (const double strength : {0.3, 1.0}) {
+      Square square;
+      square.material()["pbrMetallicRoughness"]["roughnessFactor"] = roughness;
+      square.material()["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", strength}};
+      std::string told;
+      const Component& shader = square.shader(folder, told);
+      EXPECT_EQ(told, "");
+      const auto value = [&](const char* member) {
+        const Value constant = get(part(shader, member), "value");
+        const Color* color = constant.as<Color>();
+        return color ? double((*color)->at(550, ColorUse::coefficient)) : constant.as<Number>()->value;
+      };
+      const double r = value("specular_roughness"), a = value("specular_roughness_anisotropy");
+      const double along = r * r * std::sqrt(2 / (1 + (1 - a) * (1 - a))), alpha = roughness * roughness;
+      EXPECT_NEAR(along, alpha + (1 - alpha) * strength * strength, 1e-6);
+      EXPECT_NEAR((1 - a) * along, alpha, 1e-6);
+    }
+}
+
+// KHR_materials_pbrSpecularGlossiness: glossiness = factor * alpha of the texture; roughness = 1 - glossiness.
+TEST(GltfDetails, GlossinessIsTheFactorTimesTheTexture) {
+  const TemporaryFolder folder;
+  Square square;
+  square.material()["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {{"glossinessFactor", 0.25},
+                                                                            {"specularGlossinessTexture", {{"index", 0}}}};
+  std::string told;
+  const Value to = get(part(square.shader(folder, told), "specular_roughness"), "to");
+  ASSERT_TRUE(to.as<Numbers>());
+  EXPECT_EQ(to.as<Numbers>()->values, (std::vector<double>{1, 0.75}));
+}
+
+// KHR_lights_punctual: what exporters write for a spot of a hard edge.
+TEST(GltfDetails, SpotsMayHaveHardEdges) {
+  const TemporaryFolder folder;
+  Square square;
+  square.json()["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "spot"}, {"intensity", 5}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}};
+  square.json()["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  square.json()["scenes"][0]["nodes"] = {0, 1};
+  EXPECT_EQ(square.import(folder).told(), "");
+}
+
+// EXT_mesh_gpu_instancing shows one mesh many times; its weights are a node's.
+TEST(GltfDetails, InstancesWithoutTheirMorphAreTold) {
+  const TemporaryFolder folder;
+  Square square;
+  square.primitive()["targets"] = {{{"POSITION", square.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3)}}};
+  const int places = square.floats({0, 0, 0, 5, 0, 0}, 3);
+  Json& node = square.json()["nodes"][0];
+  node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = places;
+  EXPECT_EQ(square.import(folder).told(), "");
+  node["weights"] = {0.5};
+  EXPECT_NE(square.import(folder).told().find("without what its morph targets add"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace etendue
