@@ -106,6 +106,9 @@ std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
     {
       std::unique_lock lock(turn);
       turned.wait(lock, [&] { return waiting == 0; });
+      // Of a word for an earlier run, or of who has been waited for: kept, it would throw away every step to come. Whoever says
+      // it from here on is heard, by the next line or within the step.
+      give_up = false;
     }
     const std::shared_lock sharing(description);
     if (abort.load()) return Ended::aborted;

@@ -2,7 +2,9 @@
 
 import base64
 import contextlib
+import faulthandler
 import json
+import math
 import os
 import re
 import select
@@ -12,6 +14,11 @@ import subprocess
 import time
 
 PROGRAM = os.environ.get("ETENDUE_PROGRAM", "build/etendue")
+
+
+# A test that waits for ever says where, shortly before its time limit ends it without a word.
+if "ETENDUE_STUDIO_PATIENCE" in os.environ:
+    faulthandler.dump_traceback_later(int(os.environ["ETENDUE_STUDIO_PATIENCE"]), exit=True)
 
 
 class Closed(Exception):
@@ -152,10 +159,12 @@ class Page:
         masked = (int.from_bytes(data, "big") ^ int.from_bytes(long_mask, "big")).to_bytes(len(data), "big")
         self.socket.sendall(head + mask + masked)
 
-    def receive(self):
-        """One message: words or pixels."""
+    def receive(self, end=math.inf):
+        """One message: words or pixels. The server's pings alone do not keep anybody waiting beyond `end`."""
         whole, kind = b"", 0
         while True:
+            if time.monotonic() > end:
+                raise AssertionError(f"nothing but pings came; the last of {len(self.events)} events: {self.events[-1:]}")
             first, second = self.take(2)
             size = second & 127
             if size == 126:
@@ -187,11 +196,13 @@ class Page:
         number = self.next
         self.next += 1
         self.send({"id": number, "do": do, **arguments})
-        while True:
-            message = self.receive()
+        end = time.monotonic() + 120
+        while time.monotonic() < end:
+            message = self.receive(end)
             if isinstance(message, dict) and message.get("id") == number and "ok" in message:
                 return message
             self.note(message)
+        raise AssertionError(f"no reply to {do} {arguments}; the last of {len(self.events)} events: {self.events[-1:]}")
 
     def good(self, do, **arguments):
         reply = self.ask(do, **arguments)
@@ -200,9 +211,11 @@ class Page:
         return reply
 
     def drain(self, seconds=0.0):
-        """Whatever has come, and comes within a time."""
+        """Whatever has come, and comes within a time; what goes on coming is left after ten seconds more."""
         end = time.monotonic() + seconds
-        while self.buffer or select.select([self.socket], [], [], max(end - time.monotonic(), 0))[0]:
+        while time.monotonic() < end + 10 and (
+            self.buffer or select.select([self.socket], [], [], max(end - time.monotonic(), 0))[0]
+        ):
             self.note(self.receive())
 
     def wait(self, condition, seconds=60):
@@ -214,11 +227,11 @@ class Page:
         while time.monotonic() < end:
             if not self.buffer and not select.select([self.socket], [], [], 1)[0]:
                 continue
-            message = self.receive()
+            message = self.receive(end)
             self.note(message)
             if not isinstance(message, Pixels) and condition(message):
                 return message
-        raise AssertionError("what was waited for did not come")
+        raise AssertionError(f"what was waited for did not come; the last of {len(self.events)} events: {self.events[-1:]}")
 
 
 class Pixels:

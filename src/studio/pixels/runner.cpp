@@ -37,16 +37,20 @@ void Runner::start() {
   changed_.notify_all();
 }
 
-void Runner::pause() {
-  const std::lock_guard lock(guard_);
-  wanted_ = false;
-  if (running_) render_->stop();
-}
+void Runner::pause() { rest(&Render::stop); }
 
-void Runner::stop() {
+void Runner::stop() { rest(&Render::abort); }
+
+void Runner::rest(void (Render::*word)()) {
   const std::lock_guard lock(guard_);
+  const bool was_to_begin = wanted_ && render_ && turn_ != done_turn_;
   wanted_ = false;
-  if (running_) render_->abort();
+  if (running_) {
+    (render_.get()->*word)();
+  } else if (was_to_begin) {
+    // It has more to do than when it came to its end, and was about to: nobody else would say that it waits now.
+    status_ = {State::paused, {}, {}, status_.changes + 1};
+  }
 }
 
 void Runner::follow(const std::shared_ptr<Render>& render) {

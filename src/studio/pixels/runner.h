@@ -43,6 +43,7 @@ class Runner {
 
  private:
   void work();
+  void rest(void (Render::*word)());
 
   Ended run(const std::shared_ptr<Render>&);
 
