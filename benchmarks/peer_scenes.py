@@ -19,6 +19,7 @@ class Scene:
     size: tuple         # pixels
     integrator: str     # Mitsuba's: path or volpath
     folder: pathlib.Path  # that both may read
+    gltf: bool = False  # whether glTF can say what matters of it
 
 
 def upgraded(source, target, size, depth, integrator):
@@ -220,8 +221,8 @@ def scenes(folder, bitterli, size=(320, 240)):
             source = bitterli / name / "scene.xml"
             if source.exists():
                 file = upgraded(source, folder / f"{name}.xml", scene_size, depth, integrator)
-                found.append(Scene(name, file, depth, scene_size, integrator, source.parent.resolve()))
+                found.append(Scene(name, file, depth, scene_size, integrator, source.parent.resolve(), name == "cornell-box"))
     for make, depth, integrator in ((glass_caustic, 12, "path"), (fog, 16, "volpath"), (thousand_lamps, 6, "path"),
                                     (foliage, 12, "path")):
-        found.append(Scene(make.__name__, make(folder, size), depth, size, integrator, folder))
+        found.append(Scene(make.__name__, make(folder, size), depth, size, integrator, folder, make is glass_caustic))
     return found

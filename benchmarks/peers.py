@@ -3,7 +3,8 @@
 
     python3 benchmarks/peers.py --scenes ../shared/validation/bitterli -o docs/results/peers.md
 
-Needs `pip install mitsuba numpy pillow matplotlib`; the llvm variants need an LLVM library (Debian: libllvm19), named by
+Needs `pip install mitsuba numpy pillow matplotlib`, and bpy for Blender's Cycles (in the same Python, or one named by --blender-python;
+only of scenes that glTF can say, by our own exporter); the llvm variants need an LLVM library (Debian: libllvm19), named by
 DRJIT_LIBLLVM_PATH if it is not found.
 
 For each scene and program
@@ -41,7 +42,7 @@ scene = mi.load_file(scene)
 image = mi.render(scene, spp=samples, seed=seed)
 np.save(out, np.array(image)[:, :, :3])
 """
-VARIANTS = ("llvm_ad_spectral", "llvm_ad_rgb", "scalar_spectral")
+VARIANTS = ("llvm_ad_spectral", "llvm_ad_rgb", "scalar_spectral", "cycles")
 LUMINANCE = np.array([0.212671, 0.715160, 0.072169])  # of linear sRGB
 
 
@@ -57,6 +58,14 @@ def theirs(variant, scene, samples, seed, folder):
     out = folder / "theirs.npy"
     used = processes.run([sys.executable, "-c", MITSUBA, variant, scene.file, samples, out, seed])
     return used, np.load(out) @ LUMINANCE
+
+
+def cycles(program, python, scene, samples, seed, folder):
+    file, out = folder / f"{scene.name}.glb", folder / "theirs.npy"
+    if not file.exists():
+        processes.run([program, "export", scene.file, "--allow-path", scene.folder, "-o", file])
+    script = pathlib.Path(__file__).resolve().parent / "peer_blender.py"
+    return processes.run([python, script, file, *scene.size, scene.depth, samples, seed, out]), np.load(out) @ LUMINANCE
 
 
 def measure(render, scene, runs, samples):
@@ -83,6 +92,8 @@ def measure(render, scene, runs, samples):
 def compare_scene(scene, programs, options):
     results = {}
     for name, render in programs.items():
+        if name == "cycles" and not scene.gltf:
+            continue
         try:
             results[name] = measure(render, scene, options.runs, options.samples)
         except RuntimeError as error:
@@ -98,7 +109,7 @@ def compare_scene(scene, programs, options):
 
 def table(all_results, options):
     peers = [v for v in VARIANTS if any(v in r for r in all_results.values())]
-    lines = ["# Time to equal error, beside Mitsuba 3", "",
+    lines = ["# Time to equal error, beside Mitsuba 3 and Cycles", "",
              "Made by `benchmarks/peers.py`, which says how everything is measured. Ratios above 1: Étendue needs less of the processor's",
              "time for the same error, of rendering alone. `agrees`: the peer's mean luminance over ours.", "",
              "| scene | ms a sample | relMSE of one | " + " | ".join(f"{p}: ratio (agrees)" for p in peers) + " | best peer |",
@@ -161,6 +172,7 @@ def main():
     parser.add_argument("--scenes", type=pathlib.Path, help="the folder of Bitterli's scenes")
     parser.add_argument("--only", action="append", help="a scene's name; may be repeated")
     parser.add_argument("--variants", default=",".join(VARIANTS))
+    parser.add_argument("--blender-python", default=sys.executable, help="a Python that has bpy")
     parser.add_argument("--runs", type=int, default=8)
     parser.add_argument("--samples", type=int, nargs=2, default=(4, 32), metavar=("FEW", "MANY"))
     parser.add_argument("-o", "--output", type=pathlib.Path)
@@ -174,6 +186,9 @@ def main():
         folder = pathlib.Path(temporary)
         programs = {"etendue": lambda *a: ours(options.program, options.renderer, *a, folder)}
         for variant in options.variants.split(","):
+            if variant == "cycles":
+                programs[variant] = lambda *a: cycles(options.program, options.blender_python, *a, folder)
+                continue
             programs[variant] = lambda scene, samples, seed, v=variant: theirs(v, scene, samples, seed, folder)
         results = {}
         for scene in peer_scenes.scenes(folder, options.scenes):
