@@ -47,9 +47,17 @@ SCENES = [
     mitsuba("mesh_attributes/test_mesh_attributes_1_face_direct"),
     mitsuba("mesh_attributes/test_mesh_attributes_3_vertex_direct", quick=True),
     mitsuba("orthographic_sensor/test_orthographic_path", quick=True),
-    mitsuba("participating_media/test_hetero_sigmat_volpath"),
+    mitsuba("participating_media/test_hetero_sigmat_volpath",
+            reason="an albedo of (0.99, 0.5, 0.5) becomes another spectrum here than in Mitsuba's spectral mode, which the reference is of. "
+            "Its own llvm_ad_rgb gives 1.021, 1.012 and 1.010 of X, Y and Z; no tile is beyond its bound."),
     # Behind the two bodies few paths bring much: of few samples a tile is dark, and does not know how uncertain it is.
-    mitsuba("participating_media/test_homo_area_light_volpath", samples=1200),
+    mitsuba("participating_media/test_homo_area_light_volpath", samples=1200,
+            reason="two things. Mitsuba's thin dielectric averages both polarizations before it adds up what goes to and fro in the pane, "
+            "ThinDielectric adds up each by itself, as light does: at slanting angles it reflects up to 7 % less (where R_s = 0.3 and "
+            "R_p = 0.05, 0.278 and not 0.298), which is seen where the bowl throws light to the floor and at its rim, -4 to -8 % of "
+            "those tiles; without the medium too, with `path` as with `volpath`, and not with a null boundary in its place. And X and Z "
+            "are 1 % lower against Y than in the spectral reference, as in Mitsuba's own llvm_ad_rgb (0.991, 1.004, 0.993 of it, here "
+            "0.989, 1.001, 0.991 in R, G, B): an albedo of (0.99, 0.999, 0.99) becomes other spectra."),
     mitsuba("participating_media/test_homo_null_envmap_volpath"),
     mitsuba("participating_media/test_surf_area_light_volpath"),
     mitsuba("spot_light/test_spot_direct"),
