@@ -72,6 +72,18 @@ TEST(MitsubaExport, MakesTheSamePictureWhenReadBack) {
   }
 }
 
+TEST(MitsubaExport, ComponentsOfMoreThanOneAreWrittenAsMitsubaTakesThem) {
+  const TemporaryFolder folder;
+  for (const char* extinction : {"3 * rgb(1, 0.5, 0.25)", "rgb(3, 1.5, 0.75)"}) {
+    const Exported e =
+        export_job(folder, job(std::string("Sphere { shader: PassThrough {}, interior: HomogeneousVolume { extinction: ") +
+                               extinction + ", albedo: 0.5 } },\nSphere { shader: Lambertian { color: rgb(1.5, 0.5, 0.2) } }"));
+    EXPECT_NE(e.text.find(R"(<float name="scale" value="3" />)"), std::string::npos) << e.text;
+    EXPECT_NE(e.text.find(R"(<rgb name="sigma_t" value="1 0.5 0.25" />)"), std::string::npos) << e.text;
+    EXPECT_NE(e.text.find(R"(value="1 0.5 0.2" />)"), std::string::npos) << e.text;
+  }
+}
+
 TEST(MitsubaExport, TellsWhatItCannotExpress) {
   const TemporaryFolder folder;
   const Exported exported =

@@ -195,7 +195,8 @@ void Writer::medium(Node shape, const Component& v) {
   n.append_attribute("name") = "interior";
   if (const Color extinction = color_of(v, "extinction")) {
     // Components of more than 1 are refused there.
-    const double largest = std::max(1.0, double(extinction->largest_component()));
+    const auto rgb = written_rgb(extinction);
+    const double largest = rgb ? std::max(1.0, *std::ranges::max_element(*rgb)) : 1;
     if (largest > 1) number(n, "scale", largest);
     spectrum(n, "sigma_t", largest > 1 ? scaled_spectrum(1 / largest, extinction) : extinction, ColorUse::coefficient);
     spectrum(n, "albedo", color_of(v, "albedo"), ColorUse::reflectance);

@@ -1,5 +1,7 @@
 // Numbers, spectra and transforms as Mitsuba writes them.
 
+#include <algorithm>
+
 #include "writer.h"
 
 namespace etendue::mitsuba_export {
@@ -11,7 +13,10 @@ void Writer::value(Node parent, const char* tag, const char* name, const std::st
 }
 
 void Writer::spectrum(Node parent, const char* name, const Color& c, ColorUse use) {
-  if (const auto rgb = written_rgb(c)) {
+  if (auto rgb = written_rgb(c)) {
+    // Here what is more than 1 is cut, there it is refused.
+    if (use == ColorUse::reflectance)
+      for (double& component : *rgb) component = std::clamp(component, 0.0, 1.0);
     value(parent, "rgb", name, fmt::format("{} {} {}", (*rgb)[0], (*rgb)[1], (*rgb)[2]));
   } else if (!c->varies()) {
     value(parent, "spectrum", name, fmt::format("{}", c->at(550, use)));
