@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <mutex>
+
 #include "contained_file.h"
 
 namespace etendue {
