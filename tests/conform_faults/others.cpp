@@ -4,6 +4,7 @@
 #include "etendue/core/warp.h"
 #include "etendue/filter.h"
 #include "etendue/object_map.h"
+#include "etendue/phase_function.h"
 #include "etendue/scene_object.h"
 #include "etendue/shader.h"
 #include "etendue/volume_shader.h"
@@ -190,6 +191,22 @@ class WrongPhaseVolume final : public VolumeShader {
   float scattering = 1;
 };
 const Register<WrongPhaseVolume> phase;
+
+class BackwardPhase final : public PhaseFunction {
+ public:
+  static void describe(Description<BackwardPhase>& d) {
+    d.summary("Says that light goes on, and sends it back.")
+        .member<&BackwardPhase::slope>("slope", "1", "how much", range(0.5, 1));
+  }
+  float value(float h) const override { return (1 + slope * (1 - h)) / (4 * pi); }
+  float sample(float u) const override {  // of 1 + slope (h - 1), whose integral to h is ((1 - slope) h + slope h^2 / 2) / 2
+    const float b = 1 - slope;
+    return (std::sqrt(b * b + 4 * slope * u) - b) / slope;
+  }
+
+  float slope = 1;
+};
+const Register<BackwardPhase> backward;
 
 // ---- cameras -----------------------------------------------------------------------------------------------------------
 

@@ -223,6 +223,34 @@ TEST(MitsubaMedium, ExtinctionTimesScaleOverTheWayThrough) {
   EXPECT_NEAR(seen(import_text(scene(sensor() + integrator(1, "volpath") + lamp + medium)), 8192).y, std::exp(-0.5 * 2), 0.02);
 }
 
+TEST(MitsubaMedium, PhaseFunctions) {
+  const auto imported = [](const std::string& phase) {
+    return import_text(scene(sensor() + integrator(1, "volpath") +
+                             "<shape type=\"sphere\"><bsdf type=\"null\"/><medium name=\"interior\" type=\"homogeneous\">" +
+                             phase + "</medium></shape>"));
+  };
+  const auto volume = [](const Imported& i) -> const Component& {
+    EXPECT_EQ(i.told(), "");
+    return part(i.object(0), "interior");
+  };
+  // That values are Mitsuba's is PhaseFunction.ValuesAreThoseOfMitsuba.
+  const Imported air = imported("<phase type=\"rayleigh\"/>");
+  EXPECT_EQ(part(volume(air), "phase").class_info().name, "RayleighPhase");
+  const Imported lobe = imported("<phase type=\"hg\"><float name=\"g\" value=\"0.25\"/></phase>");
+  EXPECT_EQ(number(volume(lobe), "anisotropy"), 0.25);
+  const Imported table = imported("<phase type=\"tabphase\"><string name=\"values\" value=\"0.5, 1, 0.25\"/></phase>");
+  EXPECT_EQ(get(part(volume(table), "phase"), "values").as<Numbers>()->values, (std::vector<double>{0.5, 1, 0.25}));
+  const Imported two = imported(
+      "<phase type=\"blendphase\"><float name=\"weight\" value=\"0.25\"/><phase type=\"rayleigh\"/>"
+      "<phase type=\"hg\"><float name=\"g\" value=\"-0.5\"/></phase></phase>");
+  const Component& blend = part(volume(two), "phase");
+  EXPECT_EQ(number(blend, "amount"), 0.25);
+  EXPECT_EQ(part(blend, "first").class_info().name, "RayleighPhase");
+  EXPECT_EQ(number(part(blend, "second"), "anisotropy"), -0.5);
+  const Imported wrong = imported("<phase type=\"blendphase\"><phase type=\"rayleigh\"/></phase>");
+  EXPECT_NE(wrong.told().find("has 1 phase functions and 2 weights"), std::string::npos) << wrong.told();
+}
+
 // The importer once looked at the cube's transform after it was gone, which AddressSanitizer saw.
 TEST(MitsubaMedium, AGridStandsInTheWorldAndNotInItsObject) {
   const TemporaryFolder folder;

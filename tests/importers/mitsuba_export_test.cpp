@@ -84,6 +84,28 @@ TEST(MitsubaExport, ComponentsOfMoreThanOneAreWrittenAsMitsubaTakesThem) {
   }
 }
 
+TEST(MitsubaExport, PhaseFunctions) {
+  const TemporaryFolder folder;
+  const Exported e = export_job(
+      folder,
+      job("Sphere { shader: PassThrough {}, interior: HomogeneousVolume { phase: BlendPhase { first: RayleighPhase {}, second: "
+          "BlendPhase { first: TabulatedPhase { values: [1, 2, 4] }, second: HenyeyGreensteinPhase { anisotropy: 0.5 } }, "
+          "amount: 0.125 } } }"));
+  EXPECT_TRUE(e.notes.empty());
+  EXPECT_EQ(e.back.told(), "");
+  const Component &blend = part(part(e.back.object(0), "interior"), "phase"), &inner = part(blend, "second");
+  EXPECT_EQ(number(blend, "amount"), 0.125);
+  EXPECT_EQ(part(blend, "first").class_info().name, "RayleighPhase");
+  EXPECT_EQ(get(part(inner, "first"), "values").as<Numbers>()->values, (std::vector<double>{1, 2, 4}));
+  EXPECT_EQ(number(part(inner, "second"), "anisotropy"), 0.5);
+
+  const Exported fog =
+      export_job(folder, job("Sphere { shader: PassThrough {}, interior: HomogeneousVolume { phase: FogPhase {} } }"));
+  ASSERT_EQ(fog.notes.size(), 1u);
+  EXPECT_STREQ(fog.notes[0].what(), "FogPhase becomes one lobe of the same mean cosine");
+  EXPECT_NEAR(number(part(fog.back.object(0), "interior"), "anisotropy"), 0.86, 0.02);
+}
+
 TEST(MitsubaExport, TellsWhatItCannotExpress) {
   const TemporaryFolder folder;
   const Exported exported =

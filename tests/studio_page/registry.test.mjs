@@ -47,7 +47,7 @@ const hosts = {
   Output: ["Job", "outputs"],
 };
 /** Kinds that only one class takes: that class is put into its own place first. */
-const inside = { Mutation: ["PathSpaceMetropolis", "mutations"], TrimmingCurve: ["NurbsSurface", "trimming"], Denoiser: ["DenoisedOutput", "denoiser"] };
+const inside = { PhaseFunction: ["HomogeneousVolume", "phase"], Mutation: ["PathSpaceMetropolis", "mutations"], TrimmingCurve: ["NurbsSurface", "trimming"], Denoiser: ["DenoisedOutput", "denoiser"] };
 
 const classes = JSON.parse(run("classes", "--json"));
 const byName = new Map(classes.map((c) => [c.name, c]));

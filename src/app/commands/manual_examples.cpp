@@ -91,6 +91,10 @@ constexpr Example examples[] = {
     {"GridVolume",
      "GridVolume { resolution: [2, 2, 2], density: [0, 1, 1, 0, 1, 0, 0, 1], extinction: 8, albedo: srgb(0.9, 0.6, 0.4), "
      "filter: nearest, placement: translate([-1, -1, -1]) * scale(2) }"},
+    {"BlendPhase",
+     "BlendPhase { first: HenyeyGreensteinPhase { anisotropy: 0.8 }, second: HenyeyGreensteinPhase { anisotropy: -0.4 }, "
+     "amount: 0.3 }"},
+    {"TabulatedPhase", "TabulatedPhase { values: [2, 0.2, 1, 8] }"},
     // objects
     {"Curve", "Curve { points: [[-1, 0, 0], [-0.5, 1, 0.5], [0.5, -1, 0.8], [1, 0, 0.2]] m, radius: [0.12], basis: bezier }"},
     {"ImplicitSurface",
@@ -211,7 +215,7 @@ std::optional<PictureScene> picture_of(const ClassInfo& info, const conform::Fix
   const Registry& registry = Registry::instance();
   const auto is = [&](const char* interface) { return info.is_a(*registry.find(interface)); };
   const bool seen = is("Shader") || is("ObjectMap") || is("EmissionShader") || is("SceneObject") || is("VolumeShader") ||
-                    is("Renderer") || is("ToneMap") || is("Camera");
+                    is("PhaseFunction") || is("Renderer") || is("ToneMap") || is("Camera");
   if (!seen || is("Scene") || info.name == "Renderer" || info.name == "Instance") return {};
   const char* known = known_example(info);
   if (known && !*known) return {};
@@ -239,6 +243,11 @@ std::optional<PictureScene> picture_of(const ClassInfo& info, const conform::Fix
     picture.description =
         scene_text(path_tracer, close_camera, as_it_is,
                    std::string("Sphere { centre: [0, 0, 1.001] m, shader: PassThrough {}, interior: part }") + floor_and_lamps);
+  else if (is("PhaseFunction"))
+    picture.description = scene_text(path_tracer, close_camera, as_it_is,
+                                     std::string("Sphere { centre: [0, 0, 1.001] m, shader: PassThrough {}, interior: "
+                                                 "HomogeneousVolume { scattering: 3, phase: part } }") +
+                                         floor_and_lamps);
   else if (is("EmissionShader"))
     picture.description =
         // A beam without width is found from its own end alone.

@@ -13,6 +13,7 @@
 #include "draw.h"
 #include "etendue/language/language.h"
 #include "etendue/object_map.h"
+#include "etendue/phase_function.h"
 #include "etendue/render/render.h"
 
 namespace etendue::conform {
@@ -54,6 +55,9 @@ bool put(Job& job, const Ref<Component>& part) {
     ball.shader = ref_cast<Shader>(placed("Lambertian {}", "color", part));
   else if (const auto volume = ref_cast<VolumeShader>(part))
     ball.shader = ref_cast<Shader>(parse_component("PassThrough {}", "stage")), ball.interior = volume;
+  else if (const auto phase = ref_cast<PhaseFunction>(part))
+    ball.shader = ref_cast<Shader>(parse_component("PassThrough {}", "stage")),
+    ball.interior = ref_cast<VolumeShader>(placed("HomogeneousVolume { scattering: 2 }", "phase", part));
   else if (const auto emission = ref_cast<EmissionShader>(part); emission && emission->only_at_infinity())
     objects.back()->emission = emission;
   else if (emission)

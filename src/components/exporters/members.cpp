@@ -8,6 +8,7 @@
 
 #include "etendue/describe/description.h"
 #include "etendue/describe/registry.h"
+#include "etendue/phase_function.h"
 
 namespace etendue {
 
@@ -101,6 +102,27 @@ double field_of_view(const Component& camera) {
   const double focal_length = number_of(camera, "focal_length");
   if (!(focal_length > 0)) return number_of(camera, "fov");
   return 2 * std::atan(number_of(camera, "sensor_size") / 2 / focal_length) * 180 / std::numbers::pi;
+}
+
+bool turns_by_anisotropy_alone(const Component& medium) {
+  const Ref<Component> phase = part_of(medium, "phase");
+  return !phase || class_of(*phase) == "HenyeyGreensteinPhase";
+}
+
+double mean_cosine(const Component& medium) {
+  const Ref<Component> phase = part_of(medium, "phase");
+  return phase ? mean_cosine_of(*phase) : number_of(medium, "anisotropy");
+}
+
+double mean_cosine_of(const Component& phase_function) {
+  if (class_of(phase_function) == "HenyeyGreensteinPhase") return number_of(phase_function, "anisotropy");
+  // The mean of what is drawn with evenly spaced numbers, from one that is prepared, which what is exported is not.
+  const Ref<PhaseFunction> phase = ref_cast<PhaseFunction>(copy(phase_function));
+  prepare_tree(*phase);
+  constexpr int samples = 1 << 16;
+  double sum = 0;
+  for (int i = 0; i < samples; ++i) sum += 1 - double(phase->sample((float(i) + 0.5f) / samples));
+  return sum / samples;
 }
 
 }  // namespace etendue

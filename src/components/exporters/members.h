@@ -38,5 +38,11 @@ std::vector<std::pair<int, double>> sampled(const Color&, ColorUse);
 std::array<double, 3> rgb_of(const Color&, ColorUse);
 /// The angle of view of a PerspectiveCamera across its fov_axis [deg].
 double field_of_view(const Component& camera);
+/// Whether light turns in a medium as Henyey's and Greenstein's function says, of whichever anisotropy.
+bool turns_by_anisotropy_alone(const Component& medium);
+/// The mean cosine of the angle that light turns by in a medium.
+double mean_cosine(const Component& medium);
+/// The same of a PhaseFunction.
+double mean_cosine_of(const Component& phase_function);
 
 }  // namespace etendue

@@ -3,6 +3,7 @@
 // coefficients are said, and the phase function.
 
 #include "etendue/core/spectral_function.h"
+#include "etendue/phase_function.h"
 #include "etendue/volume_shader.h"
 
 namespace etendue {
@@ -15,6 +16,7 @@ class ColoredVolume : public VolumeShader {
 
   Color absorption = flat_spectrum(0), scattering = flat_spectrum(0), extinction, albedo = flat_spectrum(0.75f),
         emission = flat_spectrum(0);
+  Ref<PhaseFunction> phase_function;
   float anisotropy = 0;
 
  protected:
@@ -36,10 +38,12 @@ class ColoredVolume : public VolumeShader {
                                        "radiance the medium adds per distance" + where + ", whatever it absorbs",
                                        Meaning::radiance, soft(0.001, 1000), logarithmic)
         .group("Phase function")
+        .template member<&T::phase_function>(
+            "phase", "", "where scattered light goes; none: Henyey's and Greenstein's function with `anisotropy`")
         .template member<&T::anisotropy>("anisotropy", "1",
                                          "mean cosine of the angle light turns by, between -1 (all back) and 1 (all straight "
                                          "on), both excluded; 0 scatters alike in all directions",
-                                         range(-1, 1));
+                                         range(-1, 1), unless("phase"));
   }
 
   /// Checks all of that.
@@ -63,7 +67,6 @@ class ColoredVolume : public VolumeShader {
  private:
   /// Where most of the light goes that came from `out`: straight on, or back.
   Vector3 peak(const Vector3& out) const { return anisotropy < 0 ? out : -out; }
-  float value(float h) const;
   bool check(const char* member, const Color&, ColorUse) const;
 
   bool emits_ = false;

@@ -20,8 +20,8 @@ class GridVolume final : public ColoredVolume {
  public:
   static void describe(Description<GridVolume>& d) {
     d.summary(
-        "A medium whose density is given on a grid, with the Henyey-Greenstein phase function: all coefficients are multiplied "
-        "by it. The grid fills the unit cube from (0, 0, 0) to (1, 1, 1) of its own coordinates; cells' values are those in "
+        "A medium whose density is given on a grid: all coefficients are multiplied by it. "
+        "The grid fills the unit cube from (0, 0, 0) to (1, 1, 1) of its own coordinates; cells' values are those in "
         "their "
         "middles.");
     d.group("Density")

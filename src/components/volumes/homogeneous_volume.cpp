@@ -8,8 +8,7 @@ namespace {
 class HomogeneousVolume final : public ColoredVolume {
  public:
   static void describe(Description<HomogeneousVolume>& d) {
-    d.summary("A medium that is the same everywhere, with the Henyey-Greenstein phase function.",
-              "Henyey & Greenstein 1941, Diffuse radiation in the galaxy");
+    d.summary("A medium that is the same everywhere.");
     describe_colors(d);
   }
 

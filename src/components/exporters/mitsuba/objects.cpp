@@ -215,9 +215,37 @@ void Writer::medium(Node shape, const Component& v) {
     value(n, "spectrum", "sigma_t", total);
     value(n, "spectrum", "albedo", scatters ? albedo : "0");  // a table of nothing but zeros is refused there
   }
-  const double g = number_of(v, "anisotropy");
-  Node phase = plugin(n, "phase", g == 0 ? "isotropic" : "hg");
+  if (const Ref<Component> phase = part_of(v, "phase")) {
+    phase_function(n, *phase);
+  } else {
+    henyey_greenstein(n, number_of(v, "anisotropy"));
+  }
+}
+
+void Writer::henyey_greenstein(Node parent, double g) {
+  Node phase = plugin(parent, "phase", g == 0 ? "isotropic" : "hg");
   if (g != 0) number(phase, "g", g);
+}
+
+void Writer::phase_function(Node parent, const Component& p) {
+  const std::string& kind = class_of(p);
+  if (kind == "RayleighPhase") {
+    if (number_of(p, "depolarization") > 0) exporting.inexact("particles that depolarize are round in Mitsuba", &p);
+    plugin(parent, "phase", "rayleigh");
+  } else if (kind == "BlendPhase") {
+    Node blend = plugin(parent, "phase", "blendphase");
+    number(blend, "weight", number_of(p, "amount"));
+    for (const char* part : {"first", "second"}) phase_function(blend, *part_of(p, part));
+  } else if (kind == "TabulatedPhase" && numbers_of(p, "cosines").empty()) {
+    Node table = plugin(parent, "phase", "tabphase");
+    std::string values;
+    for (const double value : numbers_of(p, "values")) values += fmt::format("{}{}", values.empty() ? "" : ", ", value);
+    text(table, "values", values);
+  } else {
+    if (kind != "HenyeyGreensteinPhase")
+      exporting.inexact(fmt::format("{} becomes one lobe of the same mean cosine", kind), &p);
+    henyey_greenstein(parent, mean_cosine_of(p));
+  }
 }
 
 void Writer::instance(Node parent, const Component& i, const Transform& placed) {

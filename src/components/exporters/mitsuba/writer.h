@@ -64,6 +64,8 @@ class Writer {
   void light(Node, const char* name, const SceneObject&, const Component& emission, Uv);
   bool light_source(const SceneObject&, const Transform& placed);
   void medium(Node shape, const Component& volume);
+  void henyey_greenstein(Node parent, double g);
+  void phase_function(Node parent, const Component&);
   void instance(Node parent, const Component& instance, const Transform& placed);
 
   // view.cpp

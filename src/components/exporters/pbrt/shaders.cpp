@@ -119,7 +119,7 @@ std::string Writer::layered(const Component& shader, std::string& type) {
   const float absorbs = a->at(550, ColorUse::coefficient), scatters = s->at(550, ColorUse::coefficient);
   return text + fmt::format(" \"float thickness\" {}{}", t->at(550, ColorUse::coefficient) * (absorbs + scatters),
                             scatters > 0 ? fmt::format(" \"spectrum albedo\" [ 360 {0} 830 {0} ] \"float g\" {1}",
-                                                       scatters / (absorbs + scatters), number_of(*medium, "anisotropy"))
+                                                       scatters / (absorbs + scatters), mean_cosine(*medium))
                                          : "");
 }
 
@@ -210,9 +210,11 @@ std::string Writer::medium_of(const Component& medium) {
   const Color extinction = medium.class_info().find("extinction") ? color_of(medium, "extinction") : nullptr;
   if (extinction && extinction->expression() != "0")
     exporting.inexact("a medium's extinction and albedo are written as its absorption and scattering", &medium);
+  if (!turns_by_anisotropy_alone(medium))
+    exporting.inexact("pbrt's media scatter by one lobe: it has the same mean cosine", &medium);
   out_ += fmt::format("MakeNamedMedium \"{}\" \"string type\" \"homogeneous\"{}{} \"float g\" {}\n", name,
                       spectrum("sigma_a", a, ColorUse::coefficient), spectrum("sigma_s", s, ColorUse::coefficient),
-                      number_of(medium, "anisotropy"));
+                      mean_cosine(medium));
   return name;
 }
 

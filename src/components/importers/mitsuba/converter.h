@@ -124,6 +124,8 @@ class Converter {
   Ref<Component> heterogeneous(const Element&, const Component& object);
   Ref<Component> grid(const Element& medium, const Element& volume, const Component& object);
   void set_phase(Component& volume, const Element& medium);
+  Ref<Component> phase_function(const Element&);
+  Ref<Component> blended_phases(const Element&);
 
   // helpers
   Ref<Component> make(const char* class_name, const Element& e, const std::string& name) {

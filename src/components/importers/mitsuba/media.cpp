@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "converter.h"
 #include "etendue/describe/color.h"
 
@@ -26,16 +28,63 @@ Ref<Component> Converter::medium(const Element& e, const Component& object) {
 
 void Converter::set_phase(Component& volume, const Element& e) {
   for (const Element* phase : e.all("phase")) {
-    const Reading reading(*phase);
-    if (phase->type == "hg" || phase->type == "isotropic") {
-      if (phase->type == "hg") set_member(volume, "anisotropy", phase->number("g", 0.8), phase->at);
-    } else {
-      inexact(*phase,
-              fmt::format("phase function '{}' has no counterpart here: light scatters alike in all directions", phase->type));
+    if (phase->type == "hg") {
+      const Reading reading(*phase);
+      set_member(volume, "anisotropy", phase->number("g", 0.8), phase->at);
+    } else if (phase->type != "isotropic") {
+      set_member(volume, "phase", phase_function(*phase), phase->at);
     }
   }
   e.ignore({"sample_emitters", "has_spectral_extinction", "majorant_resolution_factor", "control_density", "method", "strategy",
             "medium_sampling_weight"});
+}
+
+Ref<Component> Converter::phase_function(const Element& e) {
+  const Reading reading(e);
+  if (e.type == "isotropic") return make("HenyeyGreensteinPhase", e);
+  if (e.type == "hg") {
+    Ref<Component> made = make("HenyeyGreensteinPhase", e);
+    set_member(*made, "anisotropy", e.number("g", 0.8), e.at);
+    return made;
+  }
+  if (e.type == "rayleigh") return make("RayleighPhase", e);
+  if (e.type == "tabphase") {
+    Ref<Component> made = make("TabulatedPhase", e);
+    set_member(*made, "values", Numbers{parse_numbers({e.string("values", ""), e.location_of("values")}), 1, Dimension::none},
+               e.location_of("values"));
+    return made;
+  }
+  if (e.type == "blendphase" || e.type == "mixturephase") return blended_phases(e);
+  inexact(e, fmt::format("phase function '{}' has no counterpart here: light scatters alike in all directions", e.type));
+  return make("HenyeyGreensteinPhase", e);
+}
+
+Ref<Component> Converter::blended_phases(const Element& e) {
+  const std::vector<const Element*> parts = e.all("phase");
+  std::vector<double> weights;
+  if (e.type == "mixturephase") {  // of 0.5
+    weights = parse_numbers({e.string("weights", ""), e.location_of("weights")});
+  } else if (e.nested("weight")) {
+    inexact(*e.nested("weight"), "phase functions are blended alike everywhere, here half and half");
+    weights = {0.5, 0.5};
+  } else {
+    const double second = e.number("weight", 0.5);
+    weights = {1 - second, second};
+  }
+  if (parts.size() < 2 || parts.size() != weights.size())
+    throw Error(fmt::format("'{}' has {} phase functions and {} weights", e.type, parts.size(), weights.size()), e.at);
+  if (std::ranges::any_of(weights, [](double w) { return !(w >= 0); })) throw Error("weights must not be negative", e.at);
+  Ref<Component> made = phase_function(*parts[0]);
+  double sum = weights[0];
+  for (size_t k = 1; k < parts.size(); ++k) {
+    Ref<Component> blend = make("BlendPhase", e);
+    sum += weights[k];
+    set_member(*blend, "first", made, e.at);
+    set_member(*blend, "second", phase_function(*parts[k]), parts[k]->at);
+    set_member(*blend, "amount", sum > 0 ? weights[k] / sum : 0.0, e.at);
+    made = blend;
+  }
+  return made;
 }
 
 Ref<Component> Converter::homogeneous(const Element& e) {

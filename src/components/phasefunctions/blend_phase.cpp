@@ -1,0 +1,38 @@
+// BlendPhase: of two kinds of particles.
+
+#include <algorithm>
+
+#include "etendue/core/math.h"
+#include "etendue/phase_function.h"
+
+namespace etendue {
+namespace {
+
+// p = (1 - w) p_1 + w p_2. One number does for both steps: below w it is spread over [0, 1) for the second function, above for
+// the first.
+class BlendPhase final : public PhaseFunction {
+ public:
+  static void describe(Description<BlendPhase>& d) {
+    d.summary(
+         "Two phase functions in a fixed ratio, as of a medium with two kinds of particles, or of two lobes, one of them back. "
+         "A "
+         "part may be a blend itself.")
+        .member<&BlendPhase::first>("first", "", "where light goes when `amount` is 0", required)
+        .member<&BlendPhase::second>("second", "", "where light goes when `amount` is 1", required)
+        .member<&BlendPhase::amount>("amount", "1", "how much of what is scattered goes by the second", range(0, 1));
+  }
+  float value(float h) const override { return lerp(amount, first->value(h), second->value(h)); }
+  float sample(float u) const override {
+    constexpr float below_one = 0x1.fffffep-1f;
+    if (u < amount) return second->sample(std::min(u / amount, below_one));
+    return first->sample(std::min((u - amount) / (1 - amount), below_one));
+  }
+
+  Ref<PhaseFunction> first, second;
+  float amount = 0.5f;
+};
+
+const Register<BlendPhase> registered;
+
+}  // namespace
+}  // namespace etendue

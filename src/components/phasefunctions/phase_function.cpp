@@ -1,0 +1,13 @@
+// What all phase functions have in common: they have no members of their own.
+
+#include "etendue/phase_function.h"
+
+namespace etendue {
+
+void PhaseFunction::describe(Description<PhaseFunction>& d) {
+  d.summary("Where light goes that a medium scatters, by the angle it turns by.");
+}
+
+static const Register<PhaseFunction> registered;
+
+}  // namespace etendue

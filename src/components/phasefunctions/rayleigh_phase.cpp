@@ -1,0 +1,58 @@
+// RayleighPhase: particles much smaller than the wavelength, as the air's molecules.
+
+#include <cmath>
+
+#include "etendue/core/math.h"
+#include "etendue/phase_function.h"
+
+namespace etendue {
+namespace {
+
+// A small round particle is a dipole that swings with the light's field (Rayleigh 1871). With c = cos(theta), of unpolarized
+// light
+//     p = 3 / (16 pi) (1 + c^2)  [1/sr].
+// Molecules that are not round send part of it out otherwise polarized. With rho the ratio of the weaker to the stronger
+// polarization at right angles (of natural light) and gamma = rho / (2 - rho) (Chandrasekhar 1950, Radiative transfer, section
+// 18; Bucholtz 1995, Rayleigh-scattering calculations for the terrestrial atmosphere, eq. 12),
+//     p = 3 / (16 pi (1 + 2 gamma)) ((1 + 3 gamma) + (1 - gamma) c^2).
+//
+// Sampling. With a = (1 + 3 gamma) / (1 - gamma), the probability of a cosine of c at least is
+//     P(c) = 1/2 - (3 a c + c^3) / (2 (3 a + 1)),
+// so that c^3 + 3 a c = (1 - 2 u)(3 a + 1) = q. Its one real root is c = 2 sqrt(a) sinh(t) with
+// 8 a^(3/2) sinh^3(t) + 6 a^(3/2) sinh(t) = 2 a^(3/2) sinh(3 t) = q.
+class RayleighPhase final : public PhaseFunction {
+ public:
+  static void describe(Description<RayleighPhase>& d) {
+    d.summary(
+         "Of particles much smaller than the wavelength, as molecules of air: as much back as straight on, half of it "
+         "sideways. "
+         "How much more of short wavelengths is scattered is a matter of the medium's coefficients.",
+         "Rayleigh 1871, On the light from the sky; Chandrasekhar 1950, Radiative transfer, section 18")
+        .member<&RayleighPhase::depolarization>(
+            "depolarization", "1",
+            "how far from round the particles are: of natural light that was scattered at right angles, the weaker "
+            "polarization over the stronger; 0.0279 for air",
+            range(0, 6.0 / 7), soft(0, 0.1));
+  }
+  void prepare() override {
+    const double gamma = double(depolarization) / (2 - double(depolarization));
+    a_ = (1 + 3 * gamma) / (1 - gamma);
+    factor_ = float(3 * (1 - gamma) / (16 * double(pi) * (1 + 2 * gamma)));
+  }
+  float value(float h) const override { return factor_ * (float(a_) + square(1 - h)); }
+  float sample(float u) const override {
+    const double q = (1 - 2 * double(u)) * (3 * a_ + 1), root = std::sqrt(a_);
+    return clamp(float(1 - 2 * root * std::sinh(std::asinh(q / (2 * a_ * root)) / 3)), 0, 2);
+  }
+
+  float depolarization = 0;
+
+ private:
+  double a_ = 1;
+  float factor_ = 0;  // [1/sr]
+};
+
+const Register<RayleighPhase> registered;
+
+}  // namespace
+}  // namespace etendue
