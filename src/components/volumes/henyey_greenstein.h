@@ -1,0 +1,32 @@
+#pragma once
+// HenyeyGreensteinVolume: media that scatter by this phase function, alike everywhere.
+
+#include "etendue/volume_shader.h"
+
+namespace etendue {
+
+class HenyeyGreensteinVolume : public VolumeShader {
+ public:
+  float phase(const Point3&, const Vector3& out, const Vector3& in) const final;
+  Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const final;
+
+  float anisotropy = 0;
+
+ protected:
+  template <class T>
+  static void describe_phase(Description<T>& d) {
+    d.group("Phase function")
+        .template member<&T::anisotropy>("anisotropy", "1",
+                                         "mean cosine of the angle light turns by, between -1 (all back) and 1 (all straight "
+                                         "on), both excluded; 0 scatters alike in all directions",
+                                         range(-1, 1));
+  }
+  void check_anisotropy() const;
+
+ private:
+  /// Where most of the light goes that came from `out`: straight on, or back.
+  Vector3 peak(const Vector3& out) const { return anisotropy < 0 ? out : -out; }
+  float value(float h) const;
+};
+
+}  // namespace etendue
