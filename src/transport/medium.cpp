@@ -74,9 +74,14 @@ bool collide(const VolumeShader& volume, const Ray& local, float reach, float m,
 /// that it is one is the medium's promise, which `conform` tests.
 Spectrum left_of(float m, const VolumeCoefficients& c) { return max(Spectrum(m) - c.extinction(), 0); }
 
+/// So many tentative collisions at least, on average, along a ray through a medium that shines.
+constexpr float collisions_for_light = 4;
+
 FreeFlight through_heterogeneous(const VolumeShader& volume, const Ray& local, float reach, const Spectrum& throughput,
                                  const Wavelengths& w, NumberStream& numbers) {
-  const float m = volume.majorant(w).maximum();
+  float m = volume.majorant(w).maximum();
+  // Light of a medium is found at collisions, so there must be some where it is thin, or is no matter at all but shines.
+  if (volume.emits() && std::isfinite(reach) && reach > 0) m = std::max(m, collisions_for_light / reach);
   FreeFlight flight{false, reach, Spectrum(1.0f)};
   collide(volume, local, reach, m, w, numbers, [&](float t, const VolumeCoefficients& c) {
     flight.emitted += flight.weight * c.emission / m;

@@ -120,13 +120,13 @@ TEST(GridVolume, RefusesWhatIsNoGrid) {
   refused({"e.vol", {1, -2, 2, 2, 1}, box, eight}, "no size");
   refused({"f.vol", {1, 2000000000, 2000000000, 2000000000, 3}, box, eight}, "no size");
   refused({"g.vol", {1, 2, 2, 1, 2}, box, eight}, "channel");
-  refused({"h.vol", {1, 1, 1, 1, 1}, box, {-1}}, "no density");
-  refused({"i.vol", {1, 1, 1, 1, 1}, box, {std::nanf("")}}, "no density");
+  refused({"h.vol", {1, 1, 1, 1, 1}, box, {-1}}, "negative");
+  refused({"i.vol", {1, 1, 1, 1, 1}, box, {std::nanf("")}}, "no number");
   refused({"j.vol", {1}, {}, {}}, "too short");
   refused({"k.vol", {1, 1, 1, 1, 1}, {0, 0, 0, 1, 0, 1}, {1}}, "box", ", file_box: true");
   expect_refused("GridVolume { resolution: [2, 2, 2], density: [1, 2] }", "density", "for a grid of 8");
   expect_refused("GridVolume { resolution: [2, 0, 2] }", "resolution", "at least 1");
-  expect_refused("GridVolume { density: [-1] }", "density", "no density");
+  expect_refused("GridVolume { density: [-1] }", "density", "negative");
 }
 
 // The optical depth of a ramp along x from 1/4 to 3/4: of densities 0 and 4 in the middles of two cells, 8 (x - 1/4), the

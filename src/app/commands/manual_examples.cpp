@@ -80,6 +80,16 @@ constexpr Example examples[] = {
      "srgb(0.6, 0.1, 0.05)] }"},
     {"TransformedMap", "TransformedMap { map: WoodMap { size: 0.25 m }, transform: rotate(60 deg, \"x\") }"},
     {"HypertextureMap", "HypertextureMap { first: 0.05, second: 0.9, centre: [0, -0.5, 0.5] m, radius: 1 m }"},
+    {"CloudMap",
+     "CloudMap { amount: 4, frequency: 3, first: srgb(0.2, 0.35, 0.6), second: 0.95, base: [0, 0, -0.9] m, size: 1.9 m }"},
+    {"GridMap",
+     "GridMap { resolution: [2, 2, 2], values: [0.8, 0.1, 0.1, 0.1, 0.6, 0.1, 0.1, 0.2, 0.8, 0.8, 0.7, 0.1, 0.1, 0.6, 0.7, "
+     "0.7, "
+     "0.1, 0.6, 0.9, 0.9, 0.9, 0.2, 0.2, 0.2], placement: translate([-1, -1, -1]) * scale(2) }"},
+    {"BlackbodyMap",
+     "BlackbodyMap { temperature: RampMap { along: input, input: NoiseMap { size: 0.3 m }, positions: [0, 1], colors: [2000, "
+     "9000] "
+     "}, normalized: true, factor: 0.8 }"},
     {"AttributeMap", ""},
     {"OperandShader", ""},
     {"PassThrough", ""},
@@ -95,6 +105,10 @@ constexpr Example examples[] = {
      "BlendPhase { first: HenyeyGreensteinPhase { anisotropy: 0.8 }, second: HenyeyGreensteinPhase { anisotropy: -0.4 }, "
      "amount: 0.3 }"},
     {"TabulatedPhase", "TabulatedPhase { values: [2, 0.2, 1, 8] }"},
+    {"MapVolume",
+     "MapVolume { density: CloudMap { amount: 4, frequency: 3 }, extinction: 12, albedo: 0.98, placement: translate([0, 0, "
+     "-0.3]) "
+     "* scale(1.3) }"},
     // objects
     {"Curve", "Curve { points: [[-1, 0, 0], [-0.5, 1, 0.5], [0.5, -1, 0.8], [1, 0, 0.2]] m, radius: [0.12], basis: bezier }"},
     {"ImplicitSurface",

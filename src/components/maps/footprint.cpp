@@ -24,6 +24,13 @@ Footprint footprint_of(const SurfacePoint& p) {
   return {p.footprint * std::min(1 / p.footprint_cosine, longest) * a, p.footprint * cross(n, a)};
 }
 
+Footprint object_footprint(const SurfacePoint& p) {
+  const Footprint seen = footprint_of(p);
+  Transform scratch;
+  const Transform& t = placement(p, scratch);
+  return {t.back(seen.longer), t.back(seen.shorter)};
+}
+
 // The points a cos t + b sin t are farthest from the centre, and nearest a quarter of a turn on, where the derivative of their
 // squared length, (b^2 - a^2) sin 2t + 2 a b cos 2t, vanishes.
 void set_footprint(SurfacePoint& p, const Footprint& diameters) {

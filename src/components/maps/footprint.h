@@ -22,6 +22,24 @@ Footprint footprint_of(const SurfacePoint&);
 /// surface is deformed. The ray's direction is then that of a ray that sees such an ellipse.
 void set_footprint(SurfacePoint&, const Footprint&);
 
+/// Both axes in the object's own coordinates.
+Footprint object_footprint(const SurfacePoint&);
+/// Calls f(point, weight) at points of the object's coordinates, spread evenly over the parallelogram of the footprint's axes,
+/// whose weights add up to 1; without a footprint at the point itself. A map that has no better filter takes its mean so.
+template <class F>
+void over_footprint(const SurfacePoint& p, const F& f) {
+  if (!(p.footprint > 0)) {
+    f(p.object_position, 1.0f);
+    return;
+  }
+  constexpr int side = 4;
+  const Footprint axes = object_footprint(p);
+  for (int i = 0; i < side; ++i)
+    for (int k = 0; k < side; ++k)
+      f(p.object_position + ((float(i) + 0.5f) / side - 0.5f) * axes.longer + ((float(k) + 0.5f) / side - 0.5f) * axes.shorter,
+        1.0f / (side * side));
+}
+
 /// The same axes as changes of the surface coordinates.
 struct UvFootprint {
   Vector2 longer, shorter;

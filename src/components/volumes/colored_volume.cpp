@@ -2,33 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "components/phasefunctions/henyey_greenstein.h"
-#include "etendue/core/warp.h"
-
 namespace etendue {
-
-// A phase function knows h = 1 - cos(theta) alone, theta the angle between the ways light travels before and after. It is found
-// from the difference d of the two unit vectors as |d|^2 / 2, so that nothing cancels in a narrow peak. A negative anisotropy
-// is the same function of the angle to the opposite way.
-float ColoredVolume::phase(const Point3&, const Vector3& out, const Vector3& in) const {
-  if (phase_function) return phase_function->value(length_squared(in + out) / 2);
-  return henyey_greenstein::value(std::abs(anisotropy), length_squared(in - peak(out)) / 2);
-}
-
-Vector3 ColoredVolume::sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const {
-  float h = 0;
-  if (phase_function) {
-    h = phase_function->sample(u.x);
-    density = phase_function->value(h);
-  } else {
-    h = henyey_greenstein::sample(std::abs(anisotropy), u.x);
-    density = henyey_greenstein::value(std::abs(anisotropy), h);
-  }
-  const float r = safe_sqrt(h * (2 - h));
-  float sine = 0, cosine = 0;
-  sin_cos_turn(u.y, sine, cosine);
-  return Frame(Normal3(phase_function ? -out : peak(out))).to_world({r * cosine, r * sine, 1 - h});
-}
 
 void ColoredVolume::prepare_colors() {
   check("absorption", absorption, ColorUse::coefficient);
@@ -43,9 +17,7 @@ void ColoredVolume::prepare_colors() {
     if (a.most > 0 || s.most > 0)
       fail("extinction", "is given besides absorption or scattering; only one way of saying it can count");
   }
-  if (!(std::abs(anisotropy) < 1)) fail("anisotropy", "must lie between -1 and 1, both excluded");
-  if (phase_function && anisotropy != 0)
-    fail("anisotropy", "is given besides a phase function; only one way of saying it can count");
+  check_phase();
 }
 
 /// Whether it is more than 0 anywhere; fails when it is negative.

@@ -1,23 +1,18 @@
 #pragma once
 // ColoredVolume: what media have in common whose colours are the same everywhere, however dense they are: how their
-// coefficients are said, and the phase function.
+// coefficients are said.
 
 #include "etendue/core/spectral_function.h"
-#include "etendue/phase_function.h"
-#include "etendue/volume_shader.h"
+#include "phased_volume.h"
 
 namespace etendue {
 
-class ColoredVolume : public VolumeShader {
+class ColoredVolume : public PhasedVolume {
  public:
   bool emits() const final { return emits_; }
-  float phase(const Point3&, const Vector3& out, const Vector3& in) const final;
-  Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const final;
 
   Color absorption = flat_spectrum(0), scattering = flat_spectrum(0), extinction, albedo = flat_spectrum(0.75f),
         emission = flat_spectrum(0);
-  Ref<PhaseFunction> phase_function;
-  float anisotropy = 0;
 
  protected:
   /// `where`: " where the density is 1", or nothing.
@@ -36,14 +31,8 @@ class ColoredVolume : public VolumeShader {
                                      Meaning::reflectance, when("extinction"))
         .template member<&T::emission>("emission", "W m^-3 sr^-1 nm^-1",
                                        "radiance the medium adds per distance" + where + ", whatever it absorbs",
-                                       Meaning::radiance, soft(0.001, 1000), logarithmic)
-        .group("Phase function")
-        .template member<&T::phase_function>(
-            "phase", "", "where scattered light goes; none: Henyey's and Greenstein's function with `anisotropy`")
-        .template member<&T::anisotropy>("anisotropy", "1",
-                                         "mean cosine of the angle light turns by, between -1 (all back) and 1 (all straight "
-                                         "on), both excluded; 0 scatters alike in all directions",
-                                         range(-1, 1), unless("phase"));
+                                       Meaning::radiance, soft(0.001, 1000), logarithmic);
+    describe_phase(d);
   }
 
   /// Checks all of that.
@@ -65,8 +54,6 @@ class ColoredVolume : public VolumeShader {
   }
 
  private:
-  /// Where most of the light goes that came from `out`: straight on, or back.
-  Vector3 peak(const Vector3& out) const { return anisotropy < 0 ? out : -out; }
   bool check(const char* member, const Color&, ColorUse) const;
 
   bool emits_ = false;

@@ -5,8 +5,6 @@
 #include "colored_volume.h"
 #include "etendue/core/transform.h"
 #include "etendue/describe/color.h"
-#include "files/regular_file.h"
-#include "files/whole_file.h"
 #include "volume_grid.h"
 
 namespace etendue {
@@ -30,7 +28,8 @@ class GridVolume final : public ColoredVolume {
             "the densities: a volume as Mitsuba has them (.vol), or a NumPy array (.npy) of shape (nz, ny, nx); with three "
             "channels they are RGB factors. None: the numbers below")
         .member<&GridVolume::resolution>("resolution", "1", "how many densities there are along x, y and z", unless("file"))
-        .member<&GridVolume::density>("density", "1", "the densities, x running fastest, z slowest", unless("file"))
+        .member<&GridVolume::density>(
+            "density", "1", "the densities, x running fastest, z slowest; three numbers each: RGB factors", unless("file"))
         .group("Place")
         .member<&GridVolume::placement>("placement", "",
                                         "from the unit cube of the grid to the coordinates of the object whose inside it fills")
@@ -54,12 +53,19 @@ class GridVolume final : public ColoredVolume {
   void prepare() override {
     prepare_colors();
     space_ = &rgb_space(color_space);
-    if (file.empty())
-      take_list();
-    else
-      grid_ = read("file", file);
+    if (file.empty()) {
+      grid_ = grid_of_list(*this, "density", resolution, density);
+      require_no_negative(*this, "density", grid_);
+    } else {
+      grid_ = grid_of_file(*this, "file", file);
+      require_no_negative(*this, "file", grid_);
+      if (file_box) require_box(*this, "file", grid_);
+    }
     albedo_grid_ = {};
-    if (!albedo_file.empty()) albedo_grid_ = read("albedo_file", albedo_file);
+    if (!albedo_file.empty()) {
+      albedo_grid_ = grid_of_file(*this, "albedo_file", albedo_file);
+      require_no_negative(*this, "albedo_file", albedo_grid_);
+    }
     largest_ = grid_.largest() * (grid_.channels == 3 ? 2 : 1);
     if (!placement.valid()) fail("placement", "must be finite, and have an inverse");
   }
@@ -110,38 +116,6 @@ class GridVolume final : public ColoredVolume {
     albedo_grid_.look_up(unit, filter, outside == Beyond::empty || outside == Beyond::cut ? Beyond::clamp : outside, v);
     if (albedo_grid_.channels == 1) return Spectrum(std::min(v[0], 1.0f));
     return rgb_spectrum(*space_, v[0], v[1], v[2], ColorUse::reflectance, w);
-  }
-
-  VolumeGrid read(const char* member, const FilePath& path) const {
-    const std::string resolved = path.resolved();
-    try {
-      VolumeGrid grid = read_volume_grid(resolved);
-      if (file_box && member == std::string("file"))
-        for (int k = 0; k < 3; ++k)
-          if (!(grid.high[k] > grid.low[k] && std::isfinite(grid.high[k] - grid.low[k])))
-            throw Error("the box it names is empty or not finite");
-      return grid;
-    } catch (const Error& error) {
-      fail(member, "'" + resolved + "': " + error.what());
-    } catch (const std::bad_alloc&) {
-      fail(member, "'" + resolved + "': " + no_memory_to_read);
-    }
-  }
-
-  void take_list() {
-    if (resolution.size() != 3) fail("resolution", "three numbers are needed: how many densities along x, y and z");
-    grid_ = {};
-    std::uint64_t count = 1;
-    for (size_t k = 0; k < 3; ++k) {
-      if (resolution[k] < 1) fail("resolution", "at least 1 is needed along each axis");
-      grid_.size[k] = resolution[k];
-      count *= std::uint64_t(resolution[k]);
-      if (count > std::uint64_t(1) << 31) fail("resolution", "too many densities");
-    }
-    if (density.size() != count) fail("density", fmt::format("{} densities for a grid of {}", density.size(), count));
-    for (const float v : density)
-      if (!(v >= 0 && std::isfinite(v))) fail("density", fmt::format("{} is no density", v));
-    grid_.values = density;
   }
 
   const RgbSpace* space_ = nullptr;

@@ -32,11 +32,6 @@ int wrapped(int i, int n, Beyond beyond) {
   return -1;
 }
 
-void check_values(const VolumeGrid& grid) {
-  for (const float v : grid.values)
-    if (!(v >= 0 && std::isfinite(v))) throw Error(fmt::format("it holds {}, which is no density", v));
-}
-
 // The header: "VOL", version 3 (a byte), encoding, cells along x, y, z and channels (int32), the box's corners (6 floats); then
 // the values, channels fastest, then x. All little endian.
 VolumeGrid read_vol(const std::string& path) {
@@ -100,7 +95,11 @@ VolumeGrid read_npy(const std::string& path) {
 
 }  // namespace
 
-float VolumeGrid::largest() const { return values.empty() ? 0 : *std::max_element(values.begin(), values.end()); }
+float VolumeGrid::largest() const {
+  float most = 0;
+  for (const float v : values) most = std::max(most, std::abs(v));
+  return most;
+}
 
 void VolumeGrid::look_up(const Point3& p, VoxelFilter filter, Beyond beyond, float* out) const {
   std::fill(out, out + channels, 0.0f);
@@ -138,8 +137,51 @@ void VolumeGrid::look_up(const Point3& p, VoxelFilter filter, Beyond beyond, flo
 
 VolumeGrid read_volume_grid(const std::string& path) {
   VolumeGrid grid = path.ends_with(".npy") ? read_npy(path) : read_vol(path);
-  check_values(grid);
+  for (const float v : grid.values)
+    if (!std::isfinite(v)) throw Error(fmt::format("it holds {}, which is no number", v));
   return grid;
+}
+
+VolumeGrid grid_of_file(const Component& of, const char* member, const FilePath& path) {
+  const std::string resolved = path.resolved();
+  try {
+    return read_volume_grid(resolved);
+  } catch (const Error& error) {
+    of.fail(member, "'" + resolved + "': " + error.what());
+  } catch (const std::bad_alloc&) {
+    of.fail(member, "'" + resolved + "': " + no_memory_to_read);
+  }
+}
+
+VolumeGrid grid_of_list(const Component& of, const char* member, const std::vector<int>& resolution,
+                        const std::vector<float>& values) {
+  if (resolution.size() != 3) of.fail("resolution", "three numbers are needed: how many there are along x, y and z");
+  VolumeGrid grid;
+  std::uint64_t count = 1;
+  for (size_t k = 0; k < 3; ++k) {
+    if (resolution[k] < 1) of.fail("resolution", "at least 1 is needed along each axis");
+    grid.size[k] = resolution[k];
+    count *= std::uint64_t(resolution[k]);
+    if (count > most_cells) of.fail("resolution", "too many cells");
+  }
+  if (values.size() != count && values.size() != 3 * count)
+    of.fail(member, fmt::format("{} numbers for a grid of {}", values.size(), count));
+  grid.channels = values.size() == count ? 1 : 3;
+  for (const float v : values)
+    if (!std::isfinite(v)) of.fail(member, fmt::format("{} is no number", v));
+  grid.values = values;
+  return grid;
+}
+
+void require_no_negative(const Component& of, const char* member, const VolumeGrid& grid) {
+  for (const float v : grid.values)
+    if (!(v >= 0)) of.fail(member, fmt::format("it holds {}, and must not be negative", v));
+}
+
+void require_box(const Component& of, const char* member, const VolumeGrid& grid) {
+  for (int k = 0; k < 3; ++k)
+    if (!(grid.high[k] > grid.low[k] && std::isfinite(grid.high[k] - grid.low[k])))
+      of.fail(member, "the box that the file names is empty or not finite");
 }
 
 }  // namespace etendue

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "etendue/core/vector.h"
+#include "etendue/describe/component.h"
+#include "etendue/describe/value.h"
 
 namespace etendue {
 
@@ -20,7 +22,7 @@ struct VolumeGrid {
   std::vector<float> values;           ///< channels, x, y, z: the first runs fastest
   Point3 low{0, 0, 0}, high{1, 1, 1};  ///< the box that the file names
 
-  float largest() const;
+  float largest() const;  ///< of either sign
   /// Writes `channels` numbers at a point of the unit cube's coordinates.
   void look_up(const Point3&, VoxelFilter, Beyond, float* out) const;
 };
@@ -28,5 +30,17 @@ struct VolumeGrid {
 /// Reads a volume in Mitsuba's format (.vol) or a NumPy array (.npy) of shape (nz, ny, nx) or (nz, ny, nx, 3). Throws Error
 /// with the reason alone.
 VolumeGrid read_volume_grid(const std::string& path);
+
+// What components have grids from. Errors are of their members.
+
+/// Of a member that names a file.
+VolumeGrid grid_of_file(const Component&, const char* member, const FilePath&);
+/// Of a list of numbers in the member, one channel or three, and how many there are along x, y and z.
+VolumeGrid grid_of_list(const Component&, const char* member, const std::vector<int>& resolution,
+                        const std::vector<float>& values);
+/// Densities and albedos are not negative.
+void require_no_negative(const Component&, const char* member, const VolumeGrid&);
+/// The box that a file names must have a volume when it counts.
+void require_box(const Component&, const char* member, const VolumeGrid&);
 
 }  // namespace etendue

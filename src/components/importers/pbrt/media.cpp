@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "reader.h"
+#include "media.h"
 
 namespace etendue::pbrt {
 
@@ -19,24 +19,6 @@ constexpr Measured measured[] = {
     {"Skin1", {0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}},     {"Skin2", {1.09, 1.59, 1.79}, {0.013, 0.070, 0.145}},
     {"Spectralon", {11.6, 20.4, 14.9}, {0.00, 0.00, 0.00}}, whole_milk,
 };
-
-/// Light that a medium sends out, per distance: pbrt's Le is a radiance, and what the medium adds is that times its absorption.
-void set_emission_of_medium(Reader& reader, Component& medium, const Parameters& p, const Color& absorption) {
-  const Parameter* const given = p.find("Le");
-  if (!given) return;
-  const double scale = p.number("Lescale", 1) * reader.exposure;
-  if (scale < 0) throw Error("the scale of a medium's light must not be negative", p.place("Lescale"));
-  const Color light = spectrum_of(reader, p, *given, Use::light);
-  constexpr int first = 360, last = 830, step = 5;  // [nm]
-  std::vector<float> wavelengths, values;
-  for (int nm = first; nm <= last; nm += step) {
-    wavelengths.push_back(float(nm));
-    values.push_back(float(scale * double(light->at(float(nm), ColorUse::radiance)) *
-                           double(absorption->at(float(nm), ColorUse::coefficient))));
-  }
-  if (std::ranges::any_of(values, [](float v) { return v != 0; }))
-    set_member(medium, "emission", table_spectrum(std::move(wavelengths), std::move(values)), given->at);
-}
 
 void homogeneous(Reader& reader, const std::string& name, const Parameters& p) {
   const Location at = p.at;
@@ -59,47 +41,37 @@ void homogeneous(Reader& reader, const std::string& name, const Parameters& p) {
   reader.media[name] = medium;
 }
 
-/// Density on a regular grid between p0 and p1 of the coordinates of its directive, nothing outside.
-void grid(Reader& reader, const std::string& name, Parameters& p) {
-  const Location at = p.at;
-  const int nx = p.integer("nx", 1), ny = p.integer("ny", 1), nz = p.integer("nz", 1);
-  std::vector<double> density = p.take_numbers("density");
-  if (nx < 1 || ny < 1 || nz < 1 || double(nx) * ny * nz != double(density.size()))
-    throw Error(fmt::format("a grid of {} x {} x {} cannot have {} densities", nx, ny, nz, density.size()), p.place("density"));
-  const Ref<Component> medium = reader.make("GridVolume", at, name);
-  set_member(*medium, "resolution", Numbers{{double(nx), double(ny), double(nz)}, 1, Dimension::none}, at);
-  const double scale = p.number("scale", 1);
-  for (double& d : density) d *= scale;
-  set_member(*medium, "density", Numbers{std::move(density), 1, Dimension::none}, at);
-  set_member(*medium, "outside", "empty", at);
-  const bool v3 = reader.version == 3;
-  const auto coefficient = [&](const char* parameter, const std::array<double, 3>& otherwise) {
-    const Parameter* given = p.find(parameter);
-    return given ? spectrum_of(reader, p, *given, Use::coefficient)
-           : v3  ? rgb_color("srgb", otherwise[0], otherwise[1], otherwise[2])
-                 : flat_spectrum(1);
-  };
-  const Color absorption = coefficient("sigma_a", {0.0011, 0.0024, 0.014});
-  set_member(*medium, "absorption", absorption, at);
-  set_member(*medium, "scattering", coefficient("sigma_s", {2.55, 3.21, 3.77}), at);
-  set_member(*medium, "anisotropy", p.number("g", 0), at);
-  const Parameter* const scales = p.find("Lescale");
-  if (const Parameter* light = p.find("temperature"); light || (scales && scales->numbers.size() > 1)) {
-    p.ignore({"Le", "temperature", "Lescale", "temperatureoffset", "temperaturescale"});
-    reader.importing.inexact("the light of a medium that is not emitted in proportion to its density is left out",
-                             light ? light->at : scales->at);
-  } else {
-    set_emission_of_medium(reader, *medium, p, absorption);
+}  // namespace
+
+double light_scale(const Reader& reader, const Parameters& p) {
+  const double scale = p.number("Lescale", 1) * reader.exposure;
+  if (scale < 0) throw Error("the scale of a medium's light must not be negative", p.place("Lescale"));
+  return scale;
+}
+
+// Per distance: pbrt's Le is a radiance, and what the medium adds is that times its absorption.
+void set_emission_of_medium(Reader& reader, Component& medium, const Parameters& p, const Color& absorption) {
+  const Parameter* const given = p.find("Le");
+  if (!given) return;
+  const double scale = light_scale(reader, p);
+  const Color light = spectrum_of(reader, p, *given, Use::light);
+  constexpr int first = 360, last = 830, step = 5;  // [nm]
+  std::vector<float> wavelengths, values;
+  for (int nm = first; nm <= last; nm += step) {
+    wavelengths.push_back(float(nm));
+    values.push_back(float(scale * double(light->at(float(nm), ColorUse::radiance)) *
+                           double(absorption->at(float(nm), ColorUse::coefficient))));
   }
-  const DoublePoint3 p0 = p.point("p0", {0, 0, 0}), p1 = p.point("p1", {1, 1, 1});
-  const DoubleVector3 size{p1.x - p0.x, p1.y - p0.y, p1.z - p0.z};
-  const Transform placed = reader.state.ctm[0] * Transform::translate({p0.x, p0.y, p0.z}) * Transform::scale(size);
-  if (!placed.valid()) throw Error("the box of a grid, from p0 to p1, has no volume", p.place("p1"));
+  if (std::ranges::any_of(values, [](float v) { return v != 0; }))
+    set_member(medium, "emission", table_spectrum(std::move(wavelengths), std::move(values)), given->at);
+}
+
+void place_medium(Reader& reader, const std::string& name, const Ref<Component>& medium, const Transform& placed,
+                  Location box_at) {
+  if (!placed.valid()) throw Error("the box of a medium, from p0 to p1, has no volume", box_at);
   reader.grids[name] = placed;
   reader.media[name] = medium;
 }
-
-}  // namespace
 
 const Measured* measured_medium(Reader& reader, const Parameters& p, const char* parameter) {
   const std::string name = p.text(parameter);
@@ -119,8 +91,9 @@ Ref<Component> medium_for(Reader& reader, const std::string& name, const Animate
   }
   const auto placed = reader.grids.find(name);
   if (placed == reader.grids.end() || !found->second) return found->second;
-  if (object.animated()) reader.importing.inexact("a grid of density moves with the object it is in", at);
-  // Each object has a grid of its own, placed in its own coordinates.
+  if (object.animated())
+    reader.importing.inexact("a medium that differs from place to place moves with the object it is in", at);
+  // Each object has a medium of its own, placed in its own coordinates.
   const Ref<Component> own = copy(*found->second);
   own->origin = std::make_unique<Component::Origin>();
   own->origin->location = at;
@@ -134,8 +107,12 @@ void make_medium(Reader& reader, const std::string& name, Parameters&& p) {
   if (type == "homogeneous") {
     homogeneous(reader, name, p);
   } else if (type == "heterogeneous" || type == "uniformgrid") {
-    grid(reader, name, p);
-  } else if (type == "rgbgrid" || type == "cloud" || type == "nanovdb") {
+    make_grid(reader, name, p);
+  } else if (type == "rgbgrid") {
+    make_rgb_grid(reader, name, p);
+  } else if (type == "cloud") {
+    make_cloud(reader, name, p);
+  } else if (type == "nanovdb") {
     reader.importing.inexact(fmt::format("a medium of type '{}' is left out: there is none where it would be", type), p.at);
     p.forget();
     reader.media[name] = nullptr;

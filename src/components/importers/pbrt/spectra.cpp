@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "color/planck.h"
 #include "reader.h"
 
 namespace etendue::pbrt {
@@ -58,13 +59,10 @@ Color from_file(Reader& reader, const Parameters& parameters, const Parameter& p
   return file_spectrum(FilePath{path, {}});
 }
 
-/// The highest value of a black body's spectrum, at 2.8977721 mm K / T (Wien), by Planck's formula.
+/// With a highest value of 1, wherever that lies.
 Color normalized_blackbody(double kelvin, Location at) {
   if (!(kelvin > 0)) throw Error("a black body's temperature must be more than 0 K", at);
-  constexpr double c = 299792458, h = 6.62606957e-34, k = 1.3806488e-23;
-  const double l = 2.8977721e-3 / kelvin;
-  const double per_meter = 2 * h * c * c / (std::pow(l, 5) * (std::exp(h * c / (l * k * kelvin)) - 1));
-  return scaled_spectrum(1 / (per_meter * 1e-9), blackbody_spectrum(kelvin));
+  return scaled_spectrum(1 / highest_planck(kelvin), blackbody_spectrum(kelvin));
 }
 
 Color by_name(Reader& reader, const Parameters& parameters, const Parameter& p) {

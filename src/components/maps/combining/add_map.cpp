@@ -15,6 +15,7 @@ class AddMap final : public CombinedMap {
 
  private:
   Spectrum apply(const Spectrum& a, const Spectrum& b) const override { return a + b; }
+  float bound(float a, float b) const override { return a + b; }
 };
 
 const Register<AddMap> registered;

@@ -3,12 +3,13 @@
 
 #include "components/maps/footprint.h"
 #include "components/maps/noise.h"
+#include "components/volumes/bounded_map.h"
 #include "etendue/object_map.h"
 
 namespace etendue {
 
 /// (1 - fraction) first + fraction second: of the spectra, or of the numbers.
-class BlendMap : public ObjectMap {
+class BlendMap : public ObjectMap, public BoundedMap {
  public:
   void prepare() override {
     if (!first) fail(first_name(), "a map is needed");
@@ -26,6 +27,7 @@ class BlendMap : public ObjectMap {
     if (t >= 1) return second->scalar(p);
     return (1 - t) * first->scalar(p) + t * second->scalar(p);
   }
+  float bound() const final { return std::max(bound_of(*first), bound_of(*second)); }
 
   Ref<ObjectMap> first, second;
 

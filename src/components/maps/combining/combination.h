@@ -1,6 +1,7 @@
 #pragma once
 // What maps share that compute with other maps.
 
+#include "components/volumes/bounded_map.h"
 #include "etendue/object_map.h"
 
 namespace etendue {
@@ -29,7 +30,7 @@ inline Spectrum as_used(const Spectrum& s, ColorUse use) {
 
 /// Two maps, or three where the operation is associative. Of colours it acts on the spectra, at the path's wavelengths; of
 /// numbers, on the maps' numbers.
-class CombinedMap : public ObjectMap {
+class CombinedMap : public ObjectMap, public BoundedMap {
  public:
   void prepare() override {
     if (!first) fail("first", "a map is needed");
@@ -45,12 +46,18 @@ class CombinedMap : public ObjectMap {
     if (third) result = apply(result, third->scalar(p));
     return finite_or_zero(result)[0];
   }
+  float bound() const final {
+    const float most = bound(bound_of(*first), bound_of(*second));
+    return third ? bound(most, bound_of(*third)) : most;
+  }
 
   Ref<ObjectMap> first, second, third;
 
  protected:
   CombinedMap(float a, float b) : first(etendue::constant(a)), second(etendue::constant(b)) {}
   virtual Spectrum apply(const Spectrum&, const Spectrum&) const = 0;
+  /// Of what `apply` gives, from those of what it is given.
+  virtual float bound(float, float) const { return infinity; }
   /// What the maps after the first are asked for as.
   virtual ColorUse use_of_others(ColorUse use) const { return use; }
 };

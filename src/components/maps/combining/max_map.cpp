@@ -17,6 +17,7 @@ class MaxMap final : public CombinedMap {
   Spectrum apply(const Spectrum& a, const Spectrum& b) const override {
     return Spectrum(a.lanes() > b.lanes() ? a.lanes() : b.lanes());
   }
+  float bound(float a, float b) const override { return std::max(a, b); }
 };
 
 const Register<MaxMap> registered;

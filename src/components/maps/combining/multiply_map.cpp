@@ -16,6 +16,7 @@ class MultiplyMap final : public CombinedMap {
  private:
   Spectrum apply(const Spectrum& a, const Spectrum& b) const override { return a * b; }
   ColorUse use_of_others(ColorUse use) const override { return use_of_factor(use); }
+  float bound(float a, float b) const override { return a > 0 && b > 0 ? a * b : 0; }
 };
 
 const Register<MultiplyMap> registered;

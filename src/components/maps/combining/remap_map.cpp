@@ -5,7 +5,7 @@
 namespace etendue {
 namespace {
 
-class RemapMap final : public ObjectMap {
+class RemapMap final : public ObjectMap, public BoundedMap {
  public:
   static void describe(Description<RemapMap>& d) {
     d.summary("A map of which one range of values is laid onto another, wavelength by wavelength.")
@@ -25,6 +25,7 @@ class RemapMap final : public ObjectMap {
     return as_used(map(input->color(p, w, use), [this](float x) { return remapped(x); }), use);
   }
   float scalar(const SurfacePoint& p) const override { return remapped(input->scalar(p)); }
+  float bound() const override { return clamped ? std::max(std::abs(to.x), std::abs(to.y)) : infinity; }
 
   Ref<ObjectMap> input = etendue::constant(0);
   Vector2 from{0, 1}, to{0, 1};

@@ -1,5 +1,6 @@
 // A map on a surface that is moved.
 
+#include "components/volumes/bounded_map.h"
 #include "geometry/geometry.h"
 #include "mapping.h"
 
@@ -9,7 +10,7 @@ namespace {
 // All of a point goes along, in both systems of coordinates: positions, tangents and the axes of the footprint by the
 // transform, normals by its inverse transpose. What a map does with it is then what it would do on an object of that shape in
 // that place. The surface coordinates are not changed.
-class TransformedMap final : public ObjectMap {
+class TransformedMap final : public ObjectMap, public BoundedMap {
  public:
   static void describe(Description<TransformedMap>& d) {
     d.summary("Looks another map up as if the surface were moved: its textures through space move the other way.")
@@ -27,6 +28,7 @@ class TransformedMap final : public ObjectMap {
     return map->color(moved(p), w, use);
   }
   float scalar(const SurfacePoint& p) const override { return map->scalar(moved(p)); }
+  float bound() const override { return bound_of(*map); }
 
   Ref<ObjectMap> map = etendue::constant(0.5f);
   AnimatedTransform transform;

@@ -40,19 +40,13 @@ class CheckerMap final : public BlendMap {
       wave = square_wave_mean(p.uv.x * repeat.x, box.x * std::abs(repeat.x)) *
              square_wave_mean(p.uv.y * repeat.y, box.y * std::abs(repeat.y));
     } else {
-      Vector3 longer, shorter;
-      if (p.footprint > 0) {
-        const Footprint f = footprint_of(p);
-        Transform scratch;
-        const Transform& t = placement(p, scratch);
-        longer = t.back(f.longer);
-        shorter = t.back(f.shorter);
-      }
+      Footprint seen;
+      if (p.footprint > 0) seen = object_footprint(p);
       // A surface that lies exactly between two layers of cubes would flicker by rounding: look a ten-thousandth of a
       // cube below the surface.
       for (int i = 0; i < 3; ++i)
         wave *= square_wave_mean(p.object_position[i] * repeat[i] - 1e-4f * p.object_normal[i],
-                                 std::hypot(longer[i], shorter[i]) * std::abs(repeat[i]));
+                                 std::hypot(seen.longer[i], seen.shorter[i]) * std::abs(repeat[i]));
     }
     return 0.5f - 0.5f * wave;
   }

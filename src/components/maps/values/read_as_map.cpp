@@ -1,5 +1,6 @@
 // What a map's RGB stands for, whoever asks.
 
+#include "components/volumes/bounded_map.h"
 #include "etendue/object_map.h"
 
 namespace etendue {
@@ -7,7 +8,7 @@ namespace {
 
 // A colour given as RGB becomes a spectrum according to who asks (docs/decisions/003). Files of other programs sometimes mean
 // another one: a picture as light whose white is the same at every wavelength and not the white of its colour space.
-class ReadAsMap final : public ObjectMap {
+class ReadAsMap final : public ObjectMap, public BoundedMap {
  public:
   static void describe(Description<ReadAsMap>& d) {
     d.summary(
@@ -26,6 +27,7 @@ class ReadAsMap final : public ObjectMap {
   Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse) const override { return map->color(p, w, use); }
   float scalar(const SurfacePoint& p) const override { return map->scalar(p); }
   float largest() const override { return map->largest(); }
+  float bound() const override { return use == ColorUse::coefficient ? bound_of(*map) : infinity; }
 
   Ref<ObjectMap> map = etendue::constant(1);
   ColorUse use = ColorUse::coefficient;

@@ -1,0 +1,35 @@
+#pragma once
+// PhasedVolume: media in which light turns by one phase function, alike everywhere.
+
+#include "etendue/phase_function.h"
+#include "etendue/volume_shader.h"
+
+namespace etendue {
+
+class PhasedVolume : public VolumeShader {
+ public:
+  float phase(const Point3&, const Vector3& out, const Vector3& in) const final;
+  Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const final;
+
+  Ref<PhaseFunction> phase_function;
+  float anisotropy = 0;
+
+ protected:
+  template <class T>
+  static void describe_phase(Description<T>& d) {
+    d.group("Phase function")
+        .template member<&T::phase_function>(
+            "phase", "", "where scattered light goes; none: Henyey's and Greenstein's function with `anisotropy`")
+        .template member<&T::anisotropy>("anisotropy", "1",
+                                         "mean cosine of the angle light turns by, between -1 (all back) and 1 (all straight "
+                                         "on), both excluded; 0 scatters alike in all directions",
+                                         range(-1, 1), unless("phase"));
+  }
+  void check_phase() const;
+
+ private:
+  /// Where most of the light goes that came from `out`: straight on, or back.
+  Vector3 peak(const Vector3& out) const { return anisotropy < 0 ? out : -out; }
+};
+
+}  // namespace etendue

@@ -1,0 +1,106 @@
+// Media of pbrt that differ from place to place, each by a number.
+
+#include <fmt/format.h>
+
+#include "color/planck.h"
+#include "etendue/describe/color.h"
+#include "pbrt_support.h"
+
+namespace etendue::pbrt_test {
+namespace {
+
+const std::string sphere =
+    "AttributeBegin\nMaterial \"interface\" MediumInterface \"m\" \"\" Translate 0 0 5 Shape \"sphere\"\nAttributeEnd\n";
+const std::string box = "\"integer nx\" 4 \"integer ny\" 4 \"integer nz\" 4 \"point3 p0\" [-1 -1 4] \"point3 p1\" [1 1 6] ";
+const std::string flat_nothing = "\"spectrum sigma_s\" [300 0 900 0] ";
+
+std::string cells(const std::string& value) {
+  std::string all = "[";
+  for (int i = 0; i < 64; ++i) all += value + " ";
+  return all + "] ";
+}
+Imported medium(const std::string& text, const std::string& before = "") {
+  return import_text(v4(before + "MakeNamedMedium \"m\" " + text + "\n" + sphere));
+}
+
+/// What a grid of ones, 4 cells along 2 m, is at a distance: at its borders it has faded to a half.
+double ones(double x) { return std::min({1.0, 0.5 + 2 * x, 0.5 + 2 * (2 - x)}); }
+
+/// Light of a medium along the 2 m through its middle: int s(x) L(x) exp(-int_0^x s) dx.
+template <class Absorption, class Light>
+double along(const Absorption& absorption, const Light& light) {
+  constexpr int points = 4000;
+  double depth = 0, sum = 0;
+  for (int i = 0; i < points; ++i) {
+    const double x = 2 * (i + 0.5) / points, s = absorption(x) * 2 / points;
+    sum += light(x) * s * std::exp(-depth - s / 2);
+    depth += s;
+  }
+  return sum;
+}
+
+TEST(PbrtMedium, GridsOfRgbAbsorbAndShine) {
+  const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+  const std::string grid = "\"string type\" \"rgbgrid\" " + box + "\"rgb sigma_a\" " + cells(".25 .25 .25") +
+                           "\"rgb sigma_s\" " + cells("0 0 0") + "\"float scale\" 2 ";
+  EXPECT_NEAR(seen(medium(grid, sky), 65536).y, std::exp(-0.9375), 0.01);
+  const Imported shining = medium(grid + "\"rgb Le\" " + cells("1 1 1") + "\"float Lescale\" 3");
+  EXPECT_EQ(shining.told(), "");
+  EXPECT_NEAR(seen(shining, 65536).y, along([](double x) { return 0.5 * ones(x); }, [](double x) { return 3 * ones(x); }),
+              0.02);
+  // Of absorption and scattering one may be left out: it is 1 then, within the box alone.
+  const Imported one = medium("\"string type\" \"rgbgrid\" " + box + "\"rgb sigma_s\" " + cells("1 2 3"));
+  EXPECT_EQ(number(part(object(one, 0), "interior"), "absorption"), 1);
+  EXPECT_NE(medium("\"string type\" \"rgbgrid\" " + box + "\"rgb sigma_s\" " + cells("1 2 3") + "\"rgb Le\" " + cells("1 1 1"))
+                .told()
+                .find("needs 'sigma_a'"),
+            std::string::npos);
+  EXPECT_NE(medium("\"string type\" \"rgbgrid\" " + box + "\"rgb sigma_s\" [1 2 3]").told().find("cannot have 1 values"),
+            std::string::npos);
+}
+
+TEST(PbrtMedium, ShinesByAGridOfItsOwn) {
+  const std::string grid = "\"string type\" \"uniformgrid\" " + box + "\"spectrum sigma_a\" [300 .5 900 .5] " + flat_nothing +
+                           "\"float density\" " + cells("1");
+  const Imported scaled = medium(grid + "\"rgb Le\" [2 2 2] \"float Lescale\" " + cells("3"));
+  EXPECT_EQ(scaled.told(), "");
+  EXPECT_NEAR(seen(scaled, 65536).y, along([](double x) { return 0.5 * ones(x); }, [](double x) { return 6 * ones(x); }), 0.03);
+}
+
+// pbrt's black bodies have a highest value of 1 at all temperatures; what is seen is their luminance.
+TEST(PbrtMedium, ShinesByTemperature) {
+  const auto luminance = [](double kelvin) {
+    double sum = 0;
+    for (int nm = 360; nm <= 830; ++nm) sum += double(observer(float(nm)).y) * planck(nm, kelvin) / highest_planck(kelvin);
+    return sum / observer_y_integral();
+  };
+  const Imported hot = medium("\"string type\" \"uniformgrid\" " + box + "\"spectrum sigma_a\" [300 .5 900 .5] " +
+                              flat_nothing + "\"float density\" " + cells("1") + "\"float temperature\" " + cells("30") +
+                              "\"float temperatureoffset\" 5 \"float temperaturescale\" 160 \"float Lescale\" 2");
+  EXPECT_EQ(hot.told(), "");
+  const double expected =
+      along([](double x) { return 0.5 * ones(x); }, [&](double x) { return 2 * luminance((30 * ones(x) - 5) * 160); });
+  EXPECT_NEAR(seen(hot, 65536).y, expected, 0.02 * expected);
+  EXPECT_NE(medium("\"string type\" \"uniformgrid\" " + box + "\"float density\" " + cells("1") + "\"float temperature\" " +
+                   cells("30") + "\"rgb Le\" [1 1 1]")
+                .told()
+                .find("either 'Le' or a grid"),
+            std::string::npos);
+}
+
+// Below its foot, in -y of the coordinates of its directive, a cloud is solid; only within its box.
+TEST(PbrtMedium, CloudsAreSolidBelow) {
+  const auto through = [](const char* place) {
+    const Imported cloud =
+        import_text(v4("LightSource \"infinite\" \"rgb L\" [1 1 1]\nAttributeBegin Translate " + std::string(place) +
+                       " MakeNamedMedium \"m\" \"string type\" \"cloud\" \"spectrum sigma_a\" [300 .7 900 .7] " + flat_nothing +
+                       "\"point3 p0\" [-1 -3 -.5] \"point3 p1\" [1 3 .5]\nAttributeEnd\n" + sphere));
+    EXPECT_NE(cloud.told().find("another one of the same kind"), std::string::npos) << cloud.told();
+    return seen(cloud, 65536).y;
+  };
+  EXPECT_NEAR(through("0 1 5"), std::exp(-0.7), 0.01);
+  EXPECT_NEAR(through("0 -2 5"), 1, 0.01);
+}
+
+}  // namespace
+}  // namespace etendue::pbrt_test
