@@ -1,5 +1,7 @@
 // pbrt's cameras: rays as its books define them.
 
+#include <fmt/format.h>
+
 #include "pbrt_support.h"
 
 namespace etendue::pbrt_test {
@@ -33,11 +35,16 @@ const std::string look = "LookAt 1 2 3  2 4 2.5  0.1 0.2 1\n";
 
 /// Rays of a camera against those of a function of (u, v), from 0 to 1, in pbrt's camera coordinates: origin and direction.
 template <class F>
-void expect_rays(const std::string& camera, bool v3, const F& expected) {
+void expect_rays(const std::string& camera, bool v3, const F& expected, const std::string& film = "",
+                 const std::string& before = "") {
+  const TemporaryFolder folder;
+  folder.write("thin.dat", "# one lens, and a stop\n100 1e-6 1.5 20\n-100 1e-6 1 20\n0 0 0 20\n");
   for (const bool mirrored : {false, true}) {
-    const Imported i = import_text((mirrored ? "Scale -1 1 1\n" : "") + look + camera + "\nFilm \"" + (v3 ? "image" : "rgb") +
-                                   "\" \"integer xresolution\" 60 \"integer yresolution\" 40\nPixelFilter \"box\"\nWorldBegin\n"
-                                   "Shape \"sphere\"\n");
+    const Imported i =
+        import_text(folder, before + (mirrored ? "Scale -1 1 1\n" : "") + look + camera + "\nFilm \"" + (v3 ? "image" : "rgb") +
+                                "\" \"integer xresolution\" 60 \"integer yresolution\" 40 " + film +
+                                "\nPixelFilter \"box\"\nWorldBegin\n"
+                                "Shape \"sphere\"\n");
     ASSERT_TRUE(i.job) << i.told();
     EXPECT_EQ(i.told(), "");
     Camera& made = *i.job->camera;
@@ -88,6 +95,45 @@ TEST(PbrtCamera, WindowsBesideTheMiddle) {
     const V p = at(u, v);
     return std::pair(V{}, V{p.x, p.y, 1 / std::tan(35 * M_PI / 180)});
   });
+}
+
+// Film of 36 mm by 24 mm at the origin, a lens of 100 mm that makes 2 m sharp, and a stop so small that it is a pinhole. The
+// film's right half sees what is to the left of the lens. A second time in a world twice as large.
+TEST(PbrtCamera, RealisticOnes) {
+  const double image = (2 - std::sqrt(4 - 4 * 0.1 * 2)) / 2;  // 1 / s + 1 / s' = 1 / f, s + s' = 2
+  for (const double scale : {1.0, 2.0})
+    expect_rays(
+        "Camera \"realistic\" \"string lensfile\" \"thin.dat\" \"float aperturediameter\" 0.0001 \"float focusdistance\" 2",
+        false,
+        [&](double u, double v) { return std::pair(V{0, 0, image * scale}, V{0.036 * (u - 0.5), -0.024 * (v - 0.5), image}); },
+        "\"float diagonal\" 43.2666", fmt::format("Scale {0} {0} {0}\n", 1 / scale));
+}
+
+// The irradiance of the film under even light: pi sin^2 of the stop's angle, for a shutter of 1 s and ISO 100.
+TEST(PbrtCamera, RealisticOnesMeasureIrradiance) {
+  const TemporaryFolder folder;
+  folder.write("thin.dat", "100 1e-6 1.5 40\n-100 1e-6 1 40\n0 0 0 40\n");
+  const Imported i = import_text(
+      folder,
+      "Camera \"realistic\" \"string lensfile\" \"thin.dat\" \"float aperturediameter\" 20 \"float focusdistance\" 2\nFilm "
+      "\"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1 \"float diagonal\" 0.1 \"float iso\" 200\nPixelFilter "
+      "\"box\"\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [1 1 1]\n");
+  EXPECT_EQ(i.told(), "");
+  const double image = (2 - std::sqrt(4 - 4 * 0.1 * 2)) / 2;
+  EXPECT_NEAR(seen(i, 4096).y, 2 * M_PI * 1e-4 / (1e-4 + image * image), 3e-4);
+}
+
+TEST(PbrtCamera, RealisticOnesNeedTheirLens) {
+  const TemporaryFolder folder;
+  folder.write("bad.dat", "100 1 1.5\n");
+  const auto told = [&](const std::string& file) {
+    return import_text(folder,
+                       "Camera \"realistic\" \"string lensfile\" \"" + file + "\"\nFilm \"rgb\"\nWorldBegin\nShape \"sphere\"")
+        .told();
+  };
+  EXPECT_NE(told("bad.dat").find("four numbers"), std::string::npos) << told("bad.dat");
+  EXPECT_NE(told("none.dat").find("none.dat"), std::string::npos) << told("none.dat");
+  EXPECT_NE(told("none.dat").find("pinhole"), std::string::npos) << told("none.dat");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/cameras/lens_system.h"
 #include "reader.h"
 
 namespace etendue::pbrt {
@@ -149,20 +150,64 @@ Ref<Component> spherical(Reader& reader, bool environment) {
   return camera;
 }
 
+// Film at the origin, the lens before it. A pixel is the irradiance of the film: v4 weighs by cos^4 over the density on the
+// exit pupil and the square of its distance.
+Ref<Component> realistic(Reader& reader) {
+  const Parameters& p = reader.camera.parameters;
+  const double stop = p.number("aperturediameter", 1), focus = p.number("focusdistance", 10);
+  const std::optional<FilePath> file = image_file(reader, p, "lensfile");
+  if (!file) {
+    const Ref<Component> camera = reader.make("PerspectiveCamera", p.at);
+    set_placement(reader, *camera, to_the_left);
+    reader.importing.inexact("without its lens the camera is a pinhole of 40 degrees", p.at);
+    p.forget();
+    return camera;
+  }
+  const Ref<Component> camera = reader.make("LensCamera", p.at);
+  const double scale = set_placement(reader, *camera, to_the_left);
+  set_member(*camera, "file", *file, p.place("lensfile"));
+  if (scale != 1) set_member(*camera, "unit", 1e-3 * scale, p.at);
+  bool stops = false;
+  try {
+    const std::vector<LensSurface> surfaces = lens_surfaces(read_lens_file(file->resolved()), 1);
+    for (size_t i = 0; i < surfaces.size(); ++i) {
+      if (is_stop(surfaces, i))
+        stops = true;
+      else if (surfaces[i].radius == 0)
+        reader.importing.inexact("a plane of glass refracts here, which pbrt takes for a stop", p.place("lensfile"));
+    }
+  } catch (const Error& e) {
+    throw Error(e.what(), p.place("lensfile"));
+  }
+  if (!(stop > 0 && focus > 0)) throw Error("'aperturediameter' and 'focusdistance' must be more than 0", p.at);
+  if (stops) set_member(*camera, "aperture_diameter", stop * 1e-3 * scale, p.at);
+  set_member(*camera, "focus_distance", focus * scale, p.at);
+  set_member(*camera, "film_diagonal", reader.film.parameters.number("diagonal", 35) * 1e-3 * scale, p.at);
+  if (const std::string shape = p.text("aperture"); !shape.empty())
+    reader.importing.inexact(fmt::format("the stop is round, not '{}'", shape), p.place("aperture"));
+  if (reader.version == 4) {
+    set_member(*camera, "measures", "irradiance", p.at);
+  } else if (p.boolean("simpleweighting", true)) {
+    reader.importing.inexact(
+        "the middle of the picture is as bright as what it shows; with 'simpleweighting' pbrt's is darker by the part of a "
+        "rectangle "
+        "that its exit pupil fills",
+        p.at);
+  } else {
+    set_member(*camera, "measures", "irradiance", p.at);
+    if (std::abs(p.number("shutterclose", 1) - p.number("shutteropen", 0) - 1) > 1e-6)
+      reader.importing.inexact("the picture is as bright as of a shutter that is open for 1 s", p.at);
+  }
+  return camera;
+}
+
 Ref<Component> camera_of(Reader& reader) {
   const std::string& type = reader.camera.type;
   const Parameters& p = reader.camera.parameters;
   if (type == "perspective") return perspective(reader);
   if (type == "orthographic") return orthographic(reader);
   if (type == "spherical" || type == "environment") return spherical(reader, type == "environment");
-  if (type == "realistic") {
-    reader.importing.inexact("a 'realistic' camera is a pinhole of 90 degrees here", p.at);
-    const Ref<Component> camera = reader.make("PerspectiveCamera", p.at);
-    set_placement(reader, *camera, to_the_left);
-    set_member(*camera, "fov", 90, p.at);
-    p.forget();
-    return camera;
-  }
+  if (type == "realistic") return realistic(reader);
   throw Error(fmt::format("there is no camera '{}'{}", type,
                           suggestion(type, {"perspective", "orthographic", "realistic", "spherical", "environment"})),
               p.at);
