@@ -22,10 +22,9 @@ Exported exported(const Ref<Job>& job, const std::string& path) {
 /// A job with a camera that sees all of it, and its picture's mean with as many samples as make it good to half a per cent.
 Ref<Job> job_of(const std::string& objects, const std::string& camera = "from: [1, 2, 6] m, to: [0, 0, 0] m, fov: 40 deg") {
   return load_job_text(
-      "Job {\n tone_map: ExposureToneMap {}\n renderer: PathTracer { samples: 1024, max_depth: 6 }\n camera: PerspectiveCamera "
-      "{ " +
-          camera +
-          " }\n image: ImageBuffer { width: 12, height: 8, filter: BoxFilter {} }\n scene: BruteForceScene { "
+      "Job {\n tone_map: ExposureToneMap {}\n renderer: PathTracer { samples: 1024, max_depth: 6 }\n camera: " +
+          (camera.find('{') == std::string::npos ? "PerspectiveCamera { " + camera + " }" : camera) +
+          "\n image: ImageBuffer { width: 12, height: 8, filter: BoxFilter {} }\n scene: BruteForceScene { "
           "objects: [\n" +
           objects + "\n] }\n}\n",
       "test.etd");
@@ -133,6 +132,8 @@ TEST(PbrtExport, CamerasThatMirrorAndWideOnes) {
   expect_same(scene, "",
               "from: [1, 2, 6] m, to: [0, 0, 0] m, focal_length: 0.06, fov_axis: diagonal, principal_point: [0.1, -0.05]");
   expect_same(scene, "", "from: [1, 2, 6] m, to: [0, 0, 0] m, fov: 50 deg, transform: scale(-1, 1, 1)");
+  for (const char* more : {"", ", mapping: equal_area", ", transform: scale(-1, 1, 1)"})
+    expect_same(scene, "", std::string("SphericalCamera { from: [0.4, 1, 0.8] m, to: [0, 0, 0] m") + more + " }");
 }
 
 TEST(PbrtExport, InstancesAndMedia) {

@@ -261,7 +261,7 @@ TEST(Camera, BothDirectionsMeasureTheSame) {
 }
 
 TEST(Camera, PictureIsNotMirrored) {
-  for (const char* name : {"PerspectiveCamera", "OrthographicCamera"}) {
+  for (const char* name : {"PerspectiveCamera", "OrthographicCamera", "SphericalCamera"}) {
     const Ref<Camera> camera =
         create<Camera>(name, {{"from", std::vector<double>{0, 0, 5}}, {"to", std::vector<double>{0, 0, 0}}});
     camera->set_film(100, 100);
@@ -306,7 +306,7 @@ TEST(PerspectiveCamera, ConeCoversAPixel) {
 }
 
 TEST(Camera, MovesWithTime) {
-  for (const char* name : {"PerspectiveCamera", "OrthographicCamera"}) {
+  for (const char* name : {"PerspectiveCamera", "OrthographicCamera", "SphericalCamera"}) {
     const Ref<Camera> camera = ref_cast<Camera>(Registry::instance().create(name));
     std::vector<AnimatedTransform::Key> keys{{0, Transform()}, {1, Transform::translate({2, 0, 0})}};
     set(*camera, "transform", Value(AnimatedTransform(keys)));

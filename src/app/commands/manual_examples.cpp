@@ -96,6 +96,9 @@ constexpr Example examples[] = {
     // cameras
     {"PerspectiveCamera", "PerspectiveCamera { from: [0, -4.6, 1] m, to: [0, 0, 1] m, up: [0, 0, 1], fov: 32 deg }"},
     {"OrthographicCamera", "OrthographicCamera { from: [0.4, -4.6, 1.6] m, to: [0, 0, 1] m, up: [0, 0, 1], width: 2.4 m }"},
+    {"SphericalCamera", "SphericalCamera { from: [0.1, -0.4, 1] m, to: [0, 1, 1] m, up: [0, 0, 1] }"},
+    {"LensCamera",
+     "LensCamera { from: [0, -3.5, 1] m, to: [0, 0, 0.7] m, up: [0, 0, 1], focus_distance: 3.2 m, film_diagonal: 0.036 m }"},
     // media
     {"HomogeneousVolume", "HomogeneousVolume { scattering: 2, absorption: srgb(0.1, 0.5, 0.9) }"},
     {"GridVolume",

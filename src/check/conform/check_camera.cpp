@@ -5,6 +5,7 @@
 
 #include "conformance.h"
 #include "etendue/camera.h"
+#include "shader_trial.h"
 #include "statistics.h"
 
 namespace etendue::conform {
@@ -37,7 +38,11 @@ class CameraTrial {
 
   void check_ray() {
     const Point2 f = film(0.02f);
-    const Ray ray = camera_.ray(f, trial.pair(), time_);
+    const Point2 lens = trial.pair();
+    CameraRay sample;
+    Wavelengths wavelengths = spread_wavelengths(550);
+    const bool passes = camera_.sample_ray(f, lens, time_, wavelengths, sample);
+    const Ray ray = passes ? sample.ray : camera_.ray(f, lens, time_);
     const auto where = [&] {
       return fmt::format("film point ({}, {}): from ({}, {}, {}) towards ({}, {}, {})", f.x, f.y, ray.origin.x, ray.origin.y,
                          ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z);
@@ -50,6 +55,7 @@ class CameraTrial {
       trial.expect(other.origin == ray.origin && other.direction == ray.direction,
                    "without a lens rays do not depend on the lens point", where);
     }
+    if (!passes) return;  // what a lens holds back need not lead anywhere
     const auto back = camera_.film_point(ray);
     trial.expect(back && std::abs(back->x - f.x) < 0.02f && std::abs(back->y - f.y) < 0.02f,
                  "a ray's film point is where it came from",
@@ -61,9 +67,9 @@ class CameraTrial {
                  "a camera's own rays have importance and densities", [&] {
                    return fmt::format("{}: importance {}, densities {} and {}", where(), importance, d.position, d.direction);
                  });
-    // Rays have weight 1: W_e cos = p_position p_direction, for the cosine at the lens.
-    const float cosine = d.position * d.direction / importance;
-    trial.expect(cosine > 0 && cosine < 1.001f, "importance times a cosine is the product of the densities",
+    // W_e cos = weight p_position p_direction, for the cosine at the lens.
+    const float cosine = sample.weight.average() * d.position * d.direction / importance;
+    trial.expect(cosine > 0 && cosine < 1.001f, "importance times a cosine is the product of the densities and the weight",
                  [&] { return fmt::format("{}: that cosine would be {}", where(), cosine); });
     check_lens(ray);
     check_reach(ray);
@@ -143,9 +149,13 @@ class CameraTrial {
     const Frame frame(Normal3(-axis.direction));
     statistics::Mean by_rays, by_lens;
     for (int i = trial.samples(60000); i > 0; --i) {
-      const Ray ray = camera_.ray(film(), trial.pair(), time_);
+      CameraRay sample;
+      Wavelengths wavelengths = spread_wavelengths(550);
+      const bool passes = camera_.sample_ray(film(), trial.pair(), time_, wavelengths, sample);
+      const Ray& ray = sample.ray;
       const float cosine = dot(frame.n, ray.direction), t = dot(frame.n, centre - ray.origin) / cosine;
-      by_rays.add(cosine < 0 && t > 0 && t < ray.maximum && distance(ray(t), centre) < radius ? 1 : 0);
+      const bool meets = passes && cosine < 0 && t > 0 && t < ray.maximum && distance(ray(t), centre) < radius;
+      by_rays.add(meets ? double(sample.weight.average()) : 0);
 
       const float r = radius * std::sqrt(trial.uniform()), phi = 2 * pi * trial.uniform();
       const auto s =

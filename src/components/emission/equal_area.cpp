@@ -1,5 +1,4 @@
-// The equal-area mapping of Clarberg 2008, "Fast equal-area mapping of the (hemi)sphere using SIMD": the upper half of the
-// sphere is the diamond in the middle of the square, the lower half its four corners, folded outwards.
+// Squares of equal areas as images in longitude and latitude.
 
 #include "equal_area.h"
 
@@ -8,32 +7,15 @@
 #include <cmath>
 
 #include "etendue/core/error.h"
+#include "geometry/equal_area_square.h"
 
 namespace etendue {
 namespace {
 
 constexpr double exact_pi = 3.14159265358979323846;
 
-struct Place {
-  double x, y;  ///< from 0 to 1, y from the top
-};
-
-/// Of a direction with z towards the middle of the square. With r^2 = 1 - |z| the circle of a latitude, which is r^2 of its
-/// half of the sphere, is the diamond |x| + |y| = r, which is as much of the inner one; along it distances are angles.
-Place to_square(double x, double y, double z) {
-  const double r = std::sqrt(std::max(0.0, 1 - std::abs(z)));
-  const double turn = std::atan2(std::abs(y), std::abs(x)) * 2 / exact_pi;  // of a quarter
-  double v = turn * r, u = r - v;
-  if (z < 0) {
-    const double folded = 1 - u;
-    u = 1 - v;
-    v = folded;
-  }
-  return {(std::copysign(u, x) + 1) / 2, (std::copysign(v, y) + 1) / 2};
-}
-
 /// Bilinear. What lies beyond an edge is found at the same edge, mirrored in its middle.
-void add(const LinearImage& image, Place at, double weight, double* sum) {
+void add(const LinearImage& image, SquarePlace at, double weight, double* sum) {
   const int n = image.width;
   const double px = at.x * n - 0.5, py = at.y * n - 0.5;
   const int x0 = int(std::floor(px)), y0 = int(std::floor(py));
@@ -71,7 +53,7 @@ LinearImage unfold_equal_area(const LinearImage& square) {
         const double phi = 2 * exact_pi * (double(i) + (k % parts + 0.5) / parts) / double(width);
         const double theta = exact_pi * (double(j) + (k / parts + 0.5) / parts) / double(height);
         // The environment's (x, y, z) = (sin theta sin phi, cos theta, -sin theta cos phi); the square's third axis is y.
-        add(square, to_square(std::sin(theta) * std::sin(phi), std::sin(theta) * std::cos(phi), std::cos(theta)),
+        add(square, equal_area_place({std::sin(theta) * std::sin(phi), std::sin(theta) * std::cos(phi), std::cos(theta)}),
             1.0 / (parts * parts), sum);
       }
       for (size_t c = 0; c < 3; ++c) result.rgb[3 * (j * width + i) + c] = float(sum[c]);

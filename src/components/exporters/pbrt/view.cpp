@@ -14,8 +14,9 @@ constexpr double exact_pi = 3.14159265358979323846;
 void Writer::camera() {
   const Component& camera = *job.camera;
   const std::string name = camera.class_info().name;
-  const bool perspective = name == "PerspectiveCamera", orthographic = name == "OrthographicCamera";
-  if (!perspective && !orthographic) {
+  const bool perspective = name == "PerspectiveCamera", orthographic = name == "OrthographicCamera",
+             spherical = name == "SphericalCamera";
+  if (!perspective && !orthographic && !spherical) {
     exporting.inexact(fmt::format("pbrt has no camera like {}: a pinhole is taken", name), &camera);
     out_ += "Camera \"perspective\"\n";
     return;
@@ -28,8 +29,13 @@ void Writer::camera() {
     keys = animated->keys();
   else
     keys = {{0, moved.as<Transform>() ? *moved.as<Transform>() : Transform()}};
-  // +x is to the left of our pictures, to the right of pbrt's.
-  for (auto& key : keys) key.transform = (key.transform * base * Transform::scale({-1, 1, 1})).inverse();
+  // +x is to the left of our pictures, to the right of pbrt's. pbrt's spheres look elsewhere, as its importer says.
+  using M = Transform::DoubleMatrix;
+  const bool square = spherical && word_of(camera, "mapping") == "equal_area";
+  const Transform turned = square      ? Transform(M{-1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0})
+                           : spherical ? Transform(M{0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0})
+                                       : Transform::scale({-1, 1, 1});
+  for (auto& key : keys) key.transform = (key.transform * base * turned).inverse();
   out_ += keys.size() == 1 ? fmt::format("Transform {}\n", matrix(keys[0].transform))
                            : transform_of(AnimatedTransform(keys), "Transform");
   const double open = number_of(camera, "shutter_open"), close = number_of(camera, "shutter_close");
@@ -37,6 +43,11 @@ void Writer::camera() {
       close > open ? fmt::format(" \"float shutteropen\" {} \"float shutterclose\" {}", open, close) : "";
   if (number_of(camera, "shutter_opening") > 0 || number_of(camera, "shutter_closing") > 0)
     exporting.inexact("a shutter opens and closes at once in pbrt", &camera);
+  if (spherical) {
+    out_ +=
+        fmt::format("Camera \"spherical\" \"string mapping\" \"{}\"{}\n", square ? "equalarea" : "equirectangular", shutter);
+    return;
+  }
   if (number_of(camera, "near_clip") > 0 || number_of(camera, "far_clip") > 0)
     exporting.inexact("pbrt sees what is nearer than near_clip and farther than far_clip", &camera);
   const double aspect = double(job.image->width) / job.image->height;

@@ -195,10 +195,15 @@ const Measured* measured_medium(Reader&, const Parameters&, const char* paramete
 /// The medium of a name for an object that stands in the world so; null: it was left out.
 Ref<Component> medium_for(Reader&, const std::string& name, const AnimatedTransform& object, Location at);
 
-// job.cpp, view.cpp
+// job.cpp, camera.cpp, view.cpp
 void set_renderer(Reader&, Component& job);
 void set_camera(Reader&, Component& job);
 void set_film(Reader&, Component& job);
+/// Of the whole picture, in pixels.
+struct FilmSize {
+  int width, height;
+};
+FilmSize film_size(const Reader&);
 /// What the sensor multiplies light by.
 double imaging_ratio(Reader&);
 

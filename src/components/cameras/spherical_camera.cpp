@@ -1,0 +1,130 @@
+// SphericalCamera: a pinhole that sees in all directions.
+
+#include "geometry/equal_area_square.h"
+#include "pose.h"
+
+namespace etendue {
+namespace {
+
+constexpr double exact_pi = 3.14159265358979323846;
+
+// The whole picture is the whole sphere; u goes from 0 to 1 across it, v down.
+//   equirectangular: the longitude 2 pi (u - 1/2), from the viewing direction to the right, and the angle pi v from above. A
+//     solid angle is dw = sin(theta) dtheta dphi = 2 pi^2 sin(theta) du dv, so film points that are uniform have density
+//     p = 1 / (2 pi^2 sin(theta)) [1/sr].
+//   equal_area: the mapping of equal_area_square.h, with the viewing direction in the middle; p = 1 / (4 pi) everywhere.
+//
+// A pinhole that faces every direction alike has no cosine. A pixel's value is the mean radiance of its rays, so W_e = p: its
+// integral over directions is 1. Of light that arrives from a point at distance d, d^2 is what makes an area there a solid
+// angle here (LensSample::density).
+class SphericalCamera final : public Camera {
+ public:
+  static void describe(Description<SphericalCamera>& d) {
+    d.summary("A camera that sees in all directions, from one place. Such a picture can be the file of an EnvironmentEmission.",
+              "Clarberg 2008, Fast equal-area mapping of the (hemi)sphere using SIMD")
+        .group("Placement")
+        .member<&SphericalCamera::from>("from", "m", "where the camera is")
+        .member<&SphericalCamera::to>("to", "m", "a point in the middle of the picture")
+        .member<&SphericalCamera::up>("up", "1", "a direction that points upwards in the picture")
+        .member<&SphericalCamera::transform>(
+            "transform", "", "moves and turns the camera as from, to and up have placed it; may change with time")
+        .group("View")
+        .member<&SphericalCamera::mapping>(
+            "mapping", "",
+            "how directions lie in the picture; equirectangular: in longitude and latitude, with what is above along the top "
+            "edge, "
+            "for pictures twice as wide as high; equal_area: so that all pixels have the same solid angle, with what is behind "
+            "in the corners, for square pictures",
+            choices("equirectangular", "equal_area"));
+  }
+
+  std::optional<Place> place() const override { return Place{transform.written(shutter_open)(from), length(to - from)}; }
+  void prepare() override {
+    check_shutter(*this);
+    placement_.set(*this, from, to, up, transform);
+  }
+  void set_film(int width, int height) override {
+    width_ = width;
+    height_ = height;
+  }
+
+  Ray ray(Point2 film, Point2, float time) const override {
+    const Pose pose = placement_.at(time);
+    const double u = double(film.x) / width_, v = double(film.y) / height_;
+    Vector3 local;
+    if (mapping == Mapping::equal_area) {
+      const SquareDirection d = equal_area_direction({u, v});
+      local = Vector3{float(d.x), float(-d.y), float(d.z)};
+    } else {
+      const double longitude = 2 * exact_pi * (u - 0.5), theta = exact_pi * v, sine = std::sin(theta);
+      local = Vector3{float(sine * std::sin(longitude)), float(std::cos(theta)), float(sine * std::cos(longitude))};
+    }
+    Ray r;
+    r.origin = pose.position;
+    r.direction = pose.to_world(normalize(local));
+    r.time = time;
+    r.spread = std::sqrt(1 / (density_of(local) * float(width_) * float(height_)));  // the side of a square pixel
+    return r;
+  }
+
+  bool has_lens() const override { return false; }
+
+  std::optional<Point2> film_point(const Ray& r) const override { return film_of(local_direction(r)); }
+
+  std::optional<LensSample> sample_lens(const Point3& point, float time, Point2) const override {
+    const Pose pose = placement_.at(time);
+    const Vector3 to_point = point - pose.position;
+    LensSample s;
+    s.distance = length(to_point);
+    if (!(s.distance > 0)) return std::nullopt;
+    s.lens = pose.position;
+    s.direction = -1 / s.distance * to_point;
+    s.density = square(s.distance);
+    const Vector3 local = pose.to_camera(-s.direction);
+    s.importance = density_of(local);
+    s.film = film_of(local);
+    return s;
+  }
+
+  // A ray of a pinhole is taken to pass through it.
+  float importance(const Ray& r) const override { return density_of(local_direction(r)); }
+  CameraDensity density(const Ray& r) const override { return {1, density_of(local_direction(r))}; }
+
+  DoublePoint3 from{0, 0, 0}, to{0, 0, 1};
+  Vector3 up{0, 1, 0};
+  AnimatedTransform transform;
+  enum class Mapping : std::uint8_t { equirectangular, equal_area };
+  Mapping mapping = Mapping::equirectangular;
+
+ private:
+  Vector3 local_direction(const Ray& r) const { return placement_.at(r.time).to_camera(normalize(r.direction)); }
+
+  /// Of a unit direction in camera coordinates [1/sr].
+  float density_of(const Vector3& d) const {
+    if (mapping == Mapping::equal_area) return 1 / (4 * pi);
+    const float sine = std::hypot(d.x, d.z);
+    return float(1 / (2 * exact_pi * exact_pi)) / std::max(sine, 1e-12f);
+  }
+
+  Point2 film_of(const Vector3& d) const {
+    double u = 0, v = 0;
+    if (mapping == Mapping::equal_area) {
+      const SquarePlace p = equal_area_place({double(d.x), -double(d.y), double(d.z)});
+      u = p.x, v = p.y;
+    } else {
+      u = 0.5 + std::atan2(double(d.x), double(d.z)) / (2 * exact_pi);
+      v = std::atan2(std::hypot(double(d.x), double(d.z)), double(d.y)) / exact_pi;
+    }
+    // The far edges belong to no pixel.
+    return {std::min(float(u * width_), std::nextafter(float(width_), 0.0f)),
+            std::min(float(v * height_), std::nextafter(float(height_), 0.0f))};
+  }
+
+  Placement placement_;
+  int width_ = 1, height_ = 1;  // of the picture, in pixels
+};
+
+const Register<SphericalCamera> registered;
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,50 @@
+#pragma once
+// The sphere of directions as a square, in which equal areas are equal solid angles.
+
+#include <algorithm>
+#include <cmath>
+
+namespace etendue {
+
+// The mapping of Clarberg 2008, "Fast equal-area mapping of the (hemi)sphere using SIMD". Let a and b go from -1 to 1 across
+// and down the square. The upper half of the sphere, z > 0, is the diamond |a| + |b| < 1, the lower half its four corners,
+// folded outwards over the diamond's sides. With r^2 = 1 - |z| the part of its hemisphere that lies within a circle of latitude
+// is r^2, and so is the part of the diamond that lies within the diamond |a| + |b| = r; along its sides places go as angles do.
+
+/// A place from 0 to 1; x goes where the direction's x goes, y where its y does, and the middle is +z.
+struct SquarePlace {
+  double x, y;
+};
+struct SquareDirection {
+  double x, y, z;
+};
+
+inline SquarePlace equal_area_place(const SquareDirection& d) {
+  // Of z near 1, where 1 - |z| would lose digits, r^2 is (x^2 + y^2) / (1 + |z|).
+  const double r = std::sqrt((d.x * d.x + d.y * d.y) / (1 + std::abs(d.z)));
+  const double quarter = std::atan2(std::abs(d.y), std::abs(d.x)) * 0.63661977236758134308;  // of a quarter turn
+  double b = quarter * r, a = r - b;
+  if (d.z < 0) {
+    const double folded = 1 - a;
+    a = 1 - b;
+    b = folded;
+  }
+  return {(std::copysign(a, d.x) + 1) / 2, (std::copysign(b, d.y) + 1) / 2};
+}
+
+/// The unit direction of a place.
+inline SquareDirection equal_area_direction(const SquarePlace& p) {
+  const double a = 2 * p.x - 1, b = 2 * p.y - 1;
+  double u = std::abs(a), v = std::abs(b);
+  const bool upper = u + v <= 1;
+  if (!upper) {
+    const double folded = 1 - u;
+    u = 1 - v;
+    v = folded;
+  }
+  const double r = u + v, angle = r > 0 ? v / r * 1.57079632679489661923 : 0;
+  const double ring = r * std::sqrt(std::max(0.0, 2 - r * r)), z = 1 - r * r;  // the sine and the cosine of the latitude
+  return {std::copysign(ring * std::cos(angle), a), std::copysign(ring * std::sin(angle), b), upper ? z : -z};
+}
+
+}  // namespace etendue
