@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "color/planck.h"
 #include "etendue/describe/color.h"
 #include "pbrt_support.h"
@@ -100,6 +102,32 @@ TEST(PbrtMedium, CloudsAreSolidBelow) {
   };
   EXPECT_NEAR(through("0 1 5"), std::exp(-0.7), 0.01);
   EXPECT_NEAR(through("0 -2 5"), 1, 0.01);
+}
+
+// Eight cells of the file's density along z are 7.5, half a metre wide each; of the last half cell at either end, where they
+// fade to a half, 3/8 of a cell counts.
+TEST(PbrtMedium, NanoVdbIsTakenFromItsFile) {
+  const TemporaryFolder folder;
+  std::filesystem::copy_file(ETENDUE_SOURCE_DIR "/tests/volumes/three_grids.nvdb", folder / "three_grids.nvdb");
+  const auto through = [&](const std::string& file, const std::string& more) {
+    return import_text(folder, v4("LightSource \"infinite\" \"rgb L\" [1 1 1]\nAttributeBegin\nTranslate -11 -4 1 "
+                                  "MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"" +
+                                  file + "\" " + flat_nothing + more +
+                                  "\nAttributeEnd\nAttributeBegin\nMaterial \"interface\" MediumInterface \"m\" \"\" "
+                                  "Translate 0 0 5.5 Scale 10 10 4 Shape \"sphere\"\nAttributeEnd\n"));
+  };
+  const double depth = 7.5 * 0.5 * (7 + 2 * 0.375);
+  const std::string absorption = "\"spectrum sigma_a\" [300 .02 900 .02] \"float scale\" 2 ";
+  const Imported cold = through("three_grids.nvdb", absorption + "\"float Lescale\" 0"),
+                 hot = through("three_grids.nvdb", absorption + "\"float Lescale\" 3 \"float temperaturescale\" 5");
+  EXPECT_EQ(cold.told() + hot.told(), "");
+  EXPECT_EQ(part(object(cold, 1), "interior").class_info().name, "GridVolume");
+  EXPECT_NEAR(seen(cold, 65536).y, std::exp(-0.04 * depth), 0.01);
+  EXPECT_NEAR(seen(hot, 65536).y, std::exp(-0.04 * depth), 0.01);
+  const Component& glow = part(part(object(hot, 1), "interior"), "glow");
+  EXPECT_EQ(number(glow, "factor"), 3);
+  EXPECT_EQ(part(glow, "temperature").class_info().name, "RemapMap");
+  EXPECT_NE(through("none.nvdb", "").told().find("none.nvdb"), std::string::npos);
 }
 
 }  // namespace

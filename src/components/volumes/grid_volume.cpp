@@ -25,16 +25,18 @@ class GridVolume final : public ColoredVolume {
     d.group("Density")
         .member<&GridVolume::file>(
             "file", "",
-            "the densities: a volume as Mitsuba has them (.vol), or a NumPy array (.npy) of shape (nz, ny, nx); with three "
-            "channels they are RGB factors. None: the numbers below")
+            std::string("the densities: ") + grid_files + "; with three channels they are RGB factors. None: the numbers below")
+        .member<&GridVolume::grid_name>("grid_name", "", "which grid of a .nvdb; none: its first", when("file"))
         .member<&GridVolume::resolution>("resolution", "1", "how many densities there are along x, y and z", unless("file"))
         .member<&GridVolume::density>(
             "density", "1", "the densities, x running fastest, z slowest; three numbers each: RGB factors", unless("file"))
         .group("Place")
         .member<&GridVolume::placement>("placement", "",
                                         "from the unit cube of the grid to the coordinates of the object whose inside it fills")
-        .member<&GridVolume::file_box>(
-            "file_box", "", "whether the grid fills, instead of the unit cube, the box that its file names", when("file"))
+        .member<&GridVolume::file_box>("file_box", "",
+                                       "whether the grid fills, instead of the unit cube, the box that its file names; of a "
+                                       ".nvdb, its active values and half a cell around them",
+                                       when("file"))
         .member<&GridVolume::filter>("filter", "", "what is between the middles of cells", choices("nearest", "trilinear"))
         .member<&GridVolume::outside>(
             "outside", "",
@@ -57,7 +59,7 @@ class GridVolume final : public ColoredVolume {
       grid_ = grid_of_list(*this, "density", resolution, density);
       require_no_negative(*this, "density", grid_);
     } else {
-      grid_ = grid_of_file(*this, "file", file);
+      grid_ = grid_of_file(*this, "file", file, grid_name);
       require_no_negative(*this, "file", grid_);
       if (file_box) require_box(*this, "file", grid_);
     }
@@ -89,6 +91,7 @@ class GridVolume final : public ColoredVolume {
   Spectrum majorant(const Wavelengths& w) const override { return colors(w).extinction() * (largest_ * 1.00001f); }
 
   FilePath file, albedo_file;
+  std::string grid_name;
   std::vector<int> resolution{1, 1, 1};
   std::vector<float> density{1};
   AnimatedTransform placement;

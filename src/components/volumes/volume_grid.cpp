@@ -10,6 +10,7 @@
 #include "files/regular_file.h"
 #include "files/whole_file.h"
 #include "images/numpy_array.h"
+#include "nanovdb_file.h"
 
 namespace etendue {
 namespace {
@@ -135,17 +136,19 @@ void VolumeGrid::look_up(const Point3& p, VoxelFilter filter, Beyond beyond, flo
   }
 }
 
-VolumeGrid read_volume_grid(const std::string& path) {
-  VolumeGrid grid = path.ends_with(".npy") ? read_npy(path) : read_vol(path);
+VolumeGrid read_volume_grid(const std::string& path, const std::string& name) {
+  if (path.ends_with(".vdb"))
+    throw Error("files of OpenVDB are not read here, but those of NanoVDB are, which nanovdb_convert makes of them");
+  VolumeGrid grid = named_nanovdb(path) ? read_nanovdb(path, name) : path.ends_with(".npy") ? read_npy(path) : read_vol(path);
   for (const float v : grid.values)
     if (!std::isfinite(v)) throw Error(fmt::format("it holds {}, which is no number", v));
   return grid;
 }
 
-VolumeGrid grid_of_file(const Component& of, const char* member, const FilePath& path) {
+VolumeGrid grid_of_file(const Component& of, const char* member, const FilePath& path, const std::string& name) {
   const std::string resolved = path.resolved();
   try {
-    return read_volume_grid(resolved);
+    return read_volume_grid(resolved, name);
   } catch (const Error& error) {
     of.fail(member, "'" + resolved + "': " + error.what());
   } catch (const std::bad_alloc&) {

@@ -27,14 +27,18 @@ struct VolumeGrid {
   void look_up(const Point3&, VoxelFilter, Beyond, float* out) const;
 };
 
-/// Reads a volume in Mitsuba's format (.vol) or a NumPy array (.npy) of shape (nz, ny, nx) or (nz, ny, nx, 3). Throws Error
-/// with the reason alone.
-VolumeGrid read_volume_grid(const std::string& path);
+/// Reads a volume in Mitsuba's format (.vol), a NumPy array (.npy) of shape (nz, ny, nx) or (nz, ny, nx, 3), or a grid of
+/// NanoVDB (.nvdb) by its name, the first when that is empty. Throws Error with the reason alone.
+VolumeGrid read_volume_grid(const std::string& path, const std::string& name = {});
+/// What is said of such files.
+inline constexpr const char* grid_files =
+    "a volume as Mitsuba has them (.vol), a NumPy array (.npy) of shape (nz, ny, nx), or NanoVDB (.nvdb; of an OpenVDB file, "
+    "nanovdb_convert makes one)";
 
 // What components have grids from. Errors are of their members.
 
 /// Of a member that names a file.
-VolumeGrid grid_of_file(const Component&, const char* member, const FilePath&);
+VolumeGrid grid_of_file(const Component&, const char* member, const FilePath&, const std::string& name = {});
 /// Of a list of numbers in the member, one channel or three, and how many there are along x, y and z.
 VolumeGrid grid_of_list(const Component&, const char* member, const std::vector<int>& resolution,
                         const std::vector<float>& values);

@@ -113,9 +113,7 @@ void make_medium(Reader& reader, const std::string& name, Parameters&& p) {
   } else if (type == "cloud") {
     make_cloud(reader, name, p);
   } else if (type == "nanovdb") {
-    reader.importing.inexact(fmt::format("a medium of type '{}' is left out: there is none where it would be", type), p.at);
-    p.forget();
-    reader.media[name] = nullptr;
+    make_nanovdb(reader, name, p);
   } else {
     throw Error(fmt::format("there is no medium '{}'{}", type,
                             suggestion(type, {"homogeneous", "heterogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"})),

@@ -15,6 +15,7 @@ void place_medium(Reader&, const std::string& name, const Ref<Component>& medium
 // media_in_space.cpp: media that differ from place to place.
 void make_grid(Reader&, const std::string& name, Parameters&);
 void make_rgb_grid(Reader&, const std::string& name, Parameters&);
+void make_nanovdb(Reader&, const std::string& name, const Parameters&);
 void make_cloud(Reader&, const std::string& name, const Parameters&);
 
 }  // namespace etendue::pbrt

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "components/volumes/nanovdb_file.h"
 #include "media.h"
 
 namespace etendue::pbrt {
@@ -61,6 +64,29 @@ Color coefficient(Reader& reader, const Parameters& p, const char* name, const s
                                : flat_spectrum(1);
 }
 
+/// sigma_a and sigma_s of v4, times "scale".
+void set_scaled_coefficients(Reader& reader, Component& medium, const Parameters& p) {
+  const double scale = p.number("scale", 1);
+  for (const auto& [member, parameter] : {std::pair("absorption", "sigma_a"), {"scattering", "sigma_s"}}) {
+    const Color color = coefficient(reader, p, parameter, {1, 1, 1});
+    set_member(medium, member, scale == 1 ? color : scaled_spectrum(scale, color), p.place(parameter));
+  }
+}
+
+/// What is taken off a grid's temperatures, and what they are then multiplied by.
+std::pair<double, double> temperatures_of(const Parameters& p) {
+  return {p.number("temperatureoffset", p.number("temperaturecutoff", 0)), p.number("temperaturescale", 1)};
+}
+
+/// pbrt's black bodies have a highest value of 1.
+Ref<Component> blackbody(const Reader& reader, const Ref<Component>& temperature, double brightness, Location at) {
+  const Ref<Component> glow = reader.make("BlackbodyMap", at);
+  set_member(*glow, "temperature", temperature, at);
+  set_member(*glow, "factor", brightness, at);
+  set_member(*glow, "normalized", true, at);
+  return glow;
+}
+
 /// The radiance that matter of a grid goes to where it is thick, which is pbrt's Le: by its temperatures, or one spectrum times
 /// a grid. Null: it has no light of this kind.
 Ref<Component> glow_of(Reader& reader, const Grid& grid, Parameters& p) {
@@ -73,13 +99,9 @@ Ref<Component> glow_of(Reader& reader, const Grid& grid, Parameters& p) {
   const double brightness = factors.empty() ? light_scale(reader, p) : reader.exposure;
   if (!temperatures.empty()) {
     if (light) throw Error("a medium has either 'Le' or a grid of temperatures", light->at);
-    const double offset = p.number("temperatureoffset", p.number("temperaturecutoff", 0)),
-                 factor = p.number("temperaturescale", 1);
+    const auto [offset, factor] = temperatures_of(p);
     for (double& t : temperatures) t = (t - offset) * factor;
-    glow = reader.make("BlackbodyMap", at);
-    set_member(*glow, "temperature", grid.map(reader, std::move(temperatures), p, "temperature"), at);
-    set_member(*glow, "factor", brightness, at);
-    set_member(*glow, "normalized", true, at);
+    glow = blackbody(reader, grid.map(reader, std::move(temperatures), p, "temperature"), brightness, at);
   } else if (light) {
     glow = reader.make("ConstantMap", at);
     const Color color = spectrum_of(reader, p, *light, Use::light);
@@ -149,6 +171,48 @@ void make_rgb_grid(Reader& reader, const std::string& name, Parameters& p) {
   place_medium(reader, name, medium, grid.placed(reader), p.place("p1"));
 }
 
+// Densities of a file, which lie where the file says, and light by its temperatures when it has some.
+void make_nanovdb(Reader& reader, const std::string& name, const Parameters& p) {
+  const Location at = p.place("filename");
+  const std::string path = reader.importing.file(p.text("filename"), at, p.folder);
+  std::vector<std::string> grids;
+  try {
+    grids = nanovdb_grids(path);
+  } catch (const Error& e) {
+    throw Error("'" + path + "': " + e.what(), at);
+  }
+  if (!std::ranges::count(grids, "density")) throw Error("'" + path + "' holds no grid 'density'", at);
+  const auto read_grid = [&](Component& part, const char* grid) {
+    set_member(part, "file", FilePath{path, {}}, at);
+    set_member(part, "grid_name", grid, at);
+    set_member(part, "file_box", true, at);
+    set_member(part, "outside", "empty", at);
+  };
+  const bool hot = std::ranges::count(grids, "temperature") > 0 && light_scale(reader, p) > 0;
+  const Ref<Component> medium = reader.make(hot ? "MapVolume" : "GridVolume", p.at, name);
+  if (hot) {
+    const Ref<Component> density = reader.make("GridMap", at), values = reader.make("GridMap", at);
+    read_grid(*density, "density");
+    read_grid(*values, "temperature");
+    Ref<Component> temperature = values;
+    if (const auto [offset, factor] = temperatures_of(p); offset != 0 || factor != 1) {
+      temperature = reader.make("RemapMap", at);
+      set_member(*temperature, "input", values, at);
+      set_member(*temperature, "from", Numbers{{offset, offset + 1}, 1, Dimension::none}, at);
+      set_member(*temperature, "to", Numbers{{0, factor}, 1, Dimension::none}, at);
+      set_member(*temperature, "clamped", false, at);
+    }
+    set_member(*medium, "density", density, at);
+    set_member(*medium, "glow", blackbody(reader, temperature, light_scale(reader, p), at), at);
+  } else {
+    p.ignore({"temperatureoffset", "temperaturecutoff", "temperaturescale"});
+    read_grid(*medium, "density");
+  }
+  set_scaled_coefficients(reader, *medium, p);
+  set_member(*medium, "anisotropy", p.number("g", 0), p.at);
+  place_medium(reader, name, medium, reader.state.ctm[0], p.at);
+}
+
 void make_cloud(Reader& reader, const std::string& name, const Parameters& p) {
   const Location at = p.at;
   const Ref<Component> cloud = reader.make("CloudMap", at), medium = reader.make("MapVolume", at, name);
@@ -157,11 +221,7 @@ void make_cloud(Reader& reader, const std::string& name, const Parameters& p) {
   set_member(*cloud, "frequency", p.number("frequency", 5), p.place("frequency"));
   set_member(*cloud, "wispiness", p.number("wispiness", 1), p.place("wispiness"));
   set_member(*medium, "density", cloud, at);
-  const double scale = p.number("scale", 1);
-  for (const auto& [member, parameter] : {std::pair("absorption", "sigma_a"), {"scattering", "sigma_s"}}) {
-    const Color color = coefficient(reader, p, parameter, {1, 1, 1});
-    set_member(*medium, member, scale == 1 ? color : scaled_spectrum(scale, color), p.place(parameter));
-  }
+  set_scaled_coefficients(reader, *medium, p);
   set_member(*medium, "anisotropy", p.number("g", 0), at);
   const auto corner = [&](const char* member, const char* parameter, const DoublePoint3& otherwise) {
     const DoublePoint3 c = p.point(parameter, otherwise);

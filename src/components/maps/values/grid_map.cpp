@@ -23,8 +23,8 @@ class GridMap final : public ObjectMap, public RgbSource, public BoundedMap {
     d.group("Values")
         .member<&GridMap::file>(
             "file", "",
-            "the values: a volume as Mitsuba has them (.vol), or a NumPy array (.npy) of shape (nz, ny, nx); "
-            "with three channels they are RGB. None: the numbers below")
+            std::string("the values: ") + grid_files + "; with three channels they are RGB. None: the numbers below")
+        .member<&GridMap::grid_name>("grid_name", "", "which grid of a .nvdb; none: its first", when("file"))
         .member<&GridMap::resolution>("resolution", "1", "how many cells there are along x, y and z", unless("file"))
         .member<&GridMap::values>("values", "1",
                                   "their values, x running fastest, z slowest: a number for each, or red, green and blue",
@@ -32,8 +32,10 @@ class GridMap final : public ObjectMap, public RgbSource, public BoundedMap {
         .member<&GridMap::color_space>("color_space", "", "primaries and white of RGB", rgb_space_names())
         .group("Place")
         .member<&GridMap::placement>("placement", "", "from the unit cube of the grid to the object's coordinates")
-        .member<&GridMap::file_box>(
-            "file_box", "", "whether the grid fills, instead of the unit cube, the box that its file names", when("file"))
+        .member<&GridMap::file_box>("file_box", "",
+                                    "whether the grid fills, instead of the unit cube, the box that its file names; of a "
+                                    ".nvdb, its active values and half a cell around them",
+                                    when("file"))
         .member<&GridMap::filter>("filter", "", "what is between the middles of cells", choices("nearest", "trilinear"))
         .member<&GridMap::outside>("outside", "",
                                    "what lies outside the cube; clamp: as at its border; repeat and mirror: the grid again; "
@@ -43,7 +45,7 @@ class GridMap final : public ObjectMap, public RgbSource, public BoundedMap {
 
   void prepare() override {
     space_ = &rgb_space(color_space);
-    grid_ = file.empty() ? grid_of_list(*this, "values", resolution, values) : grid_of_file(*this, "file", file);
+    grid_ = file.empty() ? grid_of_list(*this, "values", resolution, values) : grid_of_file(*this, "file", file, grid_name);
     if (file_box && !file.empty()) require_box(*this, "file", grid_);
     if (!placement.valid()) fail("placement", "must be finite, and have an inverse");
     largest_ = grid_.largest();
@@ -67,6 +69,7 @@ class GridMap final : public ObjectMap, public RgbSource, public BoundedMap {
   void rgb(const SurfacePoint& p, float out[3]) const override { look_up(p, out); }
 
   FilePath file;
+  std::string grid_name;
   std::vector<int> resolution{1, 1, 1};
   std::vector<float> values{1};
   std::string color_space = "srgb";
