@@ -45,6 +45,7 @@ def readers():
         **models,
         "ply": ([seeds.ply(kind) for kind in ("ascii", "binary_little_endian", "binary_big_endian")] + [seed_scenes.PLY], {}),
         "serialized": ([seed_scenes.serialized_mesh(*kind) for kind in ((4, 0x1001), (4, 0x200B), (3, 0x1012))], {}),
+        "nvdb": ([seed_scenes.nanovdb()], {}),
         "vol": ([seed_scenes.volume(1), seed_scenes.volume(3), seed_scenes.volume(1, 3)], {}),
         "npy": ([seeds.numpy_array((2, 3, 4)), seeds.numpy_array((2, 3, 4, 3), "f8")], {}),
     }

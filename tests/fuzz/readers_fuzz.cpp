@@ -110,6 +110,7 @@ constexpr Reader readers[] = {
     {"stl", "input.stl", "input.stl", import},     {"off", "input.off", "input.off", import},
     {"ply", "input.ply", "input.ply", import},     {"serialized", "input.serialized", "input.serialized", mesh},
     {"vol", "input.vol", "input.vol", volume},     {"npy", "input.npy", "input.npy", volume},
+    {"nvdb", "input.nvdb", "input.nvdb", volume},
 };
 const Reader* reader = nullptr;
 

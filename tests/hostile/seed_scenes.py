@@ -3,6 +3,7 @@
 `mitsuba_scenes()` and `pbrt_scenes()` give (what it is, text); `beside()` gives the files that they name, all but the measured
 material "brdf.bsdf".
 """
+import pathlib
 import struct
 import zlib
 
@@ -29,6 +30,14 @@ def volume(channels, encoding=1):
     return header + (struct.pack(f"<{count}f", *((i % 5) / 4 for i in range(count))) if encoding == 1 else bytes(range(count)))
 
 
+def nanovdb():
+    """One grid of a file that OpenVDB's nanovdb_convert wrote, no longer compressed, so that damage gets behind the checksum."""
+    data = (pathlib.Path(__file__).parent.parent / "volumes" / "rounded_fp8.nvdb").read_bytes()
+    entry = data[16:16 + 176 + struct.unpack_from("<I", data, 16 + 136)[0]]
+    body = zlib.decompress(data[16 + len(entry) + 8:])
+    return data[:14] + b"\0\0" + entry[:8] + struct.pack("<Q", len(body)) + entry[16:] + body
+
+
 OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n"
 PLY = (b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float vertex_mark\n"
        b"element face 1\nproperty list uchar int vertex_indices\nproperty float face_tone\nend_header\n"
@@ -46,7 +55,7 @@ def square_picture():
 def beside():
     picture = next(data for name, ending, data in seed_images.small_images() if ending == "png")
     return {"picture.png": picture, "square.png": square_picture(), "mesh.obj": OBJ, "mesh.ply": PLY, "mesh.serialized": serialized_mesh(), "cloud.vol": volume(1),
-            "colours.vol": volume(3), "paint.spd": b"400 0.3\n500 0.7\n700 0.1\n", "fibres.txt": b"0 0 0 .1\n1 0 0 .1\n1 1 0 .1\n1 1 1 .1\n"}
+            "colours.vol": volume(3), "smoke.nvdb": nanovdb(), "paint.spd": b"400 0.3\n500 0.7\n700 0.1\n", "fibres.txt": b"0 0 0 .1\n1 0 0 .1\n1 1 0 .1\n1 1 1 .1\n"}
 
 
 # ---- Mitsuba --------------------------------------------------------------------------------------------------------------
@@ -215,6 +224,9 @@ LightSource "goniometric" "string filename" "picture.png" LightSource "infinite"
 LightSource "distant" "point3 from" [ 0 1 0 ] LightSource "spot" "float coneangle" 40 "float conedeltaangle" 5
 MakeNamedMedium "smoke" "string type" "uniformgrid" "integer nx" 2 "integer ny" 1 "integer nz" 1 "float density" [ .5 1 ] "float g" .3
 MakeNamedMedium "milk" "string preset" "Wholemilk" "string type" "homogeneous" MakeNamedMedium "cloud" "string type" "cloud"
+MakeNamedMedium "colours" "string type" "rgbgrid" "integer nx" 2 "rgb sigma_a" [ .1 .2 .3 1 2 3 ] "rgb Le" [ 1 0 0 0 1 0 ] "float Lescale" 2
+MakeNamedMedium "fire" "string type" "uniformgrid" "integer nz" 2 "float density" [ 1 1 ] "float temperature" [ 9 20 ] "float Lescale" [ 1 2 ]
+  "float temperaturescale" 100 "float temperatureoffset" 5 MakeNamedMedium "file" "string type" "nanovdb" "string filename" "smoke.nvdb"
 AttributeBegin Material "interface" MediumInterface "smoke" "milk" Shape "sphere" "float zmin" -.5 "float zmax" .5 AttributeEnd
 Material "coateddiffuse" "texture reflectance" "mixed" "rgb albedo" [ .1 .2 .3 ] "float g" .2 "float thickness" .1
 Shape "plymesh" "string filename" "mesh.ply" "texture alpha" "four" "texture displacement" "planar"

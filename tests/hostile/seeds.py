@@ -181,6 +181,9 @@ def tables():
                                 'extinction: 1 } }')}
     for channels, encoding in ((1, 1), (3, 1), (1, 3)):
         yield Seed(f"vol {channels} {encoding}", "input.vol", seed_scenes.volume(channels, encoding), [RENDER], cloud)
+    smoke = {"scene.etd": scene('Sphere { shader: PassThrough {}, interior: MapVolume { absorption: GridMap { file: "input.nvdb", '
+                                'file_box: true } } }')}
+    yield Seed("nvdb", "input.nvdb", seed_scenes.nanovdb(), [RENDER], smoke)
     for kind in ("f4", "f8"):
         yield Seed("npy " + kind, "input.npy", numpy_array((3, 4, 3), kind), [["image", "info", "input.npy"]])
     yield Seed("merl", "input.binary", merl(), [RENDER], shading('MerlShader { file: "input.binary" }'))
