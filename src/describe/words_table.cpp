@@ -65,7 +65,7 @@ constexpr ForeignWord classes[] = {
     {"", "directional", mitsuba, "'Distant', with 'emission' 'DiffuseEmission'"},
     {"", "distantlight", pbrt, "'Distant', with 'emission' 'DiffuseEmission'"},
     {"", "directionalarea", mitsuba, "'CollimatedEmission', as the 'emission' of a 'SceneObject'"},
-    {"", "goniometric", pbrt, "'Point', with 'emission' 'IesEmission'"},
+    {"", "goniometric", pbrt, "'Point', with 'emission' 'GoniometricEmission'"},
     {"", "projector", mitsuba, "'Point', with 'emission' 'ProjectorEmission'"},
     {"", "projection", pbrt, "'Point', with 'emission' 'ProjectorEmission'"},
     // surfaces

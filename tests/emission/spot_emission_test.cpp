@@ -30,14 +30,18 @@ constexpr Cone cones[] = {{20, 30},
                           {15, 20, "square"},
                           {40, 40, "square"},
                           {0.05, 0.1, "square"},
-                          {0, 180, "square"}};
+                          {0, 180, "square"},
+                          {15, 20, "quartic"},
+                          {40, 40, "quartic"},
+                          {0, 180, "quartic"}};
 
 /// The integral of the profile over all directions: for a linear edge 2 pi (1 - (sin b - sin a) / (b - a)), by parts; else the
-/// mean over the edge of t^2 (3 - 2 t), 1/2, or of t^2, 1/3.
+/// mean over the edge of t^2 (3 - 2 t), 1/2, of t^2, 1/3, or of t^4, 1/5.
 double solid_angle(const Cone& c) {
   const double a = c.inner * M_PI / 180, b = c.outer * M_PI / 180;
   const double h = one_minus_cosine(c.inner), beyond = one_minus_cosine(c.outer) - h;
-  if (c.edge != "linear" || a == b) return 2 * M_PI * (h + beyond / (c.edge == "square" ? 3 : 2));
+  const double parts = c.edge == "square" ? 3 : c.edge == "quartic" ? 5 : 2;
+  if (c.edge != "linear" || a == b) return 2 * M_PI * (h + beyond / parts);
   return 2 * M_PI * (1 - (std::sin(b) - std::sin(a)) / (b - a));
 }
 
@@ -76,15 +80,17 @@ TEST(SpotEmission, ALinearEdgeFallsWithTheAngle) {
   }
 }
 
-TEST(SpotEmission, ASquareEdgeFallsWithTheSquare) {
-  const Ref<SceneObject> lamp = prepared_as<SceneObject>(
-      "Point { emission: SpotEmission { radiance: 3, inner_angle: 10, outer_angle: 60, edge: square } }");
-  const SurfacePoint p = lamp->sample_area({}, 0).point;
-  const double inner = std::cos(10 * M_PI / 180), outer = 0.5;
-  for (const double t : {0.0, 0.25, 0.5, 0.9, 1.0}) {
-    const double c = outer + t * (inner - outer);
-    const Vector3 d{float(std::sqrt(1 - c * c)), 0, float(c)};
-    EXPECT_NEAR(double(lamp->emission->radiance(p, d, wavelengths())[0]), 3 * t * t, 1e-5) << t;
+TEST(SpotEmission, EdgesFallWithPowers) {
+  for (const auto& [edge, power] : {std::pair("square", 2), std::pair("quartic", 4)}) {
+    const Ref<SceneObject> lamp = prepared_as<SceneObject>(
+        std::string("Point { emission: SpotEmission { radiance: 3, inner_angle: 10, outer_angle: 60, edge: ") + edge + " } }");
+    const SurfacePoint p = lamp->sample_area({}, 0).point;
+    const double inner = std::cos(10 * M_PI / 180), outer = 0.5;
+    for (const double t : {0.0, 0.25, 0.5, 0.9, 1.0}) {
+      const double c = outer + t * (inner - outer);
+      const Vector3 d{float(std::sqrt(1 - c * c)), 0, float(c)};
+      EXPECT_NEAR(double(lamp->emission->radiance(p, d, wavelengths())[0]), 3 * std::pow(t, power), 1e-5) << edge << t;
+    }
   }
 }
 

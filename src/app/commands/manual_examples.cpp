@@ -176,7 +176,8 @@ std::string lamp_objects(const ClassInfo& info, const EmissionShader& emission) 
         "Environment {{ emission: part }}\n        Rectangle {{ corner: [-8, -8, 0] m, edge_u: [16, 0, 0] m, edge_v: "
         "[0, 16, 0] m, shader: Lambertian {{ color: 0.5 }} }}\n        Sphere {{ centre: [0, 0, 1] m, shader: "
         "Conductor {{}} }}");
-  if (info.name == "IesEmission") return std::string("Point { position: [0, 0.3, 2.2] m, emission: part }") + walls;
+  if (info.name == "IesEmission" || info.name == "GoniometricEmission")
+    return std::string("Point { position: [0, 0.3, 2.2] m, emission: part }") + walls;
   for (const char* name : {"ProjectorEmission", "SpotEmission"})
     if (info.name == name)
       return std::string("Point { transform: translate(0, -1.5 m, 2.2 m) * rotate(-112 deg, \"x\"), emission: part }") + walls;

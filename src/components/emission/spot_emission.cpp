@@ -12,7 +12,8 @@ constexpr double pi_exactly = 3.14159265358979323846;
 // where h_i and h_o belong to the inner and outer angle. As t^2 (3 - 2t) has the mean 1/2, the solid angle it counts for is
 //     Omega = integral of f dw = 2 pi (h_i + (h_o - h_i) / 2) = pi (h_i + h_o).
 //
-// A square edge falls as f = t^2, with the mean 1/3 and t^3 for the distribution of its light (glTF's KHR_lights_punctual).
+// A square edge falls as f = t^2, with the mean 1/3 and t^3 for the distribution of its light (glTF's KHR_lights_punctual), a
+// quartic one as t^4, with 1/5 and t^5 (pbrt until version 3).
 //
 // A linear edge falls with the angle itself, f = (theta_o - theta) / (theta_o - theta_i), as lamps of some other renderers do;
 // by parts,  Omega = 2 pi (1 - (sin theta_o - sin theta_i) / (theta_o - theta_i)).
@@ -47,8 +48,8 @@ class SpotEmission final : public AxialEmission {
                                             Range{0, 180, true})
         .member<&SpotEmission::edge>("edge", "",
                                      "how light falls off between the angles; smooth: as t^2 (3 - 2t) with t linear in the "
-                                     "cosine; linear: linearly in the angle; square: as t^2",
-                                     choices("smooth", "linear", "square"))
+                                     "cosine; linear: linearly in the angle; square: as t^2; quartic: as t^4",
+                                     choices("smooth", "linear", "square", "quartic"))
         .member<&SpotEmission::picture>(
             "picture", "1",
             "what the light is multiplied by, a transmittance, such as a slide's; (u, v) = (1/2, 1/2) lies in the axis, u "
@@ -68,7 +69,9 @@ class SpotEmission final : public AxialEmission {
     h_inner_ = one_minus_cosine(inner_angle);
     h_outer_ = one_minus_cosine(outer_angle);
     if (!(h_outer_ > 0)) fail("outer_angle", "is too small to count with");
-    solid_angle_ = edge == Edge::square ? 2 * pi * (2 * h_inner_ + h_outer_) / 3 : pi * (h_inner_ + h_outer_);
+    solid_angle_ = edge == Edge::square    ? 2 * pi * (2 * h_inner_ + h_outer_) / 3
+                   : edge == Edge::quartic ? 2 * pi * (4 * h_inner_ + h_outer_) / 5
+                                           : pi * (h_inner_ + h_outer_);
     if (edge == Edge::linear && outer_angle > inner_angle) prepare_linear_edge();
     inner_share_ = 2 * pi * h_inner_ / solid_angle_;
     if (picture) prepare_picture();
@@ -96,7 +99,7 @@ class SpotEmission final : public AxialEmission {
     return all * sum / float(side * side);
   }
 
-  enum class Edge : std::uint8_t { smooth, linear, square };
+  enum class Edge : std::uint8_t { smooth, linear, square, quartic };
   float inner_angle = 20, outer_angle = 30;
   Edge edge = Edge::smooth;
   Ref<ObjectMap> picture;
@@ -107,6 +110,7 @@ class SpotEmission final : public AxialEmission {
     if (h >= h_outer_) return 0;
     if (edge == Edge::linear) return float((theta_outer_ - angle(h)) / (theta_outer_ - theta_inner_));
     const float t = (h_outer_ - h) / (h_outer_ - h_inner_);
+    if (edge == Edge::quartic) return square(t * t);
     return edge == Edge::square ? t * t : t * t * (3 - 2 * t);
   }
   double solid_angle() const override { return double(solid_angle_); }
@@ -117,7 +121,7 @@ class SpotEmission final : public AxialEmission {
     if (u < inner_share_) return h_inner_ * (u / inner_share_);
     const float v = (1 - u) / (1 - inner_share_);  // inner_share_ = 1 lies beyond all u
     if (edge == Edge::linear) return draw_linear_edge(double(v));
-    float t = std::cbrt(v);
+    float t = edge == Edge::quartic ? std::pow(v, 0.2f) : std::cbrt(v);
     for (int i = 0; edge == Edge::smooth && i < 6 && t > 0; ++i) t -= (t * t * t * (2 - t) - v) / (t * t * (6 - 4 * t));
     return h_outer_ - clamp(t, 0, 1) * (h_outer_ - h_inner_);
   }

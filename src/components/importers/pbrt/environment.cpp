@@ -90,7 +90,10 @@ void make_environment(Reader& reader, const Parameters& p) {
     set_member(*emission, "scale", scale, at);
   }
   if (p.has("portal"))
-    reader.importing.inexact("the portal of an environment is left out: its light comes from everywhere", p.place("portal"));
+    reader.importing.inexact(
+        "the portal is left out: the environment shines in wherever the scene is open, as it does in pbrt in a room that is "
+        "closed but for the portal",
+        p.place("portal"));
   const Ref<Component> object = reader.make("Environment", at);
   set_member(*object, "transform", directions_only(reader, to_light(!v3), at), at);
   set_emission(*object, emission, at);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "images/linear_image.h"
 #include "reader.h"
 
 namespace etendue::pbrt {
@@ -86,7 +87,7 @@ void spot(Reader& reader, const Parameters& p) {
   set_member(*emission, "axis", way(from, p.point("to", {0, 0, 1}), p), p.at);
   set_member(*emission, "inner_angle", inner, p.at);
   set_member(*emission, "outer_angle", outer, p.at);
-  if (reader.version == 3) reader.importing.inexact("a spot's edge falls off as t^2 (3 - 2 t), not as v3's t^4", p.at);
+  if (reader.version == 3) set_member(*emission, "edge", "quartic", p.at);
   const Ref<Component> object = placed(reader, "Point", p);
   set_member(*object, "position", list(from), p.at);
   add_light(reader, object, emission, p.at);
@@ -119,12 +120,43 @@ void projection(Reader& reader, const Parameters& p) {
   add_light(reader, placed(reader, "Point", p, Transform::rotate(pi, {0, 0, 1})), emission, p.at);
 }
 
+/// Whether the image of a light has other colours than greys; those that cannot be read are told elsewhere.
+bool colored(const FilePath& file) {
+  try {
+    const LinearImage image = read_linear_image(file.resolved(), automatic_transfer);
+    for (size_t i = 0; i + 2 < image.rgb.size(); i += 3)
+      if (image.rgb[i] != image.rgb[i + 1] || image.rgb[i] != image.rgb[i + 2]) return true;
+  } catch (const Error&) {
+  }
+  return false;
+}
+
+// v4's image is a square of equal areas whose middle is +y, with x to the right and z downwards, of texels without anything
+// between; only the mean of its channels counts. v3's is in longitude, from +x over +z, and latitude, from +y.
 void goniometric(Reader& reader, const Parameters& p) {
-  p.ignore({"mapname", "filename"});
-  reader.importing.inexact("a goniometric light shines alike in all directions here: its image is not read", p.at);
-  const Ref<Component> emission = reader.make("DiffuseEmission", p.at);
-  set_member(*emission, "radiance", light_of(reader, p, "I", power_factor(p, 4 * pi)), p.at);
-  add_light(reader, placed(reader, "Point", p), emission, p.at);
+  const bool v3 = reader.version == 3;
+  const char* name = p.has("mapname") ? "mapname" : "filename";
+  const double power = p.number("power", -1);
+  const std::optional<FilePath> file = p.has(name) ? image_file(reader, p, name) : std::nullopt;
+  if (!file) {
+    const Ref<Component> emission = reader.make("DiffuseEmission", p.at);
+    set_member(*emission, "radiance", light_of(reader, p, "I", power_factor(p, 4 * pi)), p.at);
+    add_light(reader, placed(reader, "Point", p), emission, p.at);
+    return;
+  }
+  const Ref<Component> emission = reader.make("GoniometricEmission", p.at);
+  set_member(*emission, "file", *file, p.place(name));
+  set_member(*emission, "radiance", light_of(reader, p, "I"), p.at);
+  if (!v3) {
+    set_member(*emission, "layout", "equal_area", p.at);
+    set_member(*emission, "interpolation", "nearest", p.at);
+    if (power > 0) set_member(*emission, "luminous_flux", power * p.number("scale", 1) * luminous_unit * reader.exposure, p.at);
+  } else if (colored(*file)) {
+    reader.importing.inexact("of the image of a goniometric light the mean of red, green and blue counts", p.place(name));
+  }
+  using M = Transform::DoubleMatrix;
+  const Transform inner = v3 ? Transform(M{0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0}) : Transform::scale({1, 1, -1});
+  add_light(reader, placed(reader, "Point", p, inner), emission, p.at);
 }
 
 }  // namespace
