@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "etendue/describe/color.h"
+#include "etendue/volume_shader.h"
 #include "mitsuba_support.h"
 #include "support/image_file.h"
 
@@ -272,6 +273,41 @@ TEST(MitsubaMedium, AGridStandsInTheWorldAndNotInItsObject) {
     EXPECT_EQ(placed->still().exact(), expected.exact());
   else
     EXPECT_EQ(placement.as<Transform>()->exact(), expected.exact());
+}
+
+// Albedos of another place than the densities': each grid is looked up where it stands.
+TEST(MitsubaMedium, AlbedosLieWhereTheirGridSays) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, std::initializer_list<float> values) {
+    std::string grid = "VOL\3";
+    for (const std::int32_t number : {1, int(values.size()), 1, 1, 1}) grid.append(reinterpret_cast<const char*>(&number), 4);
+    for (const float number : {0.f, 0.f, 0.f, 1.f, 1.f, 1.f}) grid.append(reinterpret_cast<const char*>(&number), 4);
+    for (const float number : values) grid.append(reinterpret_cast<const char*>(&number), 4);
+    folder.write(name, grid);
+  };
+  write("density.vol", {0.5f});
+  write("albedo.vol", {0.25f, 0.75f});
+  const Imported i = import_text(
+      folder,
+      scene(sensor() + integrator(2, "volpath") +
+            "<shape type=\"cube\"><transform name=\"to_world\"><translate z=\"3\"/></transform><bsdf type=\"null\"/>"
+            "<medium name=\"interior\" type=\"heterogeneous\"><float name=\"scale\" value=\"6\"/>"
+            "<volume type=\"gridvolume\" name=\"sigma_t\"><string name=\"filename\" value=\"density.vol\"/>"
+            "<transform name=\"to_world\"><scale value=\"4\"/></transform></volume>"
+            "<volume type=\"gridvolume\" name=\"albedo\"><string name=\"filename\" value=\"albedo.vol\"/>"
+            "<string name=\"filter_type\" value=\"nearest\"/><transform name=\"to_world\"><translate x=\"1\"/></transform>"
+            "</volume></medium></shape>"));
+  ASSERT_EQ(i.told(), "");
+  const Ref<Component> interior = *get(i.object(0), "interior").as<Ref<Component>>();
+  prepare_tree(*interior);
+  const auto& volume = dynamic_cast<const VolumeShader&>(*interior);
+  // In the world the border of the two albedos is at x = 1.5; the object's coordinates begin at z = 3.
+  for (const auto& [x, albedo] : {std::pair(1.25f, 0.25f), std::pair(1.75f, 0.75f)}) {
+    const VolumeCoefficients c = volume.coefficients({x, 0.5f, 0.5f - 3}, 0, Wavelengths());
+    EXPECT_NEAR(c.extinction()[0], 3, 1e-5f);
+    EXPECT_NEAR(c.scattering[0], 3 * albedo, 1e-5f);
+  }
+  EXPECT_EQ(volume.coefficients({-0.1f, 0.5f, -2.5f}, 0, Wavelengths()).extinction()[0], 0);
 }
 
 TEST(MitsubaSurface, TheTwoSidesOfTwosided) {

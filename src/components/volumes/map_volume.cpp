@@ -22,8 +22,8 @@ class MapVolume final : public PhasedVolume {
   static void describe(Description<MapVolume>& d) {
     d.summary(
         "A medium whose coefficients are maps, looked up at points of space (GridMap, CloudMap, noise, formulas). "
-        "Maps over surface coordinates see u = v = 0, the world's coordinates are those of "
-        "`placement`, and no footprint is averaged over.");
+        "Maps over surface coordinates see u = v = 0; what maps "
+        "take for the coordinates of the whole scene are those of the object here; no footprint is averaged over.");
     d.group("Density")
         .member<&MapVolume::density>("density", "1", "what all coefficients are multiplied by; below 0 it is 0",
                                      Meaning::number)

@@ -123,6 +123,7 @@ class Converter {
   Ref<Component> homogeneous(const Element&);
   Ref<Component> heterogeneous(const Element&, const Component& object);
   Ref<Component> grid(const Element& medium, const Element& volume, const Component& object);
+  void set_grid(Component& grid, const Element& volume, const Component& object);
   void set_phase(Component& volume, const Element& medium);
   Ref<Component> phase_function(const Element&);
   Ref<Component> blended_phases(const Element&);

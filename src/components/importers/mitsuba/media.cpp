@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "converter.h"
 #include "etendue/describe/color.h"
@@ -12,6 +13,14 @@ namespace etendue::mitsuba {
 namespace {
 
 const std::vector<std::string> known_media = {"homogeneous", "heterogeneous"};
+
+std::string wrap_mode(const Element& volume) {
+  const std::string wrap = volume.string("wrap_mode", "clamp");
+  if (wrap != "clamp" && wrap != "repeat" && wrap != "mirror")
+    throw Error(fmt::format("there is no wrap mode '{}'{}", wrap, suggestion(wrap, {"clamp", "repeat", "mirror"})),
+                volume.location_of("wrap_mode"));
+  return wrap;
+}
 
 }  // namespace
 
@@ -132,41 +141,62 @@ Ref<Component> Converter::heterogeneous(const Element& e, const Component& objec
   return grid(e, *volume, object);
 }
 
+// Density on a grid, and an albedo that is a colour or a grid too. Where both grids lie in one place they are a GridVolume.
 Ref<Component> Converter::grid(const Element& e, const Element& volume, const Component& object) {
-  Ref<Component> grid = make("GridVolume", e);
-  set_phase(*grid, e);
-  set_member(*grid, "file", file(volume), volume.location_of("filename"));
-  set_member(*grid, "extinction", e.number("scale", 1), e.location_of("scale"));
   const Element* albedo = e.nested("albedo");
-  if (albedo && albedo->tag == "volume") {
-    const Reading reading(*albedo);
-    if (albedo->type == "gridvolume") {
-      set_member(*grid, "albedo", 1, albedo->at);
-      set_member(*grid, "albedo_file", file(*albedo), albedo->location_of("filename"));
-      if (albedo->transform().transform.still().exact() != volume.transform().transform.still().exact())
-        inexact(*albedo, "the grid of albedos is laid where that of densities is");
-      albedo->ignore({"raw", "use_grid_bbox", "filter_type", "wrap_mode", "accel"});
-    } else {
-      set_member(*grid, "albedo", spectrum_of(*albedo, "value", 0.75), albedo->at);
-    }
+  if (albedo && albedo->tag != "volume") albedo = nullptr;
+  std::optional<Reading> reading;
+  if (albedo) reading.emplace(*albedo);
+  const bool albedos = albedo && albedo->type == "gridvolume";
+  const auto same_place = [&] {
+    return albedo->transform().transform.still().exact() == volume.transform().transform.still().exact() &&
+           albedo->boolean("use_grid_bbox", false) == volume.boolean("use_grid_bbox", false) &&
+           albedo->string("filter_type", "trilinear") == volume.string("filter_type", "trilinear");
+  };
+  const bool apart = albedos && !same_place();
+  Ref<Component> medium;
+  if (apart) {
+    medium = make("MapVolume", e);
+    const Ref<Component> density = make("GridMap", volume), part = make("GridMap", *albedo);
+    set_grid(*density, volume, object);
+    set_grid(*part, *albedo, object);
+    set_member(*density, "outside", "cut", volume.at);
+    set_member(*part, "outside", wrap_mode(*albedo), albedo->at);
+    set_member(*medium, "extinction", density, volume.at);
+    set_member(*medium, "albedo", part, albedo->at);
   } else {
-    set_member(*grid, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
+    medium = make("GridVolume", e);
+    set_grid(*medium, volume, object);
+    wrap_mode(volume);
+    set_member(*medium, "outside", "cut", volume.at);  // the medium ends with the box of its densities, whatever is around it
+    if (albedos) {
+      set_member(*medium, "albedo", 1, albedo->at);
+      set_member(*medium, "albedo_file", file(*albedo), albedo->location_of("filename"));
+      albedo->ignore({"wrap_mode"});
+    } else if (albedo) {
+      set_member(*medium, "albedo", spectrum_of(*albedo, "value", 0.75), albedo->at);
+    } else {
+      set_member(*medium, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
+    }
   }
+  set_phase(*medium, e);
+  set_member(*medium, apart ? "density" : "extinction", e.number("scale", 1), e.location_of("scale"));
+  for (const Element* grid : {&volume, albedo})
+    if (grid) grid->ignore({"raw", "accel"});
+  return medium;
+}
+
+/// The file of a grid and its place.
+void Converter::set_grid(Component& grid, const Element& volume, const Component& object) {
+  set_member(grid, "file", file(volume), volume.location_of("filename"));
   const Value transform = get(object, "transform");
   const auto* placed = transform.as<AnimatedTransform>();
   const auto* still = transform.as<Transform>();
   const Transform to_world = placed ? placed->still() : (still ? *still : Transform());
   const Transform placement = to_world.inverse() * volume.transform().transform.still();
-  if (!placement.identity()) set_member(*grid, "placement", placement, volume.location_of("to_world"));
-  set_member(*grid, "file_box", volume.boolean("use_grid_bbox", false), volume.at);
-  const std::string filter = volume.string("filter_type", "trilinear"), wrap = volume.string("wrap_mode", "clamp");
-  set_member(*grid, "filter", filter, volume.location_of("filter_type"));
-  if (wrap != "clamp" && wrap != "repeat" && wrap != "mirror")
-    throw Error(fmt::format("there is no wrap mode '{}'{}", wrap, suggestion(wrap, {"clamp", "repeat", "mirror"})),
-                volume.location_of("wrap_mode"));
-  set_member(*grid, "outside", "cut", volume.at);  // the medium ends with the box of its densities, whatever is around it
-  volume.ignore({"raw", "accel"});
-  return grid;
+  if (!placement.identity()) set_member(grid, "placement", placement, volume.location_of("to_world"));
+  set_member(grid, "file_box", volume.boolean("use_grid_bbox", false), volume.at);
+  set_member(grid, "filter", volume.string("filter_type", "trilinear"), volume.location_of("filter_type"));
 }
 
 }  // namespace etendue::mitsuba
