@@ -162,6 +162,7 @@ IES = (
     b"IESNA:LM-63-2002\n[TEST] made up\nTILT=INCLUDE\n1\n3\n0 45 90\n1.0 0.9 0.8\n1 1000 1.0 5 3 1 2 0.1 0.1 0.0\n1.0 1.0 10.0\n"
     b"0 20 40 60 90\n0 90 180\n900 800 420 80 0\n800 700 300 60 0\n900 800 420 80 0\n"
 )
+LENS = b"# radius thickness index diameter\n60 5 1.5 24\n-60 3 1 24\n0 50 0 16\n"
 CSV = b"# made up\nwavelength_nm,green,\"red\"\n360,0.1,0.2\n500,0.7,0.1\n640.5,2e-1,+0.9\n830,0.1,0.8\n"
 SPD = b"400 0.3\n450 0.5\n500\t0.7\n700 0.1\n"
 
@@ -175,6 +176,8 @@ def tables():
         yield Seed(ending, file, data, [RENDER], shading(f'Lambertian {{ color: spectrum("{file}") }}'), True)
     lamp = {"scene.etd": scene('Point { emission: IesEmission { file: "input.ies" } }')}
     yield Seed("ies", "input.ies", IES, [RENDER], lamp, True)
+    lens = scene("Sphere { emission: DiffuseEmission {} }").replace("PerspectiveCamera {", 'LensCamera { file: "input.dat",')
+    yield Seed("lens", "input.dat", LENS, [RENDER], {"scene.etd": lens}, True)
     grid = {"scene.etd": scene('SignedDistanceGrid { file: "input.npy" }')}
     yield Seed("npy grid", "input.npy", numpy_array((4, 5, 6)), [RENDER], grid)
     cloud = {"scene.etd": scene('Sphere { shader: PassThrough {}, interior: GridVolume { file: "input.vol", file_box: true, '

@@ -55,7 +55,7 @@ class LensCamera final : public Camera {
                                                 soft(1e-3, 0.05), logarithmic)
         .member<&LensCamera::focus_distance>("focus_distance", "m",
                                              "distance from the film, along the axis, of what is sharp; 0: at the point `to`",
-                                             at_least(0), soft(0.1, 100), logarithmic)
+                                             at_least(0), soft(0.25, 100), logarithmic)
         .group("Film")
         .member<&LensCamera::film_diagonal>("film_diagonal", "m", "of the film; the default is that of 35 mm film",
                                             more_than(0), soft(0.005, 0.06))

@@ -65,6 +65,7 @@ void LensPupils::find(const LensSystem& lens, double film_radius) {
     (passes(lens, 0, middle, 0) ? inside : outside) = middle;
   }
   solid_angle_ = std::numbers::pi * inside * inside / (inside * inside + lens.rear() * lens.rear());
+  if (!(solid_angle_ > 1e-25)) throw Error("the lens is open by too little to count with");
 
   // Outwards, each pupil near the one before; then as closely as a second search tells.
   std::vector<Box> at;

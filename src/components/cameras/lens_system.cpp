@@ -62,10 +62,11 @@ std::vector<LensSurface> lens_surfaces(const std::vector<double>& numbers, doubl
     const double index = numbers[i + 2] == 0 ? 1 : numbers[i + 2];
     const LensSurface s{numbers[i] * unit, numbers[i + 1] * unit, index, numbers[i + 3] * unit};
     const auto wrong = [&](const char* what) { throw Error(fmt::format("{} of surface {}", what, i / 4 + 1)); };
-    if (!std::isfinite(s.radius)) wrong("the radius of curvature must be a finite number (0: a plane):");
-    if (!(s.thickness >= 0) || !std::isfinite(s.thickness)) wrong("the thickness must be at least 0:");
+    const double most = 1e6;  // m: as far as numbers can be counted with
+    if (!(std::abs(s.radius) < most)) wrong("the radius of curvature must be a number below 1000 km (0: a plane):");
+    if (!(s.thickness >= 0 && s.thickness < most)) wrong("the thickness must be at least 0, and below 1000 km:");
     if (!(s.index >= 1 && s.index <= 10)) wrong("the index of refraction must be from 1 to 10, or 0 for air:");
-    if (!(s.diameter > 0) || !std::isfinite(s.diameter)) wrong("the diameter must be more than 0:");
+    if (!(s.diameter > 0 && s.diameter < most)) wrong("the diameter must be more than 0, and below 1000 km:");
     surfaces.push_back(s);
   }
   return surfaces;
