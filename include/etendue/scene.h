@@ -74,6 +74,8 @@ class Scene : public SceneObject {
       if (box.contains(p)) return interior_tree_.empty() || in_interior_tree(p);
     return false;
   }
+  /// What all of space outside of other objects is filled with; null: nothing.
+  const SceneObject* surroundings() const { return surroundings_; }
   /// How deep the scenes in it lie in one another; 0: it holds none.
   int nesting() const { return nesting_; }
   /// Another number each time a scene is prepared.
@@ -114,6 +116,7 @@ class Scene : public SceneObject {
 
   Bounds3 bounds_;  // of the objects, in the scene's own coordinates
   std::vector<const SceneObject*> luminaires_, infinite_;
+  const SceneObject* surroundings_ = nullptr;
   std::shared_ptr<const NestedLuminaires> nested_;  // null: there are none, or this scene is a nested one itself
   std::vector<Bounds3> interiors_;  // of the objects that paths can enter, and of scenes in which there are such; of many
                                     // such only the union, and the tree

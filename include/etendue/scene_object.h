@@ -129,6 +129,10 @@ class SceneObject : public Component {
   /// bounds are a box as large as `endless`.
   virtual bool unbounded() const { return false; }
   static constexpr float endless = 1e9f;  ///< [m]
+  /// Has no surface, and all of space for its inside; of those at infinity, which it is told of.
+  virtual bool surrounds() const { return false; }
+  /// Of such an object: how far its inside goes along a ray that meets nothing [m].
+  virtual float surrounding_reach(const Ray&) const { return infinity; }
   /// Has no extent, so no ray ever meets it. A point stands for a sphere with a cross section of 1 m^2, shrunk: what its
   /// emission calls radiance, times 1 m^2, is its intensity [W/sr]; densities by area are then 1 per m^2 of that cross
   /// section, and densities by solid angle follow by distance^2, so that radiance over density is irradiance as for

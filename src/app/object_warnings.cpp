@@ -108,6 +108,13 @@ class Objects {
   }
 
   void one(const SceneObject& object, const Shader* shader) {
+    if (object.surrounds()) {
+      if (!object.interior && !object.shader)
+        add("without effect", fmt::format("{} has neither an interior nor a shader: it does nothing", label(object)),
+            object.location_of());
+      without_effect(object, {"sides", "priority", "shading_normals"}, "it has no surface, and all other objects displace it");
+      return;
+    }
     if (object.infinite() || object.delta()) {
       if (!object.luminaire())
         add("dark luminaire", fmt::format("{} has no emission: it does nothing", label(object)), object.location_of());

@@ -35,6 +35,8 @@ constexpr ForeignWord classes[] = {
     {"", "plane", many, "'Rectangle', or 'InfinitePlane'"},
     {"", "quad", many, "'Rectangle'"},
     {"", "ground", many, "'InfinitePlane', or 'Rectangle'"},
+    {"", "fog", many, "'Surroundings', with 'interior' 'HomogeneousVolume'"},
+    {"", "atmosphere", many, "'Surroundings', with 'interior' 'HomogeneousVolume'"},
     {"", "metaball", blender, "'Metaballs'"},
     {"", "group", many, "a scene such as 'BvhScene', placed with 'Instance'"},
     // luminaires

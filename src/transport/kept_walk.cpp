@@ -133,6 +133,16 @@ bool walk_from_luminaire(const Scene& scene, const LightSampler& lights, float t
     media_at(scene, light.ray.origin, time, walk.media);
     first.media = sample.arena.make<MediumStack>(walk.media);
   }
+  if (const SceneObject* around = light.infinite ? scene.surroundings() : nullptr) {
+    // It begins where what surrounds the scene does, and never comes through what has no beginning, but where nothing absorbs.
+    walk.media.surround(*around);
+    Ray back = light.ray;
+    back.direction = -light.ray.direction;
+    if (const Medium medium = medium_in(walk.media); medium && within_object(medium, back) == infinity) {
+      walk.throughput *= transmittance(medium, back, infinity, sample.wavelengths, sample.numbers);
+      if (walk.throughput.black()) return false;
+    }
+  }
   // From infinity, places in the scene are given by where the ray crosses the disc around it.
   grow(walk, light.infinite ? 1 : light.direction, limits, kept, listener);
   return true;

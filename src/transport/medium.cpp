@@ -19,7 +19,7 @@ Spectrum emitted_along(const VolumeCoefficients& c, float distance) {
   Spectrum light;
   for (int i = 0; i < spectrum_size; ++i) {
     const float s = extinction[i];
-    light.set(i, c.emission[i] * (s > 0 ? -std::expm1(-s * distance) / s : distance));
+    if (c.emission[i] > 0) light.set(i, c.emission[i] * (s > 0 ? -std::expm1(-s * distance) / s : distance));
   }
   return light;
 }
@@ -120,6 +120,7 @@ float reach_within(const Medium& medium, const Ray& ray, float reach) {
 }  // namespace
 
 float within_object(const Medium& medium, const Ray& ray) {
+  if (medium.object && medium.object->surrounds()) return medium.object->surrounding_reach(ray);
   if (!medium.object || medium.object->unbounded() || medium.object->infinite()) return infinity;
   const Bounds3 box = medium.object->bounds();
   float end = infinity;

@@ -33,13 +33,29 @@ constexpr Cone cones[] = {{20, 30},
                           {0, 180, "square"},
                           {15, 20, "quartic"},
                           {40, 40, "quartic"},
-                          {0, 180, "quartic"}};
+                          {0, 180, "quartic"},
+                          {15, 20, "smooth_angle"},
+                          {0, 45, "smooth_angle"},
+                          {40, 40, "smooth_angle"},
+                          {0.05, 0.1, "smooth_angle"},
+                          {60, 130, "smooth_angle"},
+                          {0, 180, "smooth_angle"}};
 
-/// The integral of the profile over all directions: for a linear edge 2 pi (1 - (sin b - sin a) / (b - a)), by parts; else the
-/// mean over the edge of t^2 (3 - 2 t), 1/2, of t^2, 1/3, or of t^4, 1/5.
+/// The integral of the profile over all directions: for a linear edge 2 pi (1 - (sin b - sin a) / (b - a)), by parts; for one
+/// that is smooth in the angle by the midpoint rule; else the mean over the edge of t^2 (3 - 2 t), 1/2, of t^2, 1/3, or of t^4,
+/// 1/5.
 double solid_angle(const Cone& c) {
   const double a = c.inner * M_PI / 180, b = c.outer * M_PI / 180;
   const double h = one_minus_cosine(c.inner), beyond = one_minus_cosine(c.outer) - h;
+  if (c.edge == "smooth_angle" && a < b) {
+    constexpr int n = 20000;
+    double sum = 0;
+    for (int i = 0; i < n; ++i) {
+      const double t = (i + 0.5) / n;
+      sum += t * t * (3 - 2 * t) * std::sin(b - t * (b - a)) / n;
+    }
+    return 2 * M_PI * (h + (b - a) * sum);
+  }
   const double parts = c.edge == "square" ? 3 : c.edge == "quartic" ? 5 : 2;
   if (c.edge != "linear" || a == b) return 2 * M_PI * (h + beyond / parts);
   return 2 * M_PI * (1 - (std::sin(b) - std::sin(a)) / (b - a));
@@ -77,6 +93,19 @@ TEST(SpotEmission, ALinearEdgeFallsWithTheAngle) {
     const double a = angle * M_PI / 180, wanted = 3 * std::clamp((20 - angle) / 5, 0.0, 1.0);
     const Vector3 d{float(std::sin(a) * 0.6), float(std::sin(a) * 0.8), float(std::cos(a))};
     EXPECT_NEAR(double(lamp->emission->radiance(p, d, wavelengths())[0]), wanted, 1e-5) << angle;
+  }
+}
+
+TEST(SpotEmission, ASmoothEdgeByTheAngleIsHalfInItsMiddle) {
+  const Ref<SceneObject> lamp = prepared_as<SceneObject>(
+      "Point { emission: SpotEmission { radiance: 3, inner_angle: 20, outer_angle: 60, edge: smooth_angle } }");
+  const SurfacePoint p = lamp->sample_area({}, 0).point;
+  for (const auto& [angle, wanted] :
+       {std::pair(19.9, 3.0), {30.0, 3 * 0.84375}, {40.0, 1.5}, {50.0, 3 * 0.15625}, {60.1, 0.0}}) {
+    const double a = angle * M_PI / 180;
+    EXPECT_NEAR(double(lamp->emission->radiance(p, {0, float(std::sin(a)), float(std::cos(a))}, wavelengths())[0]), wanted,
+                1e-4)
+        << angle;
   }
 }
 

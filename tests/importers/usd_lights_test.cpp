@@ -70,6 +70,10 @@ TEST_F(UsdLights, WhatLightsSendToAPatchBelow) {
       {light("SphereLight", ball, 2, shaped), 0.25, 0.005},
       {light("SphereLight", ball + cone, 2, shaped), 0.25, 0.005},
       {"def SphereLight \"l\" " + shaped + " {\n" + ball + cone + aside, 0, 0},
+      // Soft from 20 degrees on, 45 of 80 degrees off: t = 35 / 60 of a smooth step in the angle.
+      {"def SphereLight \"l\" " + shaped + " {\n" + ball +
+           "float inputs:shaping:cone:angle = 80\nfloat inputs:shaping:cone:softness = 0.75\n" + aside,
+       100 * 0.01 / 8 * std::sqrt(0.5) * 35 * 35 / 3600.0 * (3 - 70 / 60.0), 0.001},
       // A focus is cos^n: of the middle of a small disc, 45 degrees off, cos^3 of that.
       {"def DiskLight \"l\" " + shaped +
            " {\nfloat inputs:radius = 0.02\nfloat inputs:intensity = 10000\nfloat inputs:shaping:focus = 3\n" + aside,
@@ -79,6 +83,38 @@ TEST_F(UsdLights, WhatLightsSendToAPatchBelow) {
   for (const Row& row : rows) lights.push_back(row.light);
   const std::vector<double> seen = lit(lights);
   for (size_t i = 0; i < seen.size(); ++i) EXPECT_NEAR(seen[i], rows[i].wanted, rows[i].within) << rows[i].light;
+}
+
+TEST_F(UsdLights, IesFilesMultiplyTheLuminanceByTheirCandelas) {
+  folder_.write("lamp.ies", "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n300 200 0\n");
+  // Linear in the angle up to 45 degrees, and from there on: its lumens by the midpoint rule.
+  double lumens = 0;
+  constexpr int n = 10000;
+  for (int i = 0; i < n; ++i) {
+    const double t = double(pi) / 2 * (i + 0.5) / n, degrees = 90 * (i + 0.5) / n;
+    lumens += 2 * double(pi) * (degrees < 45 ? 300 - 100 * degrees / 45 : 400 - 200 * degrees / 45) * std::sin(t) * double(pi) /
+              2 / n;
+  }
+  const std::string file = "(prepend apiSchemas = [\"ShapingAPI\"]) {\nasset inputs:shaping:ies:file = @lamp.ies@\n",
+                    aside =
+                        "double3 xformOp:translate = (2, 0, 2)\nuniform token[] xformOpOrder = [\"xformOp:translate\"]\n}\n",
+                    above =
+                        "double3 xformOp:translate = (0, 0, 2)\nuniform token[] xformOpOrder = [\"xformOp:translate\"]\n}\n",
+                    small = "float inputs:radius = 0.02\nfloat inputs:intensity = 10\n",
+                    even = "bool inputs:shaping:ies:normalize = 1\n";
+  const double r2 = 0.02 * 0.02;
+  const std::pair<std::string, double> rows[] = {
+      {"def DiskLight \"l\" " + file + small + above, 10 * 300 * r2 / 4},
+      {"def DiskLight \"l\" " + file + small + aside, 10 * 200 * r2 / 8 * 0.5},
+      {"def SphereLight \"l\" " + file + small + aside, 10 * 200 * r2 / 8 * std::sqrt(0.5)},
+      {"def SphereLight \"l\" " + file + small + "bool treatAsPoint = 1\n" + aside, 10 * 200 * r2 / 8 * std::sqrt(0.5)},
+      {"def SphereLight \"l\" " + file + small + even + aside, 10 * 200 / lumens * r2 / 8 * std::sqrt(0.5)},
+      {"def CylinderLight \"l\" " + file + "float inputs:length = 0.02\n" + small + above,
+       10 * 300 * 2 * 0.02 * 0.02 / double(pi) / 4}};
+  std::vector<std::string> lights;
+  for (const auto& row : rows) lights.push_back(row.first);
+  const std::vector<double> seen = lit(lights);
+  for (size_t i = 0; i < seen.size(); ++i) EXPECT_NEAR(seen[i], rows[i].second, 0.02 * rows[i].second) << rows[i].first;
 }
 
 TEST_F(UsdLights, PicturesOnLightsStandUpright) {

@@ -143,6 +143,39 @@ TEST_F(UsdObjects, SkinsAreBentByTheirSkeletons) {
   EXPECT_NEAR(s->objects[0]->bounds().low.z, 6, 1e-4);
 }
 
+TEST_F(UsdObjects, BlendShapesMovePointsByTheirWeights) {
+  // After half a second "up" has the weight 0.75, half way from a shape in between at 0.5, which moves by 1 along z, to its
+  // own, by 2 along y; "wide" has 0.5 of 1 along x. The joint then lifts all by 3.
+  const std::string text =
+      "#usda 1.0\n( upAxis = \"Y\"\n metersPerUnit = 1\n startTimeCode = 0\n endTimeCode = 10\n timeCodesPerSecond = 10 )\ndef "
+      "SkelRoot \"r\" {\ndef Skeleton \"k\" (prepend apiSchemas = [\"SkelBindingAPI\"]) {\nuniform token[] joints = "
+      "[\"j\"]\nuniform matrix4d[] bindTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))]\nuniform "
+      "matrix4d[] restTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))]\nrel skel:animationSource = "
+      "</r/a>\n}\ndef SkelAnimation \"a\" {\nuniform token[] blendShapes = [\"other\", \"up\", \"wide\"]\nfloat[] "
+      "blendShapeWeights.timeSamples = { 0: [1, 0, 0], 10: [0, 1.5, 1] }\nuniform token[] joints = [\"j\"]\nfloat3[] "
+      "translations "
+      "= [(0, 0, 3)]\nquatf[] rotations = [(1, 0, 0, 0)]\nhalf3[] scales = [(1, 1, 1)]\n}\ndef Mesh \"m\" (prepend apiSchemas "
+      "= "
+      "[\"SkelBindingAPI\"]) {\nint[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]\npoint3f[] points = [(0, 0, "
+      "0), "
+      "(1, 0, 0), (1, 1, 0)]\nuniform token[] skel:blendShapes = [\"wide\", \"up\"]\nrel skel:blendShapeTargets = "
+      "[</r/m/wide>, "
+      "</r/m/up>]\nrel skel:skeleton = </r/k>\nint[] primvars:skel:jointIndices = [0, 0, 0] (elementSize = 1\ninterpolation = "
+      "\"vertex\")\nfloat[] primvars:skel:jointWeights = [1, 1, 1] (elementSize = 1\ninterpolation = \"vertex\")\nuniform "
+      "token "
+      "subdivisionScheme = \"none\"\ndef BlendShape \"wide\" {\nuniform vector3f[] offsets = [(1, 0, 0), (1, 0, 0)]\nuniform "
+      "int[] pointIndices = [1, 2]\n}\ndef BlendShape \"up\" {\nuniform vector3f[] offsets = [(0, 0, 0), (0, 0, 0), (0, 2, "
+      "0)]\nuniform vector3f[] inbetweens:half = [(0, 0, 0), (0, 0, 0), (0, 0, 1)] (\nweight = 0.5\n)\n}\n}\n}\n";
+  ImportOptions options;
+  options.time = 0.5;
+  const Ref<Scene> s = scene(text, options);
+  ASSERT_TRUE(s) << error_;
+  EXPECT_TRUE(notes_.empty()) << notes_.front();
+  const std::vector<Point3> points = mesh_of(*s->objects[0]).positions, wanted = {{0, 0, 3}, {1.5f, 0, 3}, {1.5f, 2, 3.5f}};
+  ASSERT_EQ(points.size(), wanted.size());
+  for (size_t i = 0; i < wanted.size(); ++i) EXPECT_LT(distance(points[i], wanted[i]), 1e-5f) << i;
+}
+
 TEST_F(UsdObjects, CamerasHaveTheirLensAndTheirShift) {
   ASSERT_TRUE(
       scene(y_up +

@@ -61,7 +61,7 @@ inline Medium medium_in(const MediumStack& media) {
 
 /// How far a ray that meets nothing goes through a medium [m]: to where it leaves the bounds of the object that holds it. Such
 /// a ray has slipped through an edge or a corner of the object's surface, and is outside without knowing. Infinite where the
-/// object is.
+/// object is. Of what surrounds all others: as far as it goes.
 float within_object(const Medium&, const Ray&);
 
 /// An unbiased estimate of the fraction of light that gets `distance` [m] (may be infinite) along a ray in a medium; exact, and
@@ -87,6 +87,7 @@ FreeFlight sample_free_flight(const Medium&, const Ray&, float reach, const Spec
 /// The objects around a point that paths can enter and whose surfaces are closed.
 void media_at_slowly(const Scene&, const Point3&, float time, MediumStack&);
 inline void media_at(const Scene& scene, const Point3& p, float time, MediumStack& media) {
+  if (const SceneObject* around = scene.surroundings()) media.surround(*around);
   if (scene.maybe_inside(p)) media_at_slowly(scene, p, time, media);
 }
 

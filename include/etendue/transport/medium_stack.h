@@ -35,13 +35,19 @@ class MediumStack {
   static constexpr int capacity = 12;
 
   /// Null: the outside of everything.
-  const SceneObject* current() const { return top_excluding(nullptr, false); }
+  const SceneObject* current() const {
+    const SceneObject* top = top_excluding(nullptr, false);
+    return top ? top : surroundings_;
+  }
 
   /// Whether a surface of the object matters here: it does not when the path is inside something of higher priority.
   bool visible(const SceneObject& object) const {
     const SceneObject* top = top_excluding(&object, false);
     return top == nullptr || object.priority >= top->priority;
   }
+
+  /// Below all that the path enters there is this: the object whose inside is all of space (SceneObject::surrounds).
+  void surround(const SceneObject& object) { surroundings_ = &object; }
 
   /// What gives the index on the other side of the object's boundary: what would be current without it, leaving out what has
   /// no index of its own. Where the path is about to leave the object, what it enters or leaves in the same place counts as
@@ -50,10 +56,10 @@ class MediumStack {
     // Between two bricks of one kind (one object in two scenes) there is no boundary.
     for (int i = 0; i < others_; ++i)
       if (other_[i].object == &object && has_own_index(object)) return &object;
-    if (others_ == 0 || !inside(object)) return top_excluding(&object, true);
+    if (others_ == 0 || !inside(object)) return beside(object);
     MediumStack beyond = *this;
     beyond.cross_others();
-    return beyond.top_excluding(&object, true);
+    return beyond.beside(object);
   }
 
   /// Boundaries that lie in the same place as the one the path has come to, in the direction it travels in: they are crossed
@@ -87,7 +93,7 @@ class MediumStack {
         return;
       }
   }
-  bool empty() const { return size_ == 0; }
+  bool empty() const { return size_ == 0 && !surroundings_; }
 
   /// Refractive index of a medium (null: 1).
   static Spectrum index(const SceneObject* medium, const Wavelengths& w) {
@@ -95,6 +101,12 @@ class MediumStack {
   }
 
  private:
+  /// What has an index without the object.
+  const SceneObject* beside(const SceneObject& object) const {
+    const SceneObject* top = top_excluding(&object, true);
+    return top || !surroundings_ || !has_own_index(*surroundings_) ? top : surroundings_;
+  }
+
   const SceneObject* top_excluding(const SceneObject* skip, bool with_index) const {
     const SceneObject* top = nullptr;
     for (int i = 0; i < size_; ++i)
@@ -117,6 +129,7 @@ class MediumStack {
   };
 
   const SceneObject* inside_[capacity];
+  const SceneObject* surroundings_ = nullptr;
   Other other_[most_others];
   int size_ = 0, others_ = 0;
 };

@@ -17,6 +17,9 @@ constexpr double pi_exactly = 3.14159265358979323846, degree = pi_exactly / 180;
 // the whole object then has the intensities of the file if it is flat, and its flux if it is not. A cosine below 1e-3 (the last
 // 0.06 degrees) counts as that, so that the radiance stays finite.
 //
+// About an axis a surface has the radiance of a point of 1 m^2 in each of its places, L = I / m^2, as UsdLux has it: f = I / l,
+// and K is found from the table's cells.
+//
 // Directions are drawn from a table over the file's own grid, finely divided (2 degrees of the polar angle, 5 around it). In a
 // cell the intensity is bilinear in the angles; its mean over four points at the corners, which is positive if any of it is, is
 // the cell's importance.
@@ -38,9 +41,19 @@ class IesEmission final : public ShapedEmission {
         .member<&IesEmission::multiplier>("multiplier", "1", "multiplies the file's candelas", at_least(0), soft(0.01, 100),
                                           logarithmic, unless("power"), unless("luminous_flux"), unless("luminous_intensity"),
                                           unless("illuminance"))
-        .member<&IesEmission::axis>("axis", "1",
-                                    "of a Point: where vertical angle 0 of type C points, or the beam of types A and B, in the "
-                                    "object's own coordinates; of any length. On a surface the normal takes its place")
+        .member<&IesEmission::normalized>(
+            "normalized", "", "whether the file's candelas are divided by its lumens, so that only its shape counts",
+            unless("power"), unless("luminous_flux"), unless("luminous_intensity"), unless("illuminance"))
+        .member<&IesEmission::about>(
+            "about", "",
+            "of a surface; normal: each part of it is a part of the lamp, turned to its normal; axis: "
+            "the lamp's axis is the same everywhere, and the file's candelas are the luminance [cd/m^2]",
+            choices("normal", "axis"))
+        .member<&IesEmission::axis>(
+            "axis", "1",
+            "of a Point: where vertical angle 0 of type C points, or the beam of types A and B, in the "
+            "object's own coordinates; of any length. On a surface the normal takes its place, unless it is about "
+            "the axis")
         .member<&IesEmission::across>("across", "1",
                                       "a direction across the axis: where horizontal angle 0 of type C lies, or vertical angle "
                                       "90 of types A and B; only what is perpendicular to the axis counts")
@@ -65,7 +78,9 @@ class IesEmission final : public ShapedEmission {
     const double luminance =
         integrate_spectrum(Quantity::flux, [&](float lambda) { return colour->at(lambda, ColorUse::radiance); });
     if (!(luminance > 0)) fail("color", "is black to the eye, so it cannot have the shape of a lamp's spectrum");
-    const double factor = ies_.tilt_factor(double(tilt)) * (amount_asked() ? 1 : double(multiplier));
+    const double lumens = normalized ? ies_.lumens() : 1;
+    if (!(lumens > 0)) fail("normalized", "the file's lamp gives no light");
+    const double factor = ies_.tilt_factor(double(tilt)) * (amount_asked() ? 1 : double(multiplier) / lumens);
     per_candela_ = float(factor / luminance);
     flux_ = ies_.lumens() * factor / luminance;
     front_ = front_lumens() * factor / luminance;
@@ -102,6 +117,9 @@ class IesEmission final : public ShapedEmission {
   }
 
   FilePath file;
+  enum class About : std::uint8_t { normal, axis };
+  About about = About::normal;
+  bool normalized = false;
   float multiplier = 1, tilt = 0;
   Vector3 axis{0, -1, 0}, across{1, 0, 0};
 
@@ -111,24 +129,42 @@ class IesEmission final : public ShapedEmission {
     const double r = std::sqrt(double(local.x) * double(local.x) + double(local.y) * double(local.y));
     const float f =
         per_candela_ * ies_.at(std::atan2(r, double(local.z)) / degree, std::atan2(double(local.y), double(local.x)) / degree);
-    if (!on_surface(p)) return f;
+    if (!about_normal(p)) return f;
     const float area = p.object ? p.object->area(p.time) : 1;
     return f / (area * std::max(std::abs(dot(p.normal, direction)), 1e-3f));
   }
   double solid_angle() const override { return flux_; }
   double surface_share(const SurfacePoint& p) const override {
+    if (about == About::axis) return share_about_axis(p);
     const double area = p.object ? double(p.object->area(p.time)) : 1;
     return ((sides != Sides::back ? front_ : 0) + (sides != Sides::front ? flux_ - front_ : 0)) / area;
   }
-  bool same_on_surfaces() const override { return true; }
-  Vector3 own_axis(const SurfacePoint& p) const override { return on_surface(p) ? Vector3{} : turned(p, axis_); }
+  bool same_on_surfaces() const override { return about == About::normal; }
+  Vector3 own_axis(const SurfacePoint& p) const override { return about_normal(p) ? Vector3{} : turned(p, axis_); }
 
  private:
-  static bool on_surface(const SurfacePoint& p) { return !(p.normal == Normal3{}); }
+  bool about_normal(const SurfacePoint& p) const { return about == About::normal && !(p.normal == Normal3{}); }
+
+  /// The integral of f |n . w| over the sides that emit, by midpoints.
+  double share_about_axis(const SurfacePoint& p) const {
+    constexpr int rows = 48, columns = 48;
+    const Frame own = frame(p);
+    double sum = 0;
+    for (int i = 0; i < rows; ++i) {
+      const double theta = pi_exactly * (i + 0.5) / rows;
+      for (int k = 0; k < columns; ++k) {
+        const double phi = 2 * pi_exactly * (k + 0.5) / columns;
+        const Vector3 w = own.to_world(
+            {float(std::sin(theta) * std::cos(phi)), float(std::sin(theta) * std::sin(phi)), float(std::cos(theta))});
+        if (emits(p, w)) sum += double(profile(p, w)) * double(std::abs(dot(p.normal, w))) * std::sin(theta);
+      }
+    }
+    return sum * (pi_exactly / rows) * (2 * pi_exactly / columns);
+  }
 
   /// x, y, z of the file's grid, z being its pole.
   Frame frame(const SurfacePoint& p) const {
-    const Vector3 a = on_surface(p) ? Vector3(p.normal) : turned(p, axis_);
+    const Vector3 a = about_normal(p) ? Vector3(p.normal) : turned(p, axis_);
     Vector3 s = turned(p, across_);
     s = s - dot(s, a) * a;
     // A normal may happen to lie along it: then any direction will do.

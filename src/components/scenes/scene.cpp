@@ -178,6 +178,7 @@ std::vector<const SceneObject*> Scene::survey() {
   interiors_.clear();
   interior_tree_.clear();
   bounds_ = {};
+  surroundings_ = nullptr;
   static std::atomic<std::uint64_t> versions{0};
   version_ = ++versions;
   has_interiors_ = has_null_surfaces_ = unbounded_ = false;
@@ -186,7 +187,8 @@ std::vector<const SceneObject*> Scene::survey() {
   for_nested(*this, visited, [](Scene& inner) {
     for (const Ref<SceneObject>& object : inner.objects) {
       if (object->infinite() && !object->delta())
-        object->fail("", "an environment cannot stand in a nested scene: it is all around, and belongs into the outermost one");
+        object->fail("", (object->surrounds() ? "surroundings" : "an environment") +
+                             std::string(" cannot stand in a nested scene: what is all around belongs into the outermost one"));
       object->luminaire_index = -1;
     }
     inner.luminaires_.clear();
@@ -207,6 +209,16 @@ std::vector<const SceneObject*> Scene::survey() {
       object->luminaire_index = int(luminaires_.size());
       luminaires_.push_back(object.get());
       if (object->infinite() && !object->delta()) infinite_.push_back(object.get());
+    }
+    if (object->surrounds()) {
+      if (surroundings_) object->fail("", "there are surroundings already: a scene stands in one thing alone");
+      surroundings_ = object.get();
+      has_interiors_ = true;
+      // Light from infinity is scattered to the scene's objects from beside them as well: every place across it counts.
+      Ray any;
+      any.direction = {0, 0, 1};
+      unbounded_ |= std::isfinite(object->surrounding_reach(any));
+      continue;
     }
     note_interior(*object);
     if (object->infinite()) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "etendue/transport/medium_stack.h"
 #include "writer.h"
 
 namespace etendue::mitsuba_export {
@@ -24,6 +25,7 @@ void Writer::objects(Node parent, const Scene& scene, const Transform& outer) {
 void Writer::object(Node parent, const SceneObject& o, const Transform& outer) {
   const Transform placed = outer * still(transform_of(o, "transform"), o);
   const std::string& type = class_of(o);
+  if (o.surrounds()) return;  // see camera
   if (const auto* inner = dynamic_cast<const Scene*>(&o)) return objects(parent, *inner, placed);
   if (type == "Instance") return instance(parent, o, placed);
   if (light_source(o, placed)) return;
@@ -38,7 +40,8 @@ void Writer::object(Node parent, const SceneObject& o, const Transform& outer) {
   const std::string sides = word_of(o, "sides");
   surface(n, shader.get(), sides == "both", uv);
   if (light) emission(n, o, *light, uv);
-  if (inside) medium(n, *inside);
+  if (inside) medium(n, *inside, "interior");
+  if (around_ && enterable(o)) medium(n, *around_, "exterior");
   if (sides == "back") truth(n, "flip_normals", true);
   if (light && (word_of(*light, "sides") == "back") != (sides == "back") && word_of(*light, "sides") != "front")
     exporting.inexact("emission from the back, or from both sides, comes from the front in Mitsuba", &o);
@@ -186,13 +189,13 @@ bool Writer::light_source(const SceneObject& o, const Transform& placed) {
   return true;
 }
 
-void Writer::medium(Node shape, const Component& v) {
+void Writer::medium(Node of, const Component& v, const char* name) {
   if (class_of(v) != "HomogeneousVolume") {
     exporting.inexact(fmt::format("a medium like {} is left out", class_of(v)), &v);
     return;
   }
-  Node n = plugin(shape, "medium", "homogeneous");
-  n.append_attribute("name") = "interior";
+  Node n = plugin(of, "medium", "homogeneous");
+  n.append_attribute("name") = name;
   if (const Color extinction = color_of(v, "extinction")) {
     // Components of more than 1 are refused there.
     const auto rgb = written_rgb(extinction);

@@ -56,6 +56,13 @@ void Writer::camera(Node n) {
   number(n, "near_clip", near_clip > 0 ? near_clip : (far_clip > 0 ? std::min(1e-4, far_clip / 2) : 1e-4));
   number(n, "far_clip", far_clip > 0 ? far_clip : std::max(1e7, 2 * near_clip));
   transform(n, "to_world", placed);
+  for (const Ref<SceneObject>& object : job.scene->objects) {
+    if (!object->surrounds()) continue;
+    if (object->shader) exporting.inexact("the index of surroundings is left out", object.get());
+    around_ = part_of(*object, "interior");
+    if (around_) medium(n, *around_, "medium");
+    if (around_ && number_of(*object, "reach") > 0) exporting.inexact("surroundings go on for ever in Mitsuba", object.get());
+  }
 }
 
 void Writer::film(Node sensor) {

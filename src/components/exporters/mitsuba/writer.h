@@ -63,7 +63,7 @@ class Writer {
   void emission(Node shape, const SceneObject&, const Component& emission, Uv);
   void light(Node, const char* name, const SceneObject&, const Component& emission, Uv);
   bool light_source(const SceneObject&, const Transform& placed);
-  void medium(Node shape, const Component& volume);
+  void medium(Node of, const Component& volume, const char* name);
   void henyey_greenstein(Node parent, double g);
   void phase_function(Node parent, const Component&);
   void instance(Node parent, const Component& instance, const Transform& placed);
@@ -78,6 +78,7 @@ class Writer {
   Exporting& exporting;
   pugi::xml_document document_;
   Node scene_;
+  Ref<Component> around_;  // the medium around everything
   std::map<const Component*, Ref<Component>> baked_;  // by products of images and colours
   std::map<const Component*, std::string> groups_;
   std::map<std::tuple<const Component*, bool, Uv>, std::string> bsdfs_;

@@ -141,7 +141,7 @@ void Writer::object(const SceneObject& object, bool instanced) {
     out_ += "AttributeEnd\n";
     return;
   }
-  if (light_source(object)) return;
+  if (object.surrounds() || light_source(object)) return;
   const Surface surface = surface_of(object.shader.get());
   bool reversed = false, placed = false;
   std::string emission = emission_of(object, reversed);
@@ -152,7 +152,7 @@ void Writer::object(const SceneObject& object, bool instanced) {
   std::string medium;
   if (object.interior)
     if (const std::string inside = medium_of(*object.interior); !inside.empty())
-      medium = fmt::format("MediumInterface \"{}\" \"\"\n", inside);
+      medium = fmt::format("MediumInterface \"{}\" \"{}\"\n", inside, around_);
   if (word_of(object, "sides") != "both") exporting.inexact("surfaces scatter light on both sides in pbrt", &object);
   const std::string directive = shape(object, surface.alpha, placed);
   if (directive.empty()) return;

@@ -6,7 +6,21 @@ namespace etendue {
 
 namespace pbrt_export {
 
+/// What surrounds all is the medium around the camera, and outside of all shapes.
+void Writer::surroundings() {
+  for (const Ref<SceneObject>& object : job.scene->objects) {
+    if (!object->surrounds()) continue;
+    if (object->shader) exporting.inexact("the index of surroundings is left out", object.get());
+    if (!object->interior) continue;
+    around_ = medium_of(*object->interior);
+    if (around_.empty()) continue;
+    out_ += fmt::format("MediumInterface \"\" \"{}\"\n", around_);
+    if (number_of(*object, "reach") > 0) exporting.inexact("surroundings go on for ever in pbrt", object.get());
+  }
+}
+
 std::string Writer::write() {
+  surroundings();
   view();
   out_ += "WorldBegin\n";
   out_ += transform_of(job.scene->transform, "ConcatTransform");

@@ -45,6 +45,7 @@ class Describer {
       if (Ref<Component> map = surface_color_map(importing_, color, at())) return Value(map, at());
       return color_value(color.value, at());
     }
+    if (find(json, "path")) return Value(FilePath{importing_.file(text(json, "path"), at()), {}}, at());
     if (const auto image = whole(json, "image")) {
       const auto found = materials_.image_texture(*image);
       return found ? Value(FilePath{found->file, {}}, at()) : Value();

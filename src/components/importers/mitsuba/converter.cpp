@@ -32,6 +32,12 @@ const Element* first_of(const Element& within, const char* tag, std::initializer
   return nullptr;
 }
 
+/// Whether one of its integrators takes notice of media: Mitsuba 0.5 had many that do.
+bool knows_media(const Element& scene) {
+  return first_of(scene, "integrator", {"volpath", "volpathmis", "prbvolpath", "volpath_simple"}) ||
+         (scene.old && first_of(scene, "integrator", {"bdpt", "ptracer", "photonmapper", "pssmlt", "mlt", "erpt", "vpl"}));
+}
+
 }  // namespace
 
 Ref<Job> Converter::job(const Element& scene) {
@@ -63,8 +69,6 @@ Ref<Job> Converter::job(const Element& scene) {
   }
   if (!errors.empty()) throw Errors(std::move(errors));
   if (list.empty()) importing_.inexact("the scene has no shapes", scene.at);
-  set(*objects, "objects", Value(std::move(list)));
-
   const std::vector<const Element*> films = sensor ? sensor->all("film") : std::vector<const Element*>{};
   const std::vector<const Element*> samplers = sensor ? sensor->all("sampler") : std::vector<const Element*>{};
   const std::vector<const Element*> integrators = scene.all("integrator");
@@ -89,6 +93,11 @@ Ref<Job> Converter::job(const Element& scene) {
     const std::int64_t seed = samplers.front()->integer("seed", 0);
     set_member(*job, "seed", double(std::max<std::int64_t>(seed, 0)), samplers.front()->location_of("seed"));
   }
+  std::vector<Ref<SceneObject>> world;
+  for (const Value& v : list) world.push_back(ref_cast<SceneObject>(*v.as<Ref<Component>>()));
+  if (const Ref<SceneObject> around = settle_media(sensor, knows_media(scene), world))
+    list.emplace_back(Ref<Component>(around), scene.at);
+  set(*objects, "objects", Value(std::move(list)));
   set_member(*job, "scene", objects, scene.at);
   add_outputs(*job, film);
   note_unread(scene);

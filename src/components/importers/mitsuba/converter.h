@@ -127,6 +127,9 @@ class Converter {
   void set_phase(Component& volume, const Element& medium);
   Ref<Component> phase_function(const Element&);
   Ref<Component> blended_phases(const Element&);
+  /// surroundings.cpp: what has to be added to the world for the medium around the sensor; null: nothing.
+  /// `seen`: Mitsuba's integrator takes notice of media.
+  Ref<SceneObject> settle_media(const Element* sensor, bool seen, const std::vector<Ref<SceneObject>>& world);
 
   // helpers
   Ref<Component> make(const char* class_name, const Element& e, const std::string& name) {
@@ -141,7 +144,17 @@ class Converter {
   void note_unread(const Element& scene);
   void inexact(const Element& e, const std::string& what) { importing_.inexact(what, e.at); }
 
+  /// The media that a shape names.
+  struct MediumSides {
+    Ref<SceneObject> object;
+    const Element *interior, *exterior;  ///< null: none
+    bool in_group;                       ///< it stands in a group of shapes
+    Location at;
+  };
+
   Importing& importing_;
+  std::vector<MediumSides> sides_;
+  int groups_read_ = 0;  ///< within one another, at present
   std::map<std::pair<const Element*, Uv>, Surface> surfaces_;
   std::map<const Element*, Ref<Component>> media_, groups_;
   std::map<const Element*, bool> textured_, tilts_;

@@ -152,8 +152,10 @@ Ref<Component> Converter::group(const Element& e) {
   if (const auto known = groups_.find(&e); known != groups_.end()) return known->second;
   Ref<Component> scene = make(imported_structure, e);
   Value::List list;
+  ++groups_read_;
   for (const Element* inner : e.all("shape"))
     if (const Ref<SceneObject> object = shape(*inner)) list.emplace_back(Ref<Component>(object), inner->at);
+  --groups_read_;
   if (list.empty()) inexact(e, "the group holds no shapes");
   set(*scene, "objects", Value(std::move(list)));
   groups_.emplace(&e, scene);

@@ -72,8 +72,6 @@ Ref<Component> Converter::camera(const Element& e) {
   set_shutter(*camera, e);
   set_clip(*camera, e);
   e.ignore({"focus_distance", "srf"});
-  if (const Element* medium = e.nested("medium"); medium)
-    importing_.inexact("a medium around the sensor is not expressed", e.location_of("medium"));
   return camera;
 }
 

@@ -196,9 +196,8 @@ void Converter::set_surface(Component& object, const Element& e, Uv uv) {
   if (interior)
     if (const Ref<Component> inside = medium(*interior, object))
       set_member(object, "interior", inside, e.location_of("interior"));
-  if (const Element* exterior = e.nested("exterior"); exterior && !exterior->being_read)
-    importing_.inexact("a medium around a shape is not expressed: the body it is inside of has to name it as its interior",
-                       e.location_of("exterior"));
+  sides_.push_back({Ref<SceneObject>(dynamic_cast<SceneObject*>(&object)), interior, e.nested("exterior"), groups_read_ > 0,
+                    e.location_of("exterior")});
   e.ignore({"silhouette_sampling_weight"});
 }
 

@@ -20,8 +20,8 @@ void Directives::camera() {
   std::swap(r.state.ctm, inverse);
   r.camera_to_world = r.to_world(Transform());
   std::swap(r.state.ctm, inverse);
-  if (!r.state.outside.empty())
-    r.importing.inexact(fmt::format("the medium '{}' around the camera is left out", r.state.outside), at_);
+  r.around_camera = r.state.outside;
+  r.around_camera_at = at_;
 }
 
 void Directives::film() { set(r.film); }

@@ -62,6 +62,14 @@ struct Waiting {
   Location at;
 };
 
+/// The media on the two sides of an object's surface.
+struct MediumSides {
+  Ref<Component> object;
+  std::string inside, outside;  ///< names; empty: none
+  bool in_group;                ///< it stands in an object that is instanced
+  Location at;
+};
+
 enum class Use : unsigned char { reflectance, light, coefficient };
 
 /// What is before WorldBegin: each directive as it was written last.
@@ -81,6 +89,8 @@ class Reader {
   State state;
   Setting camera, film, filter, sampler, integrator;
   AnimatedTransform camera_to_world;
+  std::string around_camera;  ///< the name of a medium; empty: none
+  Location around_camera_at;
   std::array<double, 2> times{0, 1};  ///< of TransformTimes [s]
   std::optional<int> seed;
   double exposure = 1;  ///< what the sensor multiplies radiances by, put into all lights
@@ -114,6 +124,8 @@ class Reader {
  private:
   Ref<Component> shader_for(const Waiting&);
   void finish_materials();
+  /// surroundings.cpp: what has to be added for the medium around the camera; null: nothing.
+  Ref<SceneObject> settle_media();
   Ref<Scene> scene_of(const std::vector<Ref<SceneObject>>&, Location at, const std::string& name);
 
   std::vector<Ref<SceneObject>> objects_;
@@ -123,6 +135,7 @@ class Reader {
   Location object_at_;
   std::map<std::string, Ref<Scene>, std::less<>> instanced_;
   std::vector<Waiting> waiting_;
+  std::vector<MediumSides> sides_;
   std::map<std::pair<Component*, std::string>, Ref<Component>> masked_;
 };
 

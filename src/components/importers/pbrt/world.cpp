@@ -35,8 +35,7 @@ void Reader::shape(const std::string& type, Parameters&& p) {
   if (!state.inside.empty())
     if (const Ref<Component> inside = medium_for(*this, state.inside, transform, at))
       set_member(object, "interior", inside, at);
-  if (!state.outside.empty() && state.outside != state.inside)
-    importing.inexact(fmt::format("the medium '{}' outside of an object is that of what it stands in", state.outside), at);
+  sides_.push_back({made.object, state.inside, state.outside, in_object(), at});
   bool no_uvs = type == "trianglemesh";
   for (const Parameter& parameter : p.own)
     if (parameter.name == "uv" || parameter.name == "st" || parameter.name == "UV") no_uvs = false;
@@ -130,6 +129,7 @@ void Reader::finish_materials() {
 Ref<Job> Reader::finish() {
   if (in_object()) throw Error("this ObjectBegin has no ObjectEnd", object_at_);
   finish_materials();
+  if (const Ref<SceneObject> around = settle_media()) objects_.push_back(around);
   const Location at = importing.at();
   const Ref<Component> job = make("Job", at);
   set_camera(*this, *job);

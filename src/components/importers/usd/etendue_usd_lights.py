@@ -2,7 +2,7 @@
 import math
 
 import numpy
-from pxr import Gf, UsdGeom, UsdLux
+from pxr import Ar, Gf, UsdGeom, UsdLux
 
 from etendue_usd_glb import plain
 
@@ -49,8 +49,6 @@ class Lights:
         for name in ("diffuse", "specular"):
             if float(self.value(name, 1)) != 1:
                 self.glb.note(f"'{name}' of lights, which strengthens one kind of reflection, is left out")
-        if self.value("shaping:ies:file", None):
-            self.glb.note("'shaping:ies:file' of lights is left out")
         if not self.value("shadow:enable", True) or tuple(self.value("shadow:color", (0, 0, 0))) != (0, 0, 0):
             self.glb.note("lights cast shadows, and black ones, as light does")
         light = UsdLux.LightAPI(self.prim)
@@ -78,6 +76,9 @@ class Lights:
         names = ("shaping:cone:angle", "shaping:cone:softness", "shaping:focus", "shaping:focusTint")
         shaped = self.prim.HasAPI(UsdLux.ShapingAPI) or any(
             self.prim.GetAttribute(prefix + n).HasAuthoredValue() for n in names for prefix in ("", "inputs:"))
+        measured = self.profile(texture) if max(self.color) > 0 else None
+        if measured:
+            return measured
         members = {"radiance": self.radiance(texture)}
         angle = min(max(float(self.value("shaping:cone:angle", 90)), 0), 180) if shaped else 180
         soft = min(max(float(self.value("shaping:cone:softness", 0)), 0), 1)
@@ -93,10 +94,34 @@ class Lights:
         if not shaped or angle >= 180 or (flat and angle >= 90 and soft == 0):
             return {"class": "DiffuseEmission", "members": members}
         if soft > 0:
-            self.glb.note("soft edges of cones fall off smoothly in the cosine, not in the angle")
+            members["edge"] = "smooth_angle"
         members.update(axis=[0, 0, -1], inner_angle={"angle": math.radians(angle * (1 - soft))},
                        outer_angle={"angle": math.radians(max(angle, 0.01))})
         return {"class": "SpotEmission", "members": members}
+
+    def profile(self, texture):
+        """The IesEmission of 'shaping:ies:file', or None. The file's candelas multiply the luminance towards each direction."""
+        asset = self.value("shaping:ies:file", None)
+        if not asset or not asset.path:
+            return None
+        path = asset.resolvedPath
+        if not path or Ar.IsPackageRelativePath(path):
+            self.glb.note(f"the IES file '{asset.path}' is " + ("not read within a package" if path else "not there") + ": it is left out")
+            return None
+        self.materials.files.require(path, asset.path)
+        if texture:
+            self.glb.note("the texture of a light with an IES file is left out")
+        if float(self.value("shaping:ies:angleScale", 0)) != 0:
+            self.glb.note("'shaping:ies:angleScale' is left out")
+        flat = self.prim.GetTypeName() in ("RectLight", "DiskLight")
+        if (float(self.value("shaping:cone:angle", 90)) < (90 if flat else 180) or float(self.value("shaping:cone:softness", 0)) > 0
+                or float(self.value("shaping:focus", 0)) > 0):
+            self.glb.note("the cone and the focus of a light with an IES file are left out")
+        # As IesEmission divides by the luminance of its colour [cd/m^2], of which 1 is a pixel of 1 by the observer's integral.
+        luminance = sum(c * y for c, y in zip(self.color, (0.2126729, 0.7151522, 0.072175))) * 683.002 * 106.856917
+        return {"class": "IesEmission", "members": {
+            "file": {"path": path}, "color": self.radiance(), "multiplier": luminance, "about": "axis",
+            "normalized": bool(self.value("shaping:ies:normalize", False)), "axis": [0, 0, -1], "across": [1, 0, 0]}}
 
     def normalize(self, area):
         """Divides by the size, in the units of the stage's world."""
@@ -135,6 +160,8 @@ class Lights:
         emission = self.emission()
         if "axis" in emission["members"]:
             emission["members"]["axis"] = [0, 0, 1]
+        if "across" in emission["members"]:
+            emission["members"]["across"] = [-1, 0, 0]
         return self.part("Disc", {"radius": r, "emission": emission}, turned * place)
 
     def cylinder(self, place):
@@ -151,6 +178,8 @@ class Lights:
         emission = self.emission()
         if "axis" in emission["members"]:
             emission["members"]["axis"] = [0, -1, 0]  # -z of the light
+        if "across" in emission["members"]:
+            emission["members"]["across"] = [0, 0, 1]
         return self.part("Cylinder", {"radius": r, "height": length, "caps": False, "emission": emission}, turned * place)
 
     def sphere(self, place):

@@ -1,4 +1,4 @@
-"""Skinned meshes as their skeletons bend them at a time, written over them in memory: no file is saved."""
+"""Meshes as blend shapes move and skeletons bend them at a time, written over them in memory: no file is saved."""
 import numpy
 from pxr import Usd, UsdGeom, UsdSkel, Vt
 
@@ -19,19 +19,41 @@ def bend(stage, time, note):
             skeleton = binding.GetSkeleton()
             query = cache.GetSkelQuery(skeleton)
             joints = query.ComputeSkinningTransforms(time) if query else None
-            for skin in binding.GetSkinningTargets() if joints is not None else []:
-                bend_one(skin, query, joints, places.GetLocalToWorldTransform(skeleton.GetPrim()), places, time, note)
+            animation = query.GetAnimQuery() if query else None
+            weights = animation.ComputeBlendShapeWeights(time) if animation else None
+            for skin in binding.GetSkinningTargets():
+                moved = blend(skin, weights, time, note) if skin.HasBlendShapes() and weights else False
+                if joints is not None and skin.HasJointInfluences():
+                    moved = bend_one(skin, joints, places.GetLocalToWorldTransform(skeleton.GetPrim()), places, time, note) or moved
+                if moved:
+                    face_anew(UsdGeom.Mesh(skin.GetPrim()), time, note)
 
 
-def bend_one(skin, query, joints, skeleton, places, time, note):
+def blend(skin, weights, time, note):
+    """Adds to the points what blend shapes, and those in between, move them by, each times its weight. False: nothing moves."""
+    mesh, shapes = UsdGeom.PointBased(skin.GetPrim()), UsdSkel.BlendShapeQuery(UsdSkel.BindingAPI(skin.GetPrim()))
+    points = mesh.GetPointsAttr().Get(time) if mesh else None
+    if points is None or len(points) == 0:
+        return False
+    # Those of the animation's shapes that the mesh has, in its own order.
+    mapper = skin.GetBlendShapeMapper()
+    own = mapper.Remap(weights) if mapper else weights
+    points = Vt.Vec3fArray(points)
+    parts = shapes.ComputeSubShapeWeights(own) if own else None
+    if not parts or not shapes.ComputeDeformedPoints(*parts, shapes.ComputeBlendShapePointIndices(),
+                                                     shapes.ComputeSubShapePointOffsets(), points):
+        note("blend shapes that do not fit their mesh are left out")
+        return False
+    mesh.GetPointsAttr().Set(points, time)
+    return True
+
+
+def bend_one(skin, joints, skeleton, places, time, note):
+    """False: it stays as it is."""
     mesh = UsdGeom.PointBased(skin.GetPrim())
     points = mesh.GetPointsAttr().Get(time) if mesh else None
     if points is None or len(points) == 0:
-        return
-    if skin.HasBlendShapes():
-        note("blend shapes of skins are left out")
-    if not skin.HasJointInfluences():
-        return
+        return False
     mapper = skin.GetJointMapper()
     if mapper and not mapper.IsIdentity():
         joints = mapper.RemapTransforms(joints)
@@ -44,15 +66,19 @@ def bend_one(skin, query, joints, skeleton, places, time, note):
         points = Vt.Vec3fArray(points)
         if not skin.ComputeSkinnedPoints(joints, points, time):
             note("a skin whose joints do not fit its points is shown as it is modelled")
-            return
+            return False
         mesh.GetPointsAttr().Set(moved_by(points, back), time)
-    # They are of the mesh at rest; the bent faces say better where they face.
+    return True
+
+
+def face_anew(mesh, time, note):
+    """Its normals are of the mesh at rest; the moved faces say better where they face."""
     normals = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("normals")
     if mesh.GetNormalsAttr().HasAuthoredValue() or (normals and normals.HasAuthoredValue()):
         note("the normals of skins are those of their bent faces, smoothed")
         if normals:
             normals.GetAttr().Block()
-        mesh.GetNormalsAttr().Set(smooth_normals(UsdGeom.Mesh(skin.GetPrim()), time), time)
+        mesh.GetNormalsAttr().Set(smooth_normals(mesh, time), time)
         mesh.SetNormalsInterpolation("vertex")
 
 

@@ -1,0 +1,77 @@
+// Which media lie on the sides of shapes, and around the sensor.
+
+#include "components/importers/surroundings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "components/volumes/volume_grid.h"
+#include "converter.h"
+#include "etendue/scene_object.h"
+
+namespace etendue::mitsuba {
+
+namespace {
+
+std::string called(const Element& medium) {
+  return medium.id.empty() ? fmt::format("of line {}", medium.at.line) : "'" + medium.id + "'";
+}
+
+/// The unit cube, or the box that the file names, of a grid of densities.
+std::optional<Transform> box_of(const Element& medium, const std::string& file) {
+  const Element* const volume = medium.nested(medium.has("sigma_t") ? "sigma_t" : "density");
+  if (medium.type != "heterogeneous" || !volume || volume->type != "gridvolume") return std::nullopt;
+  const Transform placed = volume->transform().transform.still();
+  if (!volume->boolean("use_grid_bbox", false)) return placed;
+  const VolumeGrid grid = read_volume_grid(file);
+  const Vector3 size = grid.high - grid.low;
+  return placed * Transform::translate({grid.low.x, grid.low.y, grid.low.z}) * Transform::scale({size.x, size.y, size.z});
+}
+
+}  // namespace
+
+Ref<SceneObject> Converter::settle_media(const Element* sensor, bool seen, const std::vector<Ref<SceneObject>>& world) {
+  const std::vector<const Element*> of_sensor = sensor ? sensor->all("medium") : std::vector<const Element*>{};
+  const Element* const around = of_sensor.empty() ? nullptr : of_sensor.front();
+  const auto is_somewhere = [&](const Element* medium) {
+    return medium == around || std::ranges::any_of(sides_, [&](const MediumSides& s) { return s.interior == medium; });
+  };
+  for (const MediumSides& s : sides_)
+    if (s.exterior && s.exterior != s.interior && !is_somewhere(s.exterior))
+      importing_.inexact("a medium around a shape is left out that is neither around the sensor nor inside of anything", s.at);
+  if (!around) return nullptr;
+  if (!seen) {
+    importing_.inexact("the medium around the sensor is left out, as Mitsuba's integrator does", sensor->at);
+    return nullptr;
+  }
+  AroundCamera camera;
+  camera.at = sensor->at;
+  camera.name = called(*around);
+  camera.program = "Mitsuba";
+  const TransformValue t = sensor->transform();
+  camera.camera = t.look_at ? t.look_at->from : t.transform.written(0)(DoublePoint3{});
+  const Ref<Component> cube = make("Box", *around);  // whose coordinates are the world's
+  camera.medium = medium(*around, *cube);
+  if (!camera.medium) return nullptr;
+  if (camera.medium->class_info().find("file_box")) {
+    const Element& volume = *around->nested(around->has("sigma_t") ? "sigma_t" : "density");
+    const bool file_box = volume.boolean("use_grid_bbox", false);
+    camera.box = box_of(*around, file_box ? file(volume).resolved() : "");
+    set_member(*cube, "transform", *camera.box, around->at);
+    camera.medium = medium(*around, *cube);
+  }
+  for (const MediumSides& s : sides_)
+    if (s.interior == around && s.exterior != around && !s.in_group) camera.bodies.push_back(s.object);
+  const Ref<SceneObject> all = surroundings_for(importing_, camera, world);
+  if (all && all->surrounds()) {
+    for (const MediumSides& s : sides_) {
+      if (!s.interior && !s.exterior) let_medium_go_on(*s.object, camera.medium);
+      if (s.interior && !s.exterior && s.interior != around)
+        importing_.inexact("beyond a shape without an exterior is the medium around the sensor, where Mitsuba has none", s.at);
+    }
+  }
+  return all;
+}
+
+}  // namespace etendue::mitsuba

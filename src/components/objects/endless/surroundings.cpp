@@ -1,0 +1,96 @@
+// Surroundings: what all other objects stand in.
+
+#include <fmt/format.h>
+
+#include "geometry/geometry.h"
+
+namespace etendue {
+namespace {
+
+// Its inside is all of space. Paths begin in it and never cross its surface, as there is none: MediumStack keeps it below all
+// objects that paths enter. A medium without end lets nothing come from infinity; one that goes on to a sphere around the scene
+// does, and only what comes from there or goes there takes notice of the sphere.
+class Surroundings final : public SceneObject {
+ public:
+  static void describe(Description<Surroundings>& d) {
+    d.summary(
+         "What all other objects stand in, such as fog or the sea: it has no surface, and its inside is all of space that no "
+         "other object fills, whatever their priorities. Its interior is the medium there, and of its shader the index of "
+         "refraction counts alone.")
+        .group("Shape")
+        .member<&Surroundings::reach>(
+            "reach", "1",
+            "how far from the scene's centre it goes, in radii of the sphere around all objects that have an end; 0: it has no "
+            "end, and light from infinity does not get through what it is filled with",
+            at_least(0), soft(0, 100));
+  }
+
+  void prepare() override {
+    if (!(reach >= 0 && reach < infinity)) fail("reach", "must be finite and not negative");
+    if (reach > 0 && reach < 1) fail("reach", "below 1 the medium would end before the scene does");
+    if (emission) fail("emission", "surroundings have no surface that could emit; their medium may");
+    if (!interior || reach > 0) return;
+    if (!interior->homogeneous())
+      fail("interior", "a medium that differs from place to place needs an end: give a reach, or let a Box be filled with it");
+    if (interior->emits()) refuse_endless_light();
+  }
+
+  bool infinite() const override { return true; }
+  bool surrounds() const override { return true; }
+  void enclose(const Point3& centre, float radius) override {
+    centre_ = centre;
+    radius_ = reach * radius;
+  }
+
+  float surrounding_reach(const Ray& ray) const override {
+    if (reach == 0) return infinity;
+    // The far end of the sphere, in double as Sphere's; of a ray that passes it by, nothing.
+    double a = 0, b = 0, c = -double(radius_) * double(radius_);
+    for (int k = 0; k < 3; ++k) {
+      const double d = double(ray.direction[k]), o = double(ray.origin[k]) - double(centre_[k]);
+      a += d * d;
+      b += d * o;
+      c += o * o;
+    }
+    const double squared = b * b - a * c;
+    if (!(squared >= 0)) return 0;
+    const double root = std::sqrt(squared);
+    return float(std::max(0.0, b > 0 ? -c / (b + root) : (root - b) / a));
+  }
+
+  Bounds3 bounds() const override { return {}; }
+  bool intersect(const Ray&, Hit&) const override { return false; }
+  bool occludes(const Ray&) const override { return false; }
+  void surface_point(const Ray&, const Hit&, SurfacePoint&) const override {}
+  void tangents(SurfacePoint&) const override {}
+  float area(float) const override { return 0; }
+  SurfaceSample sample_area(Point2, float) const override { return {}; }
+  float area_density(const SurfacePoint&) const override { return 0; }
+
+  float reach = 0;
+
+ private:
+  /// What shines without end and absorbs nothing would be endlessly bright.
+  void refuse_endless_light() const {
+    for (int first = 360; first <= 830; first += spectrum_size) {
+      Wavelengths w;
+      for (int i = 0; i < spectrum_size; ++i) w.place(i, float(std::min(first + i, 830)), 1);
+      const VolumeCoefficients c = interior->coefficients({}, 0, w);
+      const Spectrum extinction = c.extinction();
+      for (int i = 0; i < spectrum_size; ++i)
+        if (c.emission[i] > 0 && !(extinction[i] > 0))
+          fail("interior",
+               fmt::format("its medium shines at {} nm and absorbs nothing there: without end it would be endlessly bright; "
+                           "give a reach",
+                           std::min(first + i, 830)));
+    }
+  }
+
+  Point3 centre_{0, 0, 0};
+  float radius_ = 1;  // [m]
+};
+
+const Register<Surroundings> registered;
+
+}  // namespace
+}  // namespace etendue
