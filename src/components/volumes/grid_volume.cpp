@@ -47,7 +47,7 @@ class GridVolume final : public ColoredVolume {
     d.group("Albedo of each cell")
         .member<&GridVolume::albedo_file>(
             "albedo_file", "",
-            "a grid (.vol, .npy), of the same place, that says instead how much of the extinction "
+            "a grid (.vol, .npy, or the first of a .nvdb), of the same place, that says instead how much of the extinction "
             "scatters: one channel, or RGB")
         .member<&GridVolume::color_space>("color_space", "", "primaries and white of RGB in grids", rgb_space_names());
   }
