@@ -69,6 +69,10 @@ class GridVolume final : public ColoredVolume {
       require_no_negative(*this, "albedo_file", albedo_grid_);
     }
     largest_ = grid_.largest() * (grid_.channels == 3 ? 2 : 1);
+    const Color sums[] = {extinction ? extinction : absorption, extinction ? flat_spectrum(0) : scattering};
+    float most = 0;
+    for (const Color& color : sums) most += largest_ * range_of(*color, ColorUse::coefficient).most;
+    if (!(most <= most_extinction)) fail(file.empty() ? "density" : "file", fmt::format(too_dense, most));
     if (!placement.valid()) fail("placement", "must be finite, and have an inverse");
   }
 

@@ -1,9 +1,13 @@
 #pragma once
-// HenyeyGreensteinVolume: media that scatter by this phase function, alike everywhere.
+// HenyeyGreensteinVolume: media that scatter by this phase function, alike everywhere, and may differ in density.
 
 #include "etendue/volume_shader.h"
 
 namespace etendue {
+
+/// A walk through denser matter [1/m] would not come to an end.
+inline constexpr float most_extinction = 1e12f;
+inline constexpr char too_dense[] = "the extinction may become {:g} per metre, which light cannot be followed through";
 
 class HenyeyGreensteinVolume : public VolumeShader {
  public:
