@@ -160,6 +160,9 @@ TEST(MapVolume, IsThinnedToItsBound) {
   EXPECT_NEAR(dense.absorption[0], 2, 1e-4f);
   EXPECT_GE(v->majorant(w)[0], dense.extinction()[0]);
   expect_refused("MapVolume { density: FormulaMap { formula: \"x\" }, absorption: 1 }", "density", "give the medium a `bound`");
+  // Numbers of a damaged file, say: the bound would be infinite, and steps to the next collision nothing.
+  expect_refused("MapVolume { density: GridMap { values: [3e38] }, absorption: 1000 }", "density", "cannot be followed");
+  expect_refused("GridVolume { density: [3e38], absorption: 1000 }", "density", "cannot be followed");
   expect_refused("MapVolume { absorption: -1 }", "absorption", "negative");
   expect_refused("MapVolume { extinction: 1, scattering: 1 }", "extinction", "only one way");
   expect_refused("MapVolume { extinction: 1, albedo: 2 }", "albedo", "between 0 and 1");

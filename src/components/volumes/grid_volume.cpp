@@ -47,7 +47,7 @@ class GridVolume final : public ColoredVolume {
     d.group("Albedo of each cell")
         .member<&GridVolume::albedo_file>(
             "albedo_file", "",
-            "a grid (.vol, .npy), of the same place, that says instead how much of the extinction "
+            "a grid (.vol, .npy, or the first of a .nvdb), of the same place, that says instead how much of the extinction "
             "scatters: one channel, or RGB")
         .member<&GridVolume::color_space>("color_space", "", "primaries and white of RGB in grids", rgb_space_names());
   }
@@ -69,6 +69,10 @@ class GridVolume final : public ColoredVolume {
       require_no_negative(*this, "albedo_file", albedo_grid_);
     }
     largest_ = grid_.largest() * (grid_.channels == 3 ? 2 : 1);
+    const Color sums[] = {extinction ? extinction : absorption, extinction ? flat_spectrum(0) : scattering};
+    float most = 0;
+    for (const Color& color : sums) most += largest_ * range_of(*color, ColorUse::coefficient).most;
+    if (!(most <= most_extinction)) fail(file.empty() ? "density" : "file", fmt::format(too_dense, most));
     if (!placement.valid()) fail("placement", "must be finite, and have an inverse");
   }
 

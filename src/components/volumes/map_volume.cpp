@@ -88,6 +88,8 @@ class MapVolume final : public PhasedVolume {
       if (*map && (!extinction || (map != &absorption && map != &scattering)) && !(bound_of(**map) < infinity))
         fail(name, fmt::format("how large the values of this {} may become is not known: give the medium a `bound`",
                                (*map)->class_info().name));
+    const float most = density_bound_ * (extinction ? bound_of(*extinction) : bound_of(*absorption) + bound_of(*scattering));
+    if (most > most_extinction) fail("density", fmt::format(too_dense, most));
   }
 
   bool homogeneous() const override { return false; }

@@ -44,7 +44,7 @@ void homogeneous(Reader& reader, const std::string& name, const Parameters& p) {
 }  // namespace
 
 double light_scale(const Reader& reader, const Parameters& p) {
-  const double scale = p.number("Lescale", 1) * reader.exposure;
+  const double scale = p.number("Lescale", p.number("LeScale", 1)) * reader.exposure;
   if (scale < 0) throw Error("the scale of a medium's light must not be negative", p.place("Lescale"));
   return scale;
 }
