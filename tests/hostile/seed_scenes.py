@@ -220,7 +220,7 @@ Texture "mixed" "spectrum" "mix" "texture tex1" "scaled" "rgb tex2" [ 0 1 0 ] "t
 Texture "four" "float" "bilerp" "float v00" 0 "float v11" 1 Texture "stone" "spectrum" "marble" Texture "spots" "float" "dots"
 Texture "ball" "float" "windy" "string mapping" "spherical"  Texture "wound" "float" "wrinkled" "string mapping" "cylindrical"
 LightSource "point" "spectrum I" [ 400 1 700 2 ] "float power" 20 LightSource "projection" "string filename" "picture.png" "float fov" 40
-LightSource "goniometric" "string filename" "picture.png" LightSource "infinite" "string filename" "square.png" "float illuminance" 3
+LightSource "goniometric" "string filename" "square.png" LightSource "infinite" "string filename" "square.png" "float illuminance" 3
 LightSource "distant" "point3 from" [ 0 1 0 ] LightSource "spot" "float coneangle" 40 "float conedeltaangle" 5
 MakeNamedMedium "smoke" "string type" "uniformgrid" "integer nx" 2 "integer ny" 1 "integer nz" 1 "float density" [ .5 1 ] "float g" .3
 MakeNamedMedium "milk" "string preset" "Wholemilk" "string type" "homogeneous" MakeNamedMedium "cloud" "string type" "cloud"

@@ -176,7 +176,7 @@ def tables():
         yield Seed(ending, file, data, [RENDER], shading(f'Lambertian {{ color: spectrum("{file}") }}'), True)
     lamp = {"scene.etd": scene('Point { emission: IesEmission { file: "input.ies" } }')}
     yield Seed("ies", "input.ies", IES, [RENDER], lamp, True)
-    lens = scene("Sphere { emission: DiffuseEmission {} }").replace("PerspectiveCamera {", 'LensCamera { file: "input.dat",')
+    lens = scene("Sphere { emission: DiffuseEmission {} }").replace(b"PerspectiveCamera {", b'LensCamera { file: "input.dat",')
     yield Seed("lens", "input.dat", LENS, [RENDER], {"scene.etd": lens}, True)
     grid = {"scene.etd": scene('SignedDistanceGrid { file: "input.npy" }')}
     yield Seed("npy grid", "input.npy", numpy_array((4, 5, 6)), [RENDER], grid)

@@ -136,6 +136,12 @@ TEST(PbrtExport, CamerasThatMirrorAndWideOnes) {
     expect_same(scene, "", std::string("SphericalCamera { from: [0.4, 1, 0.8] m, to: [0, 0, 0] m") + more + " }");
 }
 
+TEST(PbrtExport, Lenses) {
+  const std::string scene = sky + "Sphere { centre: [0.3, 0.2, 0] m, radius: 0.5 m, shader: Lambertian { color: 0.9 } }\n";
+  for (const char* more : {"", ", aperture_diameter: 0.005, measures: irradiance", ", unit: 0.0015, focus_distance: 2 m"})
+    expect_same(scene, "", std::string("LensCamera { from: [1, 1, 3] m, to: [0, 0, 0] m") + more + " }");
+}
+
 TEST(PbrtExport, InstancesAndMedia) {
   expect_same(sky +
               "Sphere { radius: 1 m, shader: PassThrough {}, interior: HomogeneousVolume { absorption: rgb(0.1, 0.5, 0.9), "

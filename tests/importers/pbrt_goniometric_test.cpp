@@ -111,6 +111,30 @@ TEST(PbrtSpot, FallsOffAsInItsVersion) {
   }
 }
 
+// Even over directions, the image's right towards +x and its top towards -y; "power" is the integral over directions:
+// 12.2.2. Of a white half and a grey one of 60 degrees across, seen from the middle: I = power / (mean * solid angle).
+TEST(PbrtProjection, IsEvenOverDirections) {
+  const TemporaryFolder folder;
+  std::vector<float> rgb;
+  for (int i = 0; i < size * size; ++i)
+    for (int c = 0; c < 3; ++c) rgb.push_back(i % size < size / 2 ? 0.5f : 1.0f);
+  test::write_image(folder / "map.exr", {size, size, 3, NumberType::single}, rgb);
+  const Imported i =
+      import_text(folder, v4("LightSource \"projection\" \"string filename\" \"map.exr\" \"float fov\" 60 \"float power\" 40"));
+  EXPECT_NE(i.told().find("squares in pbrt"), std::string::npos);
+  Light lamp{i.job, {}};
+  i.job->scene->prepare();
+  const Ref<SceneObject>& object = i.job->scene->objects.at(0);
+  object->emission->prepare();
+  object->prepare();
+  lamp.point = object->sample_area({0.5f, 0.5f}, 0).point;
+  const Light even = light(folder, "LightSource \"point\" \"rgb I\" [1 1 1]", false);
+  const double a2 = std::pow(std::tan(M_PI / 6), 2), solid_angle = 4 * std::atan(a2 / std::sqrt(1 + 2 * a2));
+  for (const double x : {-0.5, -0.2, 0.2, 0.5})
+    EXPECT_NEAR(lamp.over(even, normalize(Vector3{float(x), 0.1f, 1})), (x > 0 ? 1 : 0.5) * 40 / (0.75 * solid_angle), 0.1)
+        << x;
+}
+
 TEST(PbrtGoniometric, WhatIsNotThereIsTold) {
   const TemporaryFolder folder;
   test::write_image(folder / "red.exr", {2, 1, 3, NumberType::single}, {1, 0, 0, 1, 1, 1});

@@ -1,5 +1,7 @@
 // LensCamera: rays through a lens's surfaces.
 
+#include <fmt/format.h>
+
 #include "etendue/core/warp.h"
 #include "lens_pupils.h"
 #include "pose.h"
@@ -49,8 +51,7 @@ class LensCamera final : public Camera {
             "the same numbers, four for each surface; a plane with the same index on both sides is the stop. The default is "
             "a double Gauss lens of 50 mm, f/2, by Tronnier",
             unless("file"))
-        .member<&LensCamera::unit>("unit", "m", "what lengths of the table are given in", more_than(0), soft(1e-3, 1),
-                                   logarithmic)
+        .member<&LensCamera::unit>("unit", "m", "what lengths of the table are given in", more_than(0), soft(1e-4, 2e-3))
         .member<&LensCamera::aperture_diameter>("aperture_diameter", "m", "of the stop; 0: as the table says", at_least(0),
                                                 soft(1e-3, 0.05), logarithmic)
         .member<&LensCamera::focus_distance>("focus_distance", "m",
@@ -83,7 +84,8 @@ class LensCamera final : public Camera {
       member = file.empty() ? "surfaces" : "file";
       pupils_.find(lens_, double(film_diagonal) / 2);
     } catch (const Error& e) {
-      fail(member, e.what());
+      const std::string reason = e.what(), path = file.empty() ? "" : file.resolved();
+      fail(member, reason.find(path) == std::string::npos ? fmt::format("'{}': {}", path, reason) : reason);
     }
     lens_density_ = float(1 / (exact_pi * squared(pupils_.disc_radius())));
     update();

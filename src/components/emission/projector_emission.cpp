@@ -14,7 +14,8 @@ namespace {
 // gets the irradiance I cos^3(theta) / d^2, so a projector that shows a white image evenly white sends out
 //     I(x, y) = scale rgb(x, y) / cos^3(theta)                                 [W sr^-1 nm^-1]
 // as good projectors do. With profile f = 1 / cos^3 within the image (ShapedEmission; M is the colour space's white) it is, for
-// a point, Omega = integral of f dw = w h, the image's area.
+// a point, Omega = integral of f dw = w h, the image's area. A projector that is even over directions (pbrt's) has f = 1, and
+// Omega = 4 atan(a b / sqrt(1 + a^2 + b^2)), with a and b half of w and h, the solid angle of the image.
 //
 // Importance sampling: a density that is constant over each pixel, in proportion to the mean over the pixel of the importance
 // (luminance) of the bilinear image. The mean of a hat function over its own pixel is 3/4, over each neighbour 1/8, in both
@@ -40,6 +41,11 @@ class ProjectorEmission final : public ShapedEmission {
         .member<&ProjectorEmission::image_scale>(
             "scale", "1", "multiplies the image; 1: white is an intensity of 1 in the axis", at_least(0), soft(0.01, 1000),
             logarithmic, unless("power"), unless("luminous_flux"), unless("luminous_intensity"), unless("illuminance"))
+        .member<&ProjectorEmission::even>(
+            "even", "",
+            "where a white image is evenly bright; screen: on a screen across the axis; directions: "
+            "in all directions, so that a screen is darker towards the edges",
+            choices("screen", "directions"))
         .member<&ProjectorEmission::color_space>("color_space", "", "primaries and white of the image's RGB", rgb_space_names(),
                                                  when("file"))
         .member<&ProjectorEmission::transfer>("transfer", "",
@@ -74,7 +80,7 @@ class ProjectorEmission final : public ShapedEmission {
     float cosine = 0;
     if (!find(p, direction, at, cosine) || !emits(p, direction)) return {};
     const Spectrum seen = of_map_ ? pictured(at, p.time, w) : colour(look_up(at), w);
-    return seen * (factor(p.object, p.time) / (cosine * square(cosine)));
+    return seen * (factor(p.object, p.time) * brightness(cosine));
   }
 
   DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
@@ -111,6 +117,8 @@ class ProjectorEmission final : public ShapedEmission {
   float aspect = 1;
   float fov = 40, image_scale = 1;
   Axis fov_axis = Axis::width;
+  enum class Even : std::uint8_t { screen, directions };
+  Even even = Even::screen;
   std::string color_space = "srgb", transfer = automatic_transfer;
 
  protected:
@@ -118,24 +126,36 @@ class ProjectorEmission final : public ShapedEmission {
   float profile(const SurfacePoint& p, const Vector3& direction) const override {
     Point2 at;
     float cosine = 0;
-    return find(p, direction, at, cosine) ? 1 / (cosine * square(cosine)) : 0;
+    return find(p, direction, at, cosine) ? brightness(cosine) : 0;
   }
-  double solid_angle() const override { return 4 * double(half_width_) * double(half_height_); }
-  /// integral of |n . w| dA over the part of the image towards the sides that emit: 64 x 64 midpoints.
+  double solid_angle() const override {
+    if (even == Even::screen) return area();
+    const double a = double(half_width_), b = double(half_height_);
+    return 4 * std::atan(a * b / std::sqrt(1 + a * a + b * b));
+  }
+  /// integral of |n . w| f dw over the part of the image towards the sides that emit: 64 x 64 midpoints.
   double surface_share(const SurfacePoint& p) const override {
     constexpr int steps = 64;
     const Frame f = picture_frame(p);
     double sum = 0;
     for (int i = 0; i < steps * steps; ++i) {
       const float x = 2 * (float(i % steps) + 0.5f) / steps - 1, y = 2 * (float(i / steps) + 0.5f) / steps - 1;
-      const Vector3 direction = f.to_world(normalize(Vector3{x * half_width_, y * half_height_, 1}));
-      if (emits(p, direction)) sum += std::abs(double(dot(p.normal, direction)));
+      const Vector3 local = normalize(Vector3{x * half_width_, y * half_height_, 1}), direction = f.to_world(local);
+      if (emits(p, direction)) sum += std::abs(double(dot(p.normal, direction))) * per_area(local.z);
     }
-    return sum * solid_angle() / (steps * steps);
+    return sum * area() / (steps * steps);
   }
   Vector3 own_axis(const SurfacePoint& p) const override { return turned(p, {0, 0, 1}); }
 
  private:
+  double area() const { return 4 * double(half_width_) * double(half_height_); }
+  /// f, and f dw / dA.
+  float brightness(float cosine) const { return even == Even::screen ? 1 / (cosine * square(cosine)) : 1; }
+  double per_area(float cosine) const { return even == Even::screen ? 1 : double(cosine * square(cosine)); }
+  double per_area(Point2 at) const {
+    return per_area(1 / std::sqrt(1 + square((2 * at.x - 1) * half_width_) + square((1 - 2 * at.y) * half_height_)));
+  }
+
   void read_image() {
     try {
       image_ = read_linear_image(file.resolved(), transfer);
@@ -177,9 +197,13 @@ class ProjectorEmission final : public ShapedEmission {
   Spectrum mean_of_picture(const Wavelengths& w) const {
     constexpr int side = 64;
     Spectrum sum;
-    for (int i = 0; i < side * side; ++i)
-      sum += pictured({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}, 0, w);
-    return sum / float(side * side);
+    double weights = 0;
+    for (int i = 0; i < side * side; ++i) {
+      const Point2 at{(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side};
+      sum += pictured(at, 0, w) * float(per_area(at));
+      weights += per_area(at);
+    }
+    return sum / float(weights);
   }
 
   /// Where in the image, from its upper left corner, a direction goes; false: beside it.
@@ -215,14 +239,17 @@ class ProjectorEmission final : public ShapedEmission {
     const size_t width = size_t(image_.width), height = size_t(image_.height);
     std::vector<float> raw(width * height);
     std::array<double, 3> sums{};
+    double weights = 0;
     for (size_t i = 0; i < raw.size(); ++i) {
+      const double weight = per_area({(float(i % width) + 0.5f) / float(width), (float(i / width) + 0.5f) / float(height)});
+      weights += weight;
       const float* rgb = &image_.rgb[3 * i];
       const auto& m = space_->to_xyz;
       const double luminance = m[3] * double(rgb[0]) + m[4] * double(rgb[1]) + m[5] * double(rgb[2]);
       raw[i] = std::max(float(luminance), 0.02f * (rgb[0] + rgb[1] + rgb[2]));
-      for (size_t c = 0; c < 3; ++c) sums[c] += double(rgb[c]);
+      for (size_t c = 0; c < 3; ++c) sums[c] += weight * double(rgb[c]);
     }
-    for (size_t c = 0; c < 3; ++c) mean_[c] = float(sums[c] / double(raw.size()));
+    for (size_t c = 0; c < 3; ++c) mean_[c] = float(sums[c] / weights);
 
     densities_.resize(raw.size());
     columns_.resize(raw.size());
@@ -247,7 +274,7 @@ class ProjectorEmission final : public ShapedEmission {
     empty_ = !(total > 0);
     if (empty_) return;
     for (size_t y = 0; y < height; ++y) rows_[y] = float(row_sums[y] / total);
-    const double pixel_area = solid_angle() / double(raw.size());
+    const double pixel_area = area() / double(raw.size());
     for (float& d : densities_) d = float(double(d) / (total * pixel_area));
   }
 

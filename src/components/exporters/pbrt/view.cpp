@@ -3,20 +3,64 @@
 #include <cmath>
 #include <filesystem>
 
+#include "components/cameras/lens_pupils.h"
 #include "writer.h"
 
 namespace etendue::pbrt_export {
 
 namespace {
 constexpr double exact_pi = 3.14159265358979323846;
+
+/// How far the point is from the camera that is sharp [m].
+double focus_of(const Component& camera) {
+  const std::vector<double> f = numbers_of(camera, "from"), t = numbers_of(camera, "to");
+  const double focus = number_of(camera, "focus_distance");
+  return focus > 0 ? focus : std::sqrt(std::pow(t[0] - f[0], 2) + std::pow(t[1] - f[1], 2) + std::pow(t[2] - f[2], 2));
 }
+
+/// A LensCamera's surfaces, with its stop as it is opened [m].
+std::vector<LensSurface> lens_of(const Component& camera) {
+  const Value file = get(camera, "file"), list = get(camera, "surfaces");
+  const FilePath* path = file.as<FilePath>();
+  std::vector<LensSurface> surfaces = lens_surfaces(
+      path && !path->empty() ? read_lens_file(path->resolved()) : list.as<Numbers>()->values, number_of(camera, "unit"));
+  const double open = number_of(camera, "aperture_diameter");
+  for (size_t i = 0; i < surfaces.size(); ++i)
+    if (open > 0 && is_stop(surfaces, i)) surfaces[i].diameter = std::min(surfaces[i].diameter, open);
+  return surfaces;
+}
+
+/// By what pbrt's irradiance of the film is to be multiplied.
+double lens_brightness(const Component& camera) {
+  if (camera.class_info().name != "LensCamera" || word_of(camera, "measures") == "irradiance") return 1;
+  LensSystem lens;
+  lens.set(lens_of(camera));
+  lens.focus(focus_of(camera));
+  LensPupils pupils;
+  pupils.find(lens, number_of(camera, "film_diagonal") / 2);
+  return 1 / pupils.solid_angle();
+}
+
+/// Lengths of the table are millimetres.
+std::string realistic(Exporting& exporting, const Component& camera) {
+  std::string table = "# radius of curvature, thickness, index, diameter\n";
+  double stop = 1e3;  // of what pbrt takes for a stop it makes nothing wider than it is
+  for (const LensSurface& s : lens_of(camera)) {
+    table += fmt::format("{} {} {} {}\n", s.radius * 1e3, s.thickness * 1e3, s.index, s.diameter * 1e3);
+    if (s.radius == 0) stop = s.diameter * 1e3;
+  }
+  return fmt::format("Camera \"realistic\" \"string lensfile\" \"{}\" \"float aperturediameter\" {} \"float focusdistance\" {}",
+                     exporting.write_beside("lens", "dat", table), stop, focus_of(camera));
+}
+
+}  // namespace
 
 void Writer::camera() {
   const Component& camera = *job.camera;
   const std::string name = camera.class_info().name;
   const bool perspective = name == "PerspectiveCamera", orthographic = name == "OrthographicCamera",
-             spherical = name == "SphericalCamera";
-  if (!perspective && !orthographic && !spherical) {
+             spherical = name == "SphericalCamera", lens = name == "LensCamera";
+  if (!perspective && !orthographic && !spherical && !lens) {
     exporting.inexact(fmt::format("pbrt has no camera like {}: a pinhole is taken", name), &camera);
     out_ += "Camera \"perspective\"\n";
     return;
@@ -48,6 +92,10 @@ void Writer::camera() {
         fmt::format("Camera \"spherical\" \"string mapping\" \"{}\"{}\n", square ? "equalarea" : "equirectangular", shutter);
     return;
   }
+  if (lens) {
+    out_ += realistic(exporting, camera) + shutter + "\n";
+    return;
+  }
   if (number_of(camera, "near_clip") > 0 || number_of(camera, "far_clip") > 0)
     exporting.inexact("pbrt sees what is nearer than near_clip and farther than far_clip", &camera);
   const double aspect = double(job.image->width) / job.image->height;
@@ -65,11 +113,8 @@ void Writer::camera() {
   if (across_width && !shorter_is_width) tangent /= aspect;
   if (!across_width && shorter_is_width) tangent *= aspect;
   out_ += fmt::format("Camera \"perspective\" \"float fov\" {}", 2 * std::atan(tangent) * 180 / exact_pi);
-  if (const double lens = number_of(camera, "lens_radius"); lens > 0) {
-    double focus = number_of(camera, "focus_distance");
-    if (focus == 0) focus = std::sqrt(std::pow(t[0] - f[0], 2) + std::pow(t[1] - f[1], 2) + std::pow(t[2] - f[2], 2));
-    out_ += fmt::format(" \"float lensradius\" {} \"float focaldistance\" {}", lens, focus);
-  }
+  if (const double radius = number_of(camera, "lens_radius"); radius > 0)
+    out_ += fmt::format(" \"float lensradius\" {} \"float focaldistance\" {}", radius, focus_of(camera));
   // A lens that is shifted sees a window beside the middle; the shorter side of pbrt's is 2 long.
   if (const std::vector<double> shift = numbers_of(camera, "principal_point"); shift[0] != 0 || shift[1] != 0) {
     const double x = std::max(aspect, 1.0), y = std::max(1 / aspect, 1.0);
@@ -89,7 +134,10 @@ void Writer::film() {
   out_ += fmt::format("Film \"rgb\" \"integer xresolution\" {} \"integer yresolution\" {} \"string filename\" \"{}\"",
                       image.width, image.height, file);
   // The longer its shutter is open, the brighter pbrt's picture is.
-  if (close > open && close - open != 1) out_ += fmt::format(" \"float iso\" {}", 100 / (close - open));
+  const double brightness = lens_brightness(*job.camera) / (close > open ? close - open : 1);
+  if (brightness != 1) out_ += fmt::format(" \"float iso\" {}", 100 * brightness);
+  if (job.camera->class_info().name == "LensCamera")
+    out_ += fmt::format(" \"float diagonal\" {}", number_of(*job.camera, "film_diagonal") * 1e3);
   if (const std::vector<double> crop = numbers_of(image, "crop"); crop.size() == 4)
     out_ += fmt::format(" \"integer pixelbounds\" [ {} {} {} {} ]", crop[0], crop[2], crop[1], crop[3]);
   out_ += "\n";

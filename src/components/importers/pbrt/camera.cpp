@@ -177,7 +177,8 @@ Ref<Component> realistic(Reader& reader) {
         reader.importing.inexact("a plane of glass refracts here, which pbrt takes for a stop", p.place("lensfile"));
     }
   } catch (const Error& e) {
-    throw Error(e.what(), p.place("lensfile"));
+    const std::string reason = e.what(), path = file->resolved();
+    throw Error(reason.find(path) == std::string::npos ? fmt::format("'{}': {}", path, reason) : reason, p.place("lensfile"));
   }
   if (!(stop > 0 && focus > 0)) throw Error("'aperturediameter' and 'focusdistance' must be more than 0", p.at);
   if (stops) set_member(*camera, "aperture_diameter", stop * 1e-3 * scale, p.at);

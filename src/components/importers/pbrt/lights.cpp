@@ -103,20 +103,44 @@ void distant(Reader& reader, const Parameters& p) {
   add_light(reader, object, emission, p.at);
 }
 
+/// The integral over directions of an image's luminance, as pbrt has it: at the middles of texels, where the solid angle of an
+/// area on the plane at distance 1 is cos^3 of it.
+double projected_power(const FilePath& file, double fov) {
+  LinearImage image;
+  try {
+    image = read_linear_image(file.resolved(), automatic_transfer);
+  } catch (const Error&) {
+    return 0;  // told by the light
+  }
+  const double aspect = double(image.width) / image.height, half = std::tan(fov * pi / 360), a = half * std::max(aspect, 1.0),
+               b = half * std::max(1 / aspect, 1.0);
+  const auto& xyz = rgb_space("srgb").to_xyz;
+  double sum = 0;
+  for (size_t i = 0; i < image.rgb.size() / 3; ++i) {
+    const double x = a * (2 * (double(i % size_t(image.width)) + 0.5) / image.width - 1),
+                 y = b * (2 * (double(i / size_t(image.width)) + 0.5) / image.height - 1);
+    for (size_t c = 0; c < 3; ++c) sum += xyz[3 + c] * double(image.rgb[3 * i + c]) * std::pow(1 + x * x + y * y, -1.5);
+  }
+  return sum * 4 * a * b / (double(image.width) * image.height);
+}
+
 /// pbrt's light looks along +z with the image's right towards +x and its top towards -y: half a turn from ours.
 void projection(Reader& reader, const Parameters& p) {
   const auto file = image_file(reader, p, p.has("mapname") ? "mapname" : "filename");
   if (!file) return;
   const Ref<Component> emission = reader.make("ProjectorEmission", p.at);
   set_member(*emission, "file", *file, p.at);
-  set_member(*emission, "fov", p.number("fov", reader.version == 3 ? 45 : 90), p.at);
+  const double fov = p.number("fov", reader.version == 3 ? 45 : 90);
+  set_member(*emission, "fov", fov, p.at);
   set_member(*emission, "fov_axis", "smaller", p.at);
-  set_member(*emission, "scale", p.number("scale", 1) * reader.exposure, p.at);
+  set_member(*emission, "even", "directions", p.at);
+  double scale = p.number("scale", 1) * reader.exposure;
   if (const double power = p.number("power", -1); power > 0)
-    set_member(*emission, "luminous_flux", power * p.number("scale", 1) * luminous_unit * reader.exposure, p.at);
+    if (const double given = projected_power(*file, fov); given > 0) scale *= power / given;
+  set_member(*emission, "scale", scale, p.at);
   if (p.has("I")) reader.importing.inexact("the intensity of a projection light is that of its image", p.place("I"));
-  reader.importing.inexact(
-      "a projected image is even on a screen; pbrt's is even over directions, darker towards the edges of a screen", p.at);
+  if (reader.version == 4)
+    reader.importing.inexact("a projected image is smooth between the middles of its texels, which are squares in pbrt", p.at);
   add_light(reader, placed(reader, "Point", p, Transform::rotate(pi, {0, 0, 1})), emission, p.at);
 }
 
