@@ -35,7 +35,6 @@ constexpr ForeignWord classes[] = {
     {"", "plane", many, "'Rectangle', or 'InfinitePlane'"},
     {"", "quad", many, "'Rectangle'"},
     {"", "ground", many, "'InfinitePlane', or 'Rectangle'"},
-    {"", "fog", many, "'Surroundings', with 'interior' 'HomogeneousVolume'"},
     {"", "atmosphere", many, "'Surroundings', with 'interior' 'HomogeneousVolume'"},
     {"", "metaball", blender, "'Metaballs'"},
     {"", "group", many, "a scene such as 'BvhScene', placed with 'Instance'"},
@@ -157,7 +156,7 @@ constexpr ForeignWord classes[] = {
     {"", "wavetexture", blender, "'MarbleMap', or 'FormulaMap'"},
     // media
     {"", "homogeneous", many, "'HomogeneousVolume'"},
-    {"", "fog", many, "'HomogeneousVolume', as the 'interior' of a 'SceneObject'"},
+    {"", "fog", many, "'HomogeneousVolume', as the 'interior' of 'Surroundings' or another 'SceneObject'"},
     {"", "volumescatter", blender, "'HomogeneousVolume' with 'scattering'"},
     {"", "volumeabsorption", blender, "'HomogeneousVolume' with 'absorption'"},
     {"", "principledvolume", blender, "'HomogeneousVolume'"},

@@ -1,24 +1,16 @@
 #pragma once
-<<<<<<< HEAD:src/components/volumes/phased_volume.h
-// PhasedVolume: media in which light turns by one phase function, alike everywhere.
-=======
-// HenyeyGreensteinVolume: media that scatter by this phase function, alike everywhere, and may differ in density.
->>>>>>> 1af55cd643f2dfe5257e71a8e7c4c8c16c080787:src/components/volumes/henyey_greenstein.h
+// PhasedVolume: media in which light turns by one phase function, alike everywhere, and that may differ in density.
 
 #include "etendue/phase_function.h"
 #include "etendue/volume_shader.h"
 
 namespace etendue {
 
-<<<<<<< HEAD:src/components/volumes/phased_volume.h
-class PhasedVolume : public VolumeShader {
-=======
 /// A walk through denser matter [1/m] would not come to an end.
 inline constexpr float most_extinction = 1e12f;
 inline constexpr char too_dense[] = "the extinction may become {:g} per metre, which light cannot be followed through";
 
-class HenyeyGreensteinVolume : public VolumeShader {
->>>>>>> 1af55cd643f2dfe5257e71a8e7c4c8c16c080787:src/components/volumes/henyey_greenstein.h
+class PhasedVolume : public VolumeShader {
  public:
   float phase(const Point3&, const Vector3& out, const Vector3& in) const final;
   Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const final;

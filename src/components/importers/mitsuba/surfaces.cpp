@@ -71,6 +71,7 @@ Converter::Surface Converter::make_surface(const Element& e, Uv uv, const std::s
   if (type == "measured") {
     Ref<Component> shader = make("RglShader", e, name);
     set_member(*shader, "file", file(e), e.location_of("filename"));
+    set_member(*shader, "symmetric", false, e.at);
     return {shader, false};
   }
   if (type == "twosided") {
