@@ -78,7 +78,7 @@ class Writer {
   Exporting& exporting;
   pugi::xml_document document_;
   Node scene_;
-  Ref<Component> around_;  // the medium around everything
+  Ref<Component> around_;                             // the medium around everything
   std::map<const Component*, Ref<Component>> baked_;  // by products of images and colours
   std::map<const Component*, std::string> groups_;
   std::map<std::tuple<const Component*, bool, Uv>, std::string> bsdfs_;
