@@ -203,6 +203,7 @@ Ref<Component> make_v4_shader(Reader& reader, const Material& m) {
   if (type == "measured") {
     const Ref<Component> shader = reader.make("RglShader", at);
     set_member(*shader, "file", FilePath{reader.importing.file(p.text("filename"), p.place("filename"), p.folder), {}}, at);
+    set_member(*shader, "symmetric", false, at);
     return shader;
   }
   if (type == "hair") return hair(reader, p);
