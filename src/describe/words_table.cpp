@@ -160,7 +160,13 @@ constexpr ForeignWord classes[] = {
     {"", "volumescatter", blender, "'HomogeneousVolume' with 'scattering'"},
     {"", "volumeabsorption", blender, "'HomogeneousVolume' with 'absorption'"},
     {"", "principledvolume", blender, "'HomogeneousVolume'"},
-    {"", "heterogeneous", mitsuba, "not to be had: there is 'HomogeneousVolume' alone"},
+    {"", "heterogeneous", mitsuba, "'GridVolume', or 'MapVolume'"},
+    {"", "phasefunction", many, "'HenyeyGreensteinPhase', 'RayleighPhase', 'FogPhase', 'TabulatedPhase' or 'BlendPhase'"},
+    {"", "rayleigh", mitsuba, "'RayleighPhase'"},
+    {"", "tabphase", mitsuba, "'TabulatedPhase'"},
+    {"", "blendphase", mitsuba, "'BlendPhase'"},
+    {"", "cloud", pbrt, "'MapVolume' with a 'CloudMap'"},
+    {"", "nanovdb", pbrt, "'GridVolume'"},
     // algorithms
     {"", "path", many, "'PathTracer'"},
     {"", "volpath", many, "'PathTracer'"},
@@ -184,6 +190,10 @@ constexpr ForeignWord classes[] = {
     // cameras, images, samplers, filters, structures
     {"", "perspective", many, "'PerspectiveCamera'"},
     {"", "orthographic", many, "'OrthographicCamera'"},
+    {"", "spherical", pbrt, "'SphericalCamera', of cameras; 'SphericalMap', of coordinates for textures"},
+    {"", "panoramic", blender, "'SphericalCamera'"},
+    {"", "equirectangular", many, "'SphericalCamera'"},
+    {"", "realistic", pbrt, "'LensCamera'"},
     {"", "thinlens", mitsuba, "'PerspectiveCamera' with 'lens_radius' and 'focus_distance'"},
     {"", "sensor", mitsuba, "a 'Camera' such as 'PerspectiveCamera'"},
     {"", "film", many, "'ImageBuffer', with what it is written to in 'outputs' of 'Job'"},
@@ -402,10 +412,9 @@ constexpr ForeignWord members[] = {
     // media
     {"HomogeneousVolume", "sigmaa", many, "'absorption'"},
     {"HomogeneousVolume", "sigmas", many, "'scattering'"},
-    {"HomogeneousVolume", "sigmat", mitsuba, "'absorption' and 'scattering', of which it is the sum"},
+    {"HomogeneousVolume", "sigmat", mitsuba, "'extinction', with 'albedo'"},
     {"HomogeneousVolume", "density", many, "'scattering' and 'absorption'"},
     {"HomogeneousVolume", "g", many, "'anisotropy'"},
-    {"HomogeneousVolume", "phase", many, "'anisotropy'"},
     // cameras
     {"", "origin", many, "'from'"},
     {"", "eye", many, "'from'"},

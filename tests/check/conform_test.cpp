@@ -70,6 +70,7 @@ const std::multimap<std::string, std::string> never_tried = {
     {"ProjectorEmission", "power is the integral of radiance, on a Rectangle"},  // it shines backwards
     {"ProjectorEmission", "power is the integral of radiance, on a Environment"},
     {"IesEmission", "power is the integral of radiance, on a Environment"},
+    {"GoniometricEmission", "power is the integral of radiance, on a Environment"},
     {"SignedDistanceGrid", "reads a sample file as file"},
     {"TriangleMesh", "reads a sample file as motion_files"}};
 
