@@ -1,4 +1,5 @@
 #include "etendue/render/photon_beams.h"
+#include "transport/stretch.h"
 
 #include <tbb/parallel_invoke.h>
 
@@ -43,12 +44,14 @@ struct BeamListener final : WalkListener {
     if (walks.kinds != PhotonKinds::all && caustic != (walks.kinds == PhotonKinds::caustics)) return;
     const float least = least_extinction(medium.coefficients(ray.origin, ray.time, wavelengths));
     if (!(least > 0)) return;
+    const Stretch there = stretch_of(medium, ray, reach);
+    if (!(there.length() > 0)) return;
     PhotonBeam& beam = beams.emplace_back();
     beam.throughput = throughput;
-    beam.origin = ray.origin;
+    beam.origin = there.within(ray).origin;
     beam.direction = ray.direction;
     beam.least_extinction = least;
-    beam.length = std::min(reach, (PhotonBeam::certain_depth - std::log1p(-end)) / least);
+    beam.length = std::min(there.length(), (PhotonBeam::certain_depth - std::log1p(-end)) / least);
     beam.volume = medium.volume;
     beam.vertices = std::uint32_t(walk.size());
     beam.single = wavelengths.single();

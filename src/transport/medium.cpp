@@ -1,5 +1,7 @@
 #include "etendue/transport/medium.h"
 
+#include "transport/stretch.h"
+
 #include <vector>
 
 #include "etendue/shader.h"
@@ -119,6 +121,18 @@ float reach_within(const Medium& medium, const Ray& ray, float reach) {
 
 }  // namespace
 
+Stretch stretch_of(const Medium& medium, const Ray& ray, float reach) {
+  if (!medium.object || !medium.object->surrounds()) return {0, reach_within(medium, ray, reach)};
+  const float far = medium.object->surrounding_reach(ray);
+  if (!std::isfinite(far)) return {0, reach};
+  // From its far end back through the sphere: what is left of the way to there lies before it.
+  Ray back = ray;
+  back.origin = ray(far);
+  back.direction = -ray.direction;
+  const float begin = std::max(far - medium.object->surrounding_reach(back), 0.0f);
+  return {std::min(begin, reach), std::min(far, reach)};
+}
+
 float within_object(const Medium& medium, const Ray& ray) {
   if (medium.object && medium.object->surrounds()) return medium.object->surrounding_reach(ray);
   if (!medium.object || medium.object->unbounded() || medium.object->infinite()) return infinity;
@@ -143,11 +157,11 @@ Ray Medium::own(const Ray& ray) const {
 
 Spectrum transmittance(const Medium& medium, const Ray& ray, float distance, const Wavelengths& w, NumberStream& numbers) {
   const VolumeShader& volume = *medium.volume;
-  const float end = reach_within(medium, ray, distance);
-  if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), end);
+  const Stretch there = stretch_of(medium, ray, distance);
+  if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), there.length());
   const float m = volume.majorant(w).maximum();
   Spectrum fraction(1.0f);
-  collide(volume, medium.own(ray), end, m, w, numbers, [&](float, const VolumeCoefficients& c) {
+  collide(volume, medium.own(there.within(ray)), there.length(), m, w, numbers, [&](float, const VolumeCoefficients& c) {
     fraction *= left_of(m, c) / m;
     const float most = fraction.maximum();
     if (most < small) {
@@ -163,27 +177,33 @@ Spectrum transmittance(const Medium& medium, const Ray& ray, float distance, con
 
 Spectrum likely_transmittance(const Medium& medium, const Ray& ray, float distance, const Wavelengths& w) {
   const VolumeShader& volume = *medium.volume;
-  if (volume.homogeneous())
-    return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), reach_within(medium, ray, distance));
-  if (!std::isfinite(distance)) return Spectrum(1.0f);
+  const Stretch there = stretch_of(medium, ray, distance);
+  const float length = there.length();
+  if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), length);
+  if (!std::isfinite(length)) return Spectrum(1.0f);
   // The optical depth by the midpoint rule, whose points are the same from both ends.
   constexpr int points = 8;
-  const Ray local = medium.own(ray);
+  const Ray local = medium.own(there.within(ray));
   Spectrum depth;
   for (int i = 0; i < points; ++i)
-    depth += volume.coefficients(local(distance * (float(i) + 0.5f) / points), ray.time, w).extinction();
+    depth += volume.coefficients(local(length * (float(i) + 0.5f) / points), ray.time, w).extinction();
   // Never so small that a strategy is thought to be impossible.
-  return max(exponential(depth, distance / points), 1e-6f);
+  return max(exponential(depth, length / points), 1e-6f);
 }
 
 FreeFlight sample_free_flight(const Medium& medium, const Ray& ray, float reach, const Spectrum& throughput,
                               const Wavelengths& w, NumberStream& numbers) {
   const VolumeShader& volume = *medium.volume;
-  const float end = reach_within(medium, ray, reach);
-  if (!volume.homogeneous()) return through_heterogeneous(volume, medium.own(ray), end, throughput, w, numbers);
-  const VolumeCoefficients c = volume.coefficients(ray.origin, ray.time, w);
-  FreeFlight flight = through_homogeneous(c, end, throughput, numbers);
-  if (volume.emits()) flight.emitted = emitted_along(c, end);
+  const Stretch there = stretch_of(medium, ray, reach);
+  FreeFlight flight;
+  if (volume.homogeneous()) {
+    const VolumeCoefficients c = volume.coefficients(ray.origin, ray.time, w);
+    flight = through_homogeneous(c, there.length(), throughput, numbers);
+    if (volume.emits()) flight.emitted = emitted_along(c, there.length());
+  } else {
+    flight = through_heterogeneous(volume, medium.own(there.within(ray)), there.length(), throughput, w, numbers);
+  }
+  flight.distance = flight.scattered ? there.begin + flight.distance : reach_within(medium, ray, reach);
   return flight;
 }
 

@@ -47,6 +47,34 @@ TEST(Surroundings, FogThatAbsorbsNothingIsNotSeenInAFurnace) {
   }
 }
 
+// Their end is a sphere for every ray, wherever it begins: what is seen from outside of it is the same from both ends of paths.
+// And where they differ from place to place, all strategies weigh a way out to infinity alike: a bidirectional path tracer,
+// which compares them, was a third too dark when they did not.
+TEST(Surroundings, BothEndsOfPathsAgree) {
+  struct Case {
+    const char *objects, *camera;
+    std::vector<const char*> renderers;
+  };
+  const std::vector<Case> cases = {
+      {"Sphere { radius: 1, shader: Lambertian { color: 0.8 } }\nDistant { direction: [0, 1, -1], emission: DiffuseEmission { "
+       "radiance: 1 } }\nSurroundings { reach: 2, interior: HomogeneousVolume { extinction: 0.1, albedo: 0.8 } }\n",
+       "PerspectiveCamera { from: [0, -12, 0.5], to: [0, 0, 0], up: [0, 0, 1], fov: 20 }",
+       {"PathTracer", "BidirectionalPathTracer", "LightTracer"}},
+      {"Sphere { radius: 1, shader: Lambertian { color: 0.8 } }\nEnvironment { emission: DiffuseEmission { radiance: 1 } }\n"
+       "Surroundings { reach: 4, interior: GridVolume { resolution: [2, 1, 1], density: [0.6, 1.4], extinction: 0.3, albedo: "
+       "0.8, placement: scale(4) } }\n",
+       "PerspectiveCamera { from: [0, -3, 0.5], to: [0, 0, 0], up: [0, 0, 1], fov: 40 }",
+       {"PathTracer", "BidirectionalPathTracer"}}};
+  for (const Case& c : cases) {
+    std::vector<Measured> found;
+    for (const char* renderer : c.renderers)
+      found.push_back(measure(job_text(fmt::format("{} {{ max_depth: 3, samples: 4096 }}", renderer), c.camera, 4, c.objects)));
+    for (size_t i = 1; i < found.size(); ++i)
+      EXPECT_NEAR(found[i].mean.y, found[0].mean.y, 4.5 * std::hypot(found[i].error, found[0].error) + 1e-3 * found[0].mean.y)
+          << c.renderers[i];
+  }
+}
+
 // Without end, a medium that shines shows emission / absorption, whichever way one looks.
 TEST(Surroundings, EndlessLightIsEmissionOverAbsorption) {
   const Measured m =

@@ -167,8 +167,21 @@ class GoniometricEmission final : public ShapedEmission {
             2 * exact_pi / double(width_) *
             (std::cos(exact_pi * double(y) / double(height_)) - std::cos(exact_pi * double(y + 1) / double(height_)));
     omega_ = 0;
-    for (size_t i = 0; i < importance.size(); ++i) omega_ += double(importance[i]) * solid_angles[i / width_];
+    for (size_t i = 0; i < values_.size(); ++i) omega_ += double(values_[i]) * weight_of(i / width_, solid_angles);
     texels_.build(importance, width_, solid_angles);
+  }
+
+  /// What a texel's value counts for in the integral over all directions [sr]: its own solid angle, which is also what it has
+  /// of its neighbours' in the square of equal areas. Rows of latitudes differ in size. Between the middles of rows, delta
+  /// apart, values are linear in theta: int hat(theta) sin(theta) dtheta = 2 sin(theta_y) (1 - cos(delta)) / delta about the
+  /// middle theta_y of a row; from a pole, where the outermost row's value stays, 1 - (sin(3 delta / 2) - sin(delta / 2)) /
+  /// delta.
+  double weight_of(size_t row, const std::vector<double>& solid_angles) const {
+    if (layout != Layout::lat_long || interpolation != Interpolation::bilinear) return solid_angles[row];
+    const double delta = exact_pi / double(height_), across = 2 * exact_pi / double(width_);
+    if (height_ == 1) return 2 * across;
+    if (row == 0 || row + 1 == height_) return across * (1 - (std::sin(1.5 * delta) - std::sin(0.5 * delta)) / delta);
+    return across * 2 * std::sin((double(row) + 0.5) * delta) * (1 - std::cos(delta)) / delta;
   }
 
   /// The object's axes in the scene, at right angles; of a mirrored object one is mirrored.

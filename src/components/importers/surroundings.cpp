@@ -47,10 +47,11 @@ bool holds(const SceneObject& object, const DoublePoint3& p) {
 
 bool may_let_in(const Component& shader) {
   static constexpr std::array whole = {"Dielectric", "PassThrough", "MaskShader"};
+  static constexpr std::array transmitting = {"spec_trans", "transmission_weight"};
   if (std::ranges::find(whole, shader.class_info().name) != whole.end()) return true;
   for (const Member& m : shader.class_info().members) {
     const Value value = get(shader, m.name);
-    if (m.name == "transmission") {
+    if (std::ranges::find(transmitting, m.name) != transmitting.end()) {
       const auto* number = value.as<Number>();
       if (!number || number->value > 0) return true;
     }
@@ -83,7 +84,7 @@ Ref<SceneObject> surroundings_for(Importing& importing, const AroundCamera& arou
   if (!volume->homogeneous()) {
     if (around.box) return filled_box(importing, around);
     importing.inexact(
-        fmt::format("the medium {} around the camera is left out: it is no grid, whose box could be filled with it",
+        fmt::format("the medium {} around the camera is left out: its box, which could be filled with it, is not known",
                     around.name),
         around.at);
     return nullptr;
@@ -107,9 +108,13 @@ Ref<SceneObject> surroundings_for(Importing& importing, const AroundCamera& arou
   return ref_cast<SceneObject>(all);
 }
 
-void let_medium_go_on(SceneObject& body, const Ref<Component>& medium) {
-  if (!body.shader || body.interior || !may_let_in(*body.shader)) return;
-  body.interior = ref_cast<VolumeShader>(medium);
+void let_medium_go_on(Importing& importing, const AroundCamera& around, SceneObject& body, bool everywhere, Location at) {
+  if (!around.medium || !body.shader || body.interior || !may_let_in(*body.shader)) return;
+  if (everywhere)
+    body.interior = ref_cast<VolumeShader>(around.medium);
+  else
+    importing.inexact(
+        fmt::format("the medium {} does not go on inside of this body, as it does in {}", around.name, around.program), at);
 }
 
 }  // namespace etendue

@@ -27,8 +27,8 @@ struct AroundCamera {
 /// was told.
 Ref<SceneObject> surroundings_for(Importing&, const AroundCamera&, const std::vector<Ref<SceneObject>>& world);
 
-/// In those programs a surface that names no media lets the one around go on behind it. Gives it to a body as its interior, if
-/// light may get in.
-void let_medium_go_on(SceneObject& body, const Ref<Component>& medium);
+/// In those programs a surface that names no media lets the one around go on behind it. Where light may get into such a body,
+/// it is given the medium as its interior, if that is everywhere; else it is told that there is none.
+void let_medium_go_on(Importing&, const AroundCamera&, SceneObject& body, bool everywhere, Location at);
 
 }  // namespace etendue

@@ -45,7 +45,8 @@ class TabulatedPhase final : public PhaseFunction {
     scale_to_one();
   }
 
-  float value(float h) const override {
+  float value(float given) const override {
+    const float h = clamp(given, 0, 2);  // beyond which rounding may bring it
     const size_t k = interval(h_, double(h));
     return float(std::lerp(v_[k], v_[k + 1], (double(h) - h_[k]) / (h_[k + 1] - h_[k])));
   }

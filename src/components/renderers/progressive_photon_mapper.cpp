@@ -30,6 +30,7 @@
 #include "etendue/render/shrinking_bias.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
+#include "transport/stretch.h"
 
 namespace etendue {
 
@@ -198,15 +199,17 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     photons_.along(context.scene, ray, reach, add);
     caustics_.along(context.scene, ray, reach, add);
     if (settings_.media != InMedia::beams || !medium.volume->homogeneous()) return;
+    const Stretch there = stretch_of(medium, ray, reach);
+    const Ray within = there.within(ray);
     // Of the step's wavelengths, as the beams': a walk may have dropped some.
     const VolumeCoefficients c = medium.coefficients(ray.origin, ray.time, wavelengths({}, 0));
     const auto add_beam = [&](const PhotonBeam& b, float s, float t, float density) {
       if (walk.length + int(b.vertices) > settings_.max_depth) return;
-      const float phase = medium.phase(ray(t), ray.time, -ray.direction, -b.direction);
+      const float phase = medium.phase(within(t), ray.time, -ray.direction, -b.direction);
       walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.single, to) * (phase / density), b.from(context.scene));
     };
-    beams_.along(context.scene, medium, ray, reach, numbers, add_beam);
-    caustic_beams_.along(context.scene, medium, ray, reach, numbers, add_beam);
+    beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);
+    caustic_beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);
   }
 
   const ProgressivePhotonMapper& settings_;

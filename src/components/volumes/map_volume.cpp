@@ -80,7 +80,10 @@ class MapVolume final : public PhasedVolume {
     emits_ = !black(*emission);
     glows_ = !black(*glow);
     density_bound_ = bound_of(*density);
-    if (bound > 0) return;
+    if (bound > 0) {
+      if (bound > most_extinction) fail("bound", fmt::format(too_dense, bound));
+      return;
+    }
     for (const auto& [name, map] : {std::pair("density", &density),
                                     {"extinction", &extinction},
                                     {"absorption", &absorption},

@@ -118,7 +118,8 @@ class DenseGrid {
 
  private:
   static std::int64_t offset_from(std::int64_t base, std::int64_t offset) {
-    if (std::abs(offset) > std::int64_t(1) << 48) throw Error("it points beyond its end");
+    constexpr std::int64_t most = std::int64_t(1) << 48;
+    if (offset > most || offset < -most) throw Error("it points beyond its end");
     return base + offset;
   }
   static IndexBox cube(const Index& origin, std::int64_t side) {

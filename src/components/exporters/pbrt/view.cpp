@@ -45,9 +45,14 @@ double lens_brightness(const Component& camera) {
 std::string realistic(Exporting& exporting, const Component& camera) {
   std::string table = "# radius of curvature, thickness, index, diameter\n";
   double stop = 1e3;  // of what pbrt takes for a stop it makes nothing wider than it is
-  for (const LensSurface& s : lens_of(camera)) {
+  const std::vector<LensSurface> surfaces = lens_of(camera);
+  for (size_t i = 0; i < surfaces.size(); ++i) {
+    const LensSurface& s = surfaces[i];
     table += fmt::format("{} {} {} {}\n", s.radius * 1e3, s.thickness * 1e3, s.index, s.diameter * 1e3);
-    if (s.radius == 0) stop = s.diameter * 1e3;
+    if (is_stop(surfaces, i))
+      stop = s.diameter * 1e3;
+    else if (s.radius == 0)
+      exporting.inexact("pbrt takes a plane of glass for a stop: it does not refract there", &camera);
   }
   return fmt::format("Camera \"realistic\" \"string lensfile\" \"{}\" \"float aperturediameter\" {} \"float focusdistance\" {}",
                      exporting.write_beside("lens", "dat", table), stop, focus_of(camera));

@@ -22,6 +22,9 @@ std::string wrap_mode(const Element& volume) {
   return wrap;
 }
 
+/// Of a medium or a phase function: the lobe of an 'hg'.
+void set_lobe(Component& part, const Element& hg) { set_member(part, "anisotropy", hg.number("g", 0.8), hg.at); }
+
 }  // namespace
 
 Ref<Component> Converter::medium(const Element& e, const Component& object) {
@@ -39,7 +42,7 @@ void Converter::set_phase(Component& volume, const Element& e) {
   for (const Element* phase : e.all("phase")) {
     if (phase->type == "hg") {
       const Reading reading(*phase);
-      set_member(volume, "anisotropy", phase->number("g", 0.8), phase->at);
+      set_lobe(volume, *phase);
     } else if (phase->type != "isotropic") {
       set_member(volume, "phase", phase_function(*phase), phase->at);
     }
@@ -53,7 +56,7 @@ Ref<Component> Converter::phase_function(const Element& e) {
   if (e.type == "isotropic") return make("HenyeyGreensteinPhase", e);
   if (e.type == "hg") {
     Ref<Component> made = make("HenyeyGreensteinPhase", e);
-    set_member(*made, "anisotropy", e.number("g", 0.8), e.at);
+    set_lobe(*made, e);
     return made;
   }
   if (e.type == "rayleigh") return make("RayleighPhase", e);
@@ -149,6 +152,8 @@ Ref<Component> Converter::grid(const Element& e, const Element& volume, const Co
   if (albedo) reading.emplace(*albedo);
   const bool albedos = albedo && albedo->type == "gridvolume";
   const auto same_place = [&] {
+    // Boxes that two files name may differ.
+    if (albedo->boolean("use_grid_bbox", false) && file(*albedo).resolved() != file(volume).resolved()) return false;
     return albedo->transform().transform.still().exact() == volume.transform().transform.still().exact() &&
            albedo->boolean("use_grid_bbox", false) == volume.boolean("use_grid_bbox", false) &&
            albedo->string("filter_type", "trilinear") == volume.string("filter_type", "trilinear");

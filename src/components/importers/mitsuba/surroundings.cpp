@@ -24,7 +24,12 @@ std::optional<Transform> box_of(const Element& medium, const std::string& file) 
   if (medium.type != "heterogeneous" || !volume || volume->type != "gridvolume") return std::nullopt;
   const Transform placed = volume->transform().transform.still();
   if (!volume->boolean("use_grid_bbox", false)) return placed;
-  const VolumeGrid grid = read_volume_grid(file);
+  VolumeGrid grid;
+  try {
+    grid = read_volume_grid(file);
+  } catch (const Error& e) {
+    throw Error("'" + file + "': " + e.what(), volume->location_of("filename"));
+  }
   const Vector3 size = grid.high - grid.low;
   return placed * Transform::translate({grid.low.x, grid.low.y, grid.low.z}) * Transform::scale({size.x, size.y, size.z});
 }
@@ -64,9 +69,11 @@ Ref<SceneObject> Converter::settle_media(const Element* sensor, bool seen, const
   for (const MediumSides& s : sides_)
     if (s.interior == around && s.exterior != around && !s.in_group) camera.bodies.push_back(s.object);
   const Ref<SceneObject> all = surroundings_for(importing_, camera, world);
-  if (all && all->surrounds()) {
+  const bool everywhere = all && all->surrounds();
+  for (const MediumSides& s : sides_)
+    if (!s.interior && !s.exterior) let_medium_go_on(importing_, camera, *s.object, everywhere, s.object->location_of());
+  if (everywhere) {
     for (const MediumSides& s : sides_) {
-      if (!s.interior && !s.exterior) let_medium_go_on(*s.object, camera.medium);
       if (s.interior && !s.exterior && s.interior != around)
         importing_.inexact("beyond a shape without an exterior is the medium around the sensor, where Mitsuba has none", s.at);
     }

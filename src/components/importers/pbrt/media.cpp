@@ -68,7 +68,7 @@ void set_emission_of_medium(Reader& reader, Component& medium, const Parameters&
 
 void place_medium(Reader& reader, const std::string& name, const Ref<Component>& medium, const Transform& placed,
                   Location box_at) {
-  if (!placed.valid()) throw Error("the box of a medium, from p0 to p1, has no volume", box_at);
+  if (!placed.valid()) throw Error("the coordinates of a medium, or its box from p0 to p1, have no volume", box_at);
   reader.grids[name] = placed;
   reader.media[name] = medium;
 }

@@ -78,11 +78,11 @@ std::pair<double, double> temperatures_of(const Parameters& p) {
   return {p.number("temperatureoffset", p.number("temperaturecutoff", 0)), p.number("temperaturescale", 1)};
 }
 
-/// pbrt's black bodies have a highest value of 1.
+/// pbrt's black bodies have a highest value of 1. What they shine with is not divided by its luminance, as lights are.
 Ref<Component> blackbody(const Reader& reader, const Ref<Component>& temperature, double brightness, Location at) {
   const Ref<Component> glow = reader.make("BlackbodyMap", at);
   set_member(*glow, "temperature", temperature, at);
-  set_member(*glow, "factor", brightness, at);
+  set_member(*glow, "factor", brightness * pixel_of_one, at);
   set_member(*glow, "normalized", true, at);
   return glow;
 }
@@ -141,6 +141,7 @@ void make_grid(Reader& reader, const std::string& name, Parameters& p) {
   set_member(*medium, "anisotropy", p.number("g", 0), at);
   if (!glow) set_emission_of_medium(reader, *medium, p, absorption);
   place_medium(reader, name, medium, grid.placed(reader), p.place("p1"));
+  reader.boxes[name] = grid.placed(reader);
 }
 
 // Each cell has coefficients and light of its own, in RGB.
@@ -165,10 +166,11 @@ void make_rgb_grid(Reader& reader, const std::string& name, Parameters& p) {
   coefficients("scattering", scattering, "sigma_s");
   set_member(*medium, "anisotropy", p.number("g", 0), at);
   if (!light.empty()) {
-    scale(light, light_scale(reader, p));
+    scale(light, light_scale(reader, p) * pixel_of_one);
     set_member(*medium, "glow", grid.map(reader, std::move(light), p, "Le"), p.place("Le"));
   }
   place_medium(reader, name, medium, grid.placed(reader), p.place("p1"));
+  reader.boxes[name] = grid.placed(reader);
 }
 
 // Densities of a file, which lie where the file says, and light by its temperatures when it has some.
@@ -232,6 +234,10 @@ void make_cloud(Reader& reader, const std::string& name, const Parameters& p) {
   corner("high", "p1", {1, 1, 1});
   reader.importing.inexact("the cloud is another one of the same kind: its noise has other random numbers", at);
   place_medium(reader, name, medium, reader.state.ctm[0], at);
+  const DoublePoint3 low = p.point("p0", {0, 0, 0}), high = p.point("p1", {1, 1, 1});
+  const Transform box = reader.state.ctm[0] * Transform::translate({low.x, low.y, low.z}) *
+                        Transform::scale(DoubleVector3{high.x - low.x, high.y - low.y, high.z - low.z});
+  if (box.valid()) reader.boxes[name] = box;
 }
 
 }  // namespace etendue::pbrt

@@ -102,7 +102,8 @@ class Reader {
   std::map<const Component*, int> texture_depths;       ///< 1: it names no other
   int named_depth = 0;                                  ///< of the deepest texture that was looked up for the one being made
   int mixing = 0;                                       ///< materials being made, each for the one before
-  std::map<std::string, Transform, std::less<>> grids;  ///< of media that are grids: from the unit cube to the world
+  std::map<std::string, Transform, std::less<>> grids;  ///< of media in space: from their coordinates to the world
+  std::map<std::string, Transform, std::less<>> boxes;  ///< of those that lie in a known box: from the unit cube to the world
 
   AnimatedTransform to_world() const { return to_world(Transform()); }
   /// Of what stands at `inner` in the present coordinates.
@@ -191,8 +192,11 @@ Shape make_revolved(Reader&, const std::string& type, const Parameters&);
 void make_light(Reader&, const std::string& type, Parameters&&);
 void make_environment(Reader&, const Parameters&);
 Ref<Component> area_emission(Reader&, AreaLight&, bool turned, size_t pieces);
+/// The pixel that pbrt makes of a radiance of 1 at all wavelengths, which is 1 here: the integral of the observer's y over
+/// wavelengths [nm]. pbrt divides the spectra of its lights by it, but not the light of media.
+inline constexpr double pixel_of_one = 106.856917;
 /// What pbrt calls a power or an illuminance of 1, where a luminance of 1 is a pixel of 1 [lm, lx].
-inline constexpr double luminous_unit = 683.002 * 106.856917;
+inline constexpr double luminous_unit = 683.002 * pixel_of_one;
 void set_emission(Component& object, const Ref<Component>& emission, Location at);
 
 // media.cpp

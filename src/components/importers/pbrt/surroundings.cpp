@@ -45,17 +45,20 @@ Ref<SceneObject> Reader::settle_media() {
   around.program = "pbrt";
   around.at = around_camera_at;
   around.camera = camera_to_world.written(float(times[0]))(DoublePoint3{});
-  if (const auto grid = grids.find(around_camera); grid != grids.end()) {
-    around.box = grid->second;
-    if (around.medium) around.medium = medium_for(*this, around_camera, grid->second, around_camera_at);
+  if (const auto box = boxes.find(around_camera); box != boxes.end()) {
+    around.box = box->second;
+    if (around.medium) around.medium = medium_for(*this, around_camera, box->second, around_camera_at);
   }
   for (const MediumSides& s : sides_)
     if (s.inside == around_camera && s.outside != around_camera && !s.in_group)
       around.bodies.push_back(ref_cast<SceneObject>(s.object));
   const Ref<SceneObject> all = surroundings_for(importing, around, objects_);
-  if (all && all->surrounds())
+  const bool everywhere = all && all->surrounds();
+  for (const MediumSides& s : sides_)
+    if (s.inside.empty() && s.outside.empty())
+      let_medium_go_on(importing, around, *ref_cast<SceneObject>(s.object), everywhere, s.at);
+  if (everywhere)
     for (const MediumSides& s : sides_) {
-      if (s.inside.empty() && s.outside.empty()) let_medium_go_on(*ref_cast<SceneObject>(s.object), around.medium);
       if (s.outside.empty() && !s.inside.empty() && s.inside != around_camera)
         importing.inexact(
             fmt::format("beyond an object that names no medium outside is '{}', where pbrt has none", around_camera), s.at);

@@ -205,7 +205,13 @@ class Lights:
         self.normalize(4 * math.pi * r * r * mean)
         return self.part("Sphere", {"radius": r, "emission": self.emission()}, place)
 
+    def note_profile(self):
+        asset = self.value("shaping:ies:file", None)
+        if asset is not None and str(getattr(asset, "path", asset)):
+            self.glb.note("IES files of lights at infinity are left out")
+
     def distant(self, place):
+        self.note_profile()
         half = min(max(math.radians(float(self.value("angle", 0.53))) / 2, 0), math.pi)
         size = 1 if half == 0 else math.pi * (math.sin(half) ** 2 if half <= math.pi / 2 else 2 - math.sin(half) ** 2)
         self.normalize(size)
@@ -218,6 +224,7 @@ class Lights:
         return self.part("Environment", {"emission": emission}, place, rigid=True)
 
     def dome(self, place):
+        self.note_profile()
         if self.prim.GetTypeName() == "DomeLight_1":
             axis = str(self.prim.GetAttribute("poleAxis").Get() or "scene")
             if axis == "Z" or (axis == "scene" and UsdGeom.GetStageUpAxis(self.stage) == "Z"):

@@ -8,8 +8,8 @@ namespace etendue {
 namespace {
 
 // Its inside is all of space. Paths begin in it and never cross its surface, as there is none: MediumStack keeps it below all
-// objects that paths enter. A medium without end lets nothing come from infinity; one that goes on to a sphere around the scene
-// does, and only what comes from there or goes there takes notice of the sphere.
+// objects that paths enter. A medium without end lets nothing come from infinity; one that has an end does, and is there within
+// a sphere around the scene alone, wherever a ray begins (transport/stretch.h).
 class Surroundings final : public SceneObject {
  public:
   static void describe(Description<Surroundings>& d) {
