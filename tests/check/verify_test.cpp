@@ -97,6 +97,30 @@ TEST(VerifyCollect, means_are_those_of_the_passes_and_lengths_add_up) {
   EXPECT_NEAR(c.measured[0].passes[2][3], 2 * d.measured[0].passes[2][3], 1e-12);
 }
 
+// Chains cannot follow glass that reflects in two directions at once (its normals are tilted), which they find while they
+// render.
+TEST(VerifyCollect, what_refuses_the_scene_while_it_renders_is_left_out_with_its_reason) {
+  const Ref<Job> job = load_job(ETENDUE_SOURCE_DIR "/scenes/verify/tilted_normals.etd");
+  job->image->width = 16, job->image->height = 12;
+  prepare_picture(*job, 2);
+  Render render(job, {});
+  Choice choice = choose_renderers(render.job(), "PathTracer,PathSpaceMetropolis,BidirectionalPathTracer", true);
+  ASSERT_EQ(choice.candidates.size(), 3u);
+  CollectOptions options;
+  options.passes = 2;
+  EXPECT_THROW(collect(render, choice.candidates, 8, options), Error);
+  options.leave_out_refusing = true;
+  const Collected c = collect(render, choice.candidates, 8, options);
+  leave_out_refused(choice, c);
+  ASSERT_EQ(c.measured.size(), 2u);
+  EXPECT_EQ(c.measured[1].name, "BidirectionalPathTracer");
+  EXPECT_EQ(choice.candidates[1].name, "BidirectionalPathTracer");
+  ASSERT_FALSE(choice.left_out.empty());
+  EXPECT_EQ(choice.left_out.back().name, "PathSpaceMetropolis");
+  EXPECT_NE(choice.left_out.back().reason.find("several specular directions"), std::string::npos)
+      << choice.left_out.back().reason;
+}
+
 // ---- pictures of the report ------------------------------------------------------------------------------------------------
 
 TEST(VerifyReport, base64_has_the_examples_of_its_standard) {

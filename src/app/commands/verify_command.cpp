@@ -118,6 +118,7 @@ verify::Collected collect(Render& render, const verify::Choice& choice, const Ve
   collecting.passes = options.passes;
   collecting.samples = std::max(1, render.job().renderer->samples / options.passes);
   collecting.inject = options.inject;
+  collecting.leave_out_refusing = options.renderers.empty();
   if (!options.time.empty()) collecting.seconds = parse_duration(options.time, "--time");
   const bool show = !options.quiet && isatty(STDERR_FILENO);
   const Interruption interruption(render);
@@ -146,7 +147,7 @@ int verify_file(const VerifyOptions& options) {
   verify::prepare_picture(*job, options.lengths + 1);
   Render render(job, {.threads = options.threads});
 
-  const verify::Choice choice = verify::choose_renderers(*job, options.renderers, options.force);
+  verify::Choice choice = verify::choose_renderers(*job, options.renderers, options.force);
   if (choice.candidates.size() < 2) {
     std::string message = choice.candidates.empty()
                               ? "there is no renderer to compare"
@@ -160,6 +161,7 @@ int verify_file(const VerifyOptions& options) {
     fmt::print(stderr, "interrupted: no verdict\n");
     return exit_status::interrupted;
   }
+  verify::leave_out_refused(choice, collected);
   const verify::Agreement agreement = verify::compare(collected.layout, collected.measured, options.significance);
   if (!options.report.empty()) {
     const Ref<ToneMap> tone_map = display_tone_map(*job);

@@ -282,14 +282,33 @@ bool tells_limit(const Renderer& renderer) {
          shrinking->bias_width(1) > 0 && shrinking->bias_width(1) < shrinking->bias_width(0);
 }
 
+void leave_out_refused(Choice& choice, const Collected& collected) {
+  for (auto refused = collected.refused.rbegin(); refused != collected.refused.rend(); ++refused) {
+    const auto place = choice.candidates.begin() + std::ptrdiff_t(refused->first);
+    choice.left_out.push_back({place->name, "refuses the scene: " + refused->second});
+    choice.candidates.erase(place);
+  }
+}
+
 Collected collect(Render& render, const std::vector<Candidate>& candidates, int tile, const CollectOptions& options) {
   const Ref<Renderer> own = render.job().renderer;
   const std::uint64_t seed = render.job().seed;
   Collected all;
   all.layout = Layout::of(render.job().image->area(), tile, render.job().image->path_lengths);
   all.complete = true;
-  for (size_t i = 0; all.complete && i < candidates.size(); ++i)
-    all.complete = measure(render, i, candidates[i], options, seed, all);
+  for (size_t i = 0; all.complete && i < candidates.size(); ++i) {
+    std::string refusal;
+    try {
+      all.complete = measure(render, i, candidates[i], options, seed, all);
+    } catch (const Error& error) {
+      if (!options.leave_out_refusing || i == 0) throw;
+      refusal = error.what();
+    } catch (const Errors& several) {
+      if (!options.leave_out_refusing || i == 0) throw;
+      refusal = several.errors.front().what();
+    }
+    if (!refusal.empty()) all.refused.emplace_back(i, refusal);
+  }
   render.edit(render.job(), "renderer", Value(Ref<Component>(own)));
   render.restart(seed);
   return all;

@@ -52,6 +52,9 @@ struct CollectOptions {
   int passes = 16;     ///< of each renderer
   double seconds = 0;  ///< of each renderer, when not 0: as many passes as this takes, at least 8
   double inject = 1;   ///< factor on what the first renderer measures
+  /// What a renderer cannot follow may be found while it renders. All but the first, which is the job's own, are then left out
+  /// instead of ending everything.
+  bool leave_out_refusing = false;
   /// Called before each pass with the renderer's place and the passes made; false ends it all.
   std::function<bool(size_t renderer, size_t passes)> go_on = {};
 };
@@ -75,6 +78,8 @@ struct Collected {
   std::vector<Measured> measured;
   std::vector<RendererRun> runs;
   bool complete = false;  ///< false: it was interrupted
+  /// Candidates that refused the scene, by their place among all, and why: they have neither `measured` nor `runs`.
+  std::vector<std::pair<size_t, std::string>> refused;
 };
 
 /// Sets a job's picture up for measuring: every sample counts for its own pixel alone, lengths are told apart. To be done
@@ -86,6 +91,9 @@ int default_tile(const ImageBuffer&);
 
 /// Whether a renderer's limit can be told from its steps.
 bool tells_limit(const Renderer&);
+
+/// Takes those that refused the scene out of what was chosen.
+void leave_out_refused(Choice&, const Collected&);
 
 /// Runs all passes. Meanwhile the job has other renderers and seeds.
 Collected collect(Render&, const std::vector<Candidate>&, int tile, const CollectOptions&);
