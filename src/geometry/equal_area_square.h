@@ -47,4 +47,17 @@ inline SquareDirection equal_area_direction(const SquarePlace& p) {
   return {std::copysign(ring * std::cos(angle), a), std::copysign(ring * std::sin(angle), b), upper ? z : -z};
 }
 
+/// Of an image of n x n texels, the one that lies beside an edge at (x, y), at most one texel beyond it: at the same edge,
+/// mirrored in its middle.
+inline void fold_equal_area(int& x, int& y, int n) {
+  if (x < 0 || x >= n) {
+    x = x < 0 ? 0 : n - 1;
+    y = n - 1 - y;
+  }
+  if (y < 0 || y >= n) {
+    y = y < 0 ? 0 : n - 1;
+    x = n - 1 - x;
+  }
+}
+
 }  // namespace etendue

@@ -203,7 +203,7 @@ FreeFlight sample_free_flight(const Medium& medium, const Ray& ray, float reach,
   } else {
     flight = through_heterogeneous(volume, medium.own(there.within(ray)), there.length(), throughput, w, numbers);
   }
-  flight.distance = flight.scattered ? there.begin + flight.distance : reach_within(medium, ray, reach);
+  flight.distance = flight.scattered ? there.begin + flight.distance : there.end;
   return flight;
 }
 

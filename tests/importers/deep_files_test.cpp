@@ -77,6 +77,25 @@ std::string pbrt_mixtures(int count) {
               "NamedMaterial \"m" + number(count) + "\"\n");
 }
 
+// Mixtures of many become chains, at which the program once ended: its stack overflowed.
+TEST(DeepFiles, MitsubasMixturesOfManyParts) {
+  constexpr int count = 20000;
+  const auto scene = [](const std::string& of_sphere) {
+    return "<scene version=\"0.6.0\"><shape type=\"sphere\">" + of_sphere + "</shape></scene>";
+  };
+  const std::string weights =
+      "<string name=\"weights\" value=\"" + repeated(count, [](int) { return std::string("0.00001"); }) + "\"/>";
+  EXPECT_EQ(
+      error_of("many.xml", scene("<bsdf type=\"mixturebsdf\">" + weights +
+                                 repeated(count, [](int) { return std::string("<bsdf type=\"diffuse\"/>"); }) + "</bsdf>")),
+      "1: a mixture of 20000 bsdfs: 100 are the most");
+  EXPECT_EQ(error_of("many.xml", scene("<bsdf type=\"null\"/><medium name=\"interior\" type=\"homogeneous\"><phase "
+                                       "type=\"mixturephase\">" +
+                                       weights + repeated(count, [](int) { return std::string("<phase type=\"hg\"/>"); }) +
+                                       "</phase></medium>")),
+            "");
+}
+
 TEST(DeepFiles, PbrtsTexturesOfTextures) {
   EXPECT_EQ(error_of("scene.pbrt", pbrt_textures(50)), "");
   EXPECT_EQ(error_of("scene.pbrt", pbrt_textures(10000)), "103: textures that name textures nest more than 100 deep");

@@ -84,7 +84,7 @@ TEST(NanoVdb, SaysWhatItCannotRead) {
             std::string::npos);
   EXPECT_NE(refusal(beside("blosc.nvdb")).find("nanovdb_convert --zip"), std::string::npos);
   const TemporaryFolder folder;
-  EXPECT_NE(refusal(folder.write("a.nvdb", "NanoVDB9 and more than sixteen")).find("does not begin"), std::string::npos);
+  EXPECT_NE(refusal(folder.write("a.nvdb", "NanoVDB9 and more than sixteen")).find("begins neither"), std::string::npos);
   EXPECT_NE(refusal(folder.write("b.nvdb", "")).find("no grid"), std::string::npos);
   expect_refused("GridMap { file: \"" + folder.write("c.vdb", "") + "\" }", "file", "nanovdb_convert");
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double exact_pi = 3.14159265358979323846;
 
-/// Bilinear. What lies beyond an edge is found at the same edge, mirrored in its middle.
+/// Bilinear.
 void add(const LinearImage& image, SquarePlace at, double weight, double* sum) {
   const int n = image.width;
   const double px = at.x * n - 0.5, py = at.y * n - 0.5;
@@ -23,14 +23,7 @@ void add(const LinearImage& image, SquarePlace at, double weight, double* sum) {
     for (int dx = 0; dx < 2; ++dx) {
       int x = x0 + dx, y = y0 + dy;
       const double part = (dx ? px - x0 : 1 - (px - x0)) * (dy ? py - y0 : 1 - (py - y0)) * weight;
-      if (x < 0 || x >= n) {
-        x = x < 0 ? 0 : n - 1;
-        y = n - 1 - y;
-      }
-      if (y < 0 || y >= n) {
-        y = y < 0 ? 0 : n - 1;
-        x = n - 1 - x;
-      }
+      fold_equal_area(x, y, n);
       for (size_t c = 0; c < 3; ++c) sum[c] += part * double(image.rgb[(size_t(y) * size_t(n) + size_t(x)) * 3 + c]);
     }
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr double exact_pi = 3.14159265358979323846;
 
 // The profile f (ShapedEmission) is the image's value in a direction, times `scale`: a point's intensity is M f * 1 m^2, and
-// Omega = integral of f dw the sum of all texels' values times their solid angles.
+// Omega = integral of f dw the sum of all texels' values times what each counts for (weight_of).
 //
 // Directions are drawn with a density that is constant over each texel. Of squares without anything between that is the value
 // itself, and f over the density the same everywhere. Of a bilinear image it is the mean of the value over the texel as if its
@@ -201,18 +201,11 @@ class GoniometricEmission final : public ShapedEmission {
   size_t column(double u) const { return std::min(size_t(u * double(width_)), width_ - 1); }
   size_t row(double v) const { return std::min(size_t(v * double(height_)), height_ - 1); }
 
-  /// What lies beyond an edge of the square is at the same edge, mirrored in its middle; longitudes go around.
+  /// Longitudes go around.
   float texel(int x, int y) const {
     const int w = int(width_), h = int(height_);
     if (layout == Layout::equal_area) {
-      if (x < 0 || x >= w) {
-        x = x < 0 ? 0 : w - 1;
-        y = h - 1 - y;
-      }
-      if (y < 0 || y >= h) {
-        y = y < 0 ? 0 : h - 1;
-        x = w - 1 - x;
-      }
+      fold_equal_area(x, y, w);
     } else {
       x = x < 0 ? x + w : x >= w ? x - w : x;
       y = std::clamp(y, 0, h - 1);

@@ -18,7 +18,7 @@ constexpr double pi_exactly = 3.14159265358979323846, degree = pi_exactly / 180;
 // 0.06 degrees) counts as that, so that the radiance stays finite.
 //
 // About an axis a surface has the radiance of a point of 1 m^2 in each of its places, L = I / m^2, as UsdLux has it: f = I / l,
-// and K is found from the table's cells.
+// and K is summed over directions.
 //
 // Directions are drawn from a table over the file's own grid, finely divided (2 degrees of the polar angle, 5 around it). In a
 // cell the intensity is bilinear in the angles; its mean over four points at the corners, which is positive if any of it is, is

@@ -45,7 +45,7 @@ std::vector<Entry> list_grids(RegularFile& file) {
     file.seek(offset);
     file.read(header, header_size);
     if (std::memcmp(header, "NanoVDB0", 8) != 0 && std::memcmp(header, "NanoVDB2", 8) != 0)
-      throw Error("it does not begin with \"NanoVDB\", as its kind does");
+      throw Error("it begins neither with \"NanoVDB0\" nor with \"NanoVDB2\", as its kind does");
     if (const unsigned major = number_at<std::uint32_t>(header, 8) >> 21; major != 32)
       throw Error(fmt::format("version {} of the format is not known, only 32: convert it again by nanovdb_convert", major));
     const size_t first = all.size(), count = number_at<std::uint16_t>(header, 12);
@@ -94,8 +94,9 @@ std::vector<unsigned char> bytes_of(RegularFile& file, const Entry& entry) {
     file.read(bytes.data(), entry.bytes);
     return bytes;
   }
-  if (entry.codec != 1)
+  if (entry.codec == 2)
     throw Error("it is compressed by blosc, which is not read here: nanovdb_convert --zip makes one that is");
+  if (entry.codec != 1) throw Error(fmt::format("it is compressed in a way that is not known ({})", entry.codec));
   std::uint64_t size = 0;
   file.read(&size, sizeof size);
   // Deflate makes nothing smaller than by 1032.

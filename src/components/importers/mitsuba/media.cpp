@@ -86,17 +86,24 @@ Ref<Component> Converter::blended_phases(const Element& e) {
   if (parts.size() < 2 || parts.size() != weights.size())
     throw Error(fmt::format("'{}' has {} phase functions and {} weights", e.type, parts.size(), weights.size()), e.at);
   if (std::ranges::any_of(weights, [](double w) { return !(w >= 0); })) throw Error("weights must not be negative", e.at);
-  Ref<Component> made = phase_function(*parts[0]);
-  double sum = weights[0];
-  for (size_t k = 1; k < parts.size(); ++k) {
-    Ref<Component> blend = make("BlendPhase", e);
-    sum += weights[k];
-    set_member(*blend, "first", made, e.at);
-    set_member(*blend, "second", phase_function(*parts[k]), parts[k]->at);
-    set_member(*blend, "amount", sum > 0 ? weights[k] / sum : 0.0, e.at);
-    made = blend;
+  std::vector<Ref<Component>> made;
+  for (const Element* part : parts) made.push_back(phase_function(*part));
+  // Neighbours by twos, and those again: of many parts none lies deep.
+  while (made.size() > 1) {
+    const size_t left = made.size() / 2;
+    for (size_t k = 0; k < left; ++k) {
+      const double sum = weights[2 * k] + weights[2 * k + 1];
+      const Ref<Component> blend = make("BlendPhase", e);
+      set_member(*blend, "first", made[2 * k], e.at);
+      set_member(*blend, "second", made[2 * k + 1], e.at);
+      set_member(*blend, "amount", sum > 0 ? weights[2 * k + 1] / sum : 0.0, e.at);
+      made[k] = blend;
+      weights[k] = sum;
+    }
+    if (made.size() % 2) made[left] = made.back(), weights[left] = weights.back();
+    made.resize(left + made.size() % 2);
   }
-  return made;
+  return made.front();
 }
 
 Ref<Component> Converter::homogeneous(const Element& e) {

@@ -132,6 +132,8 @@ Converter::Surface Converter::mixture(const Element& e, Uv uv, const std::string
     if (count != 2) throw Error(fmt::format("'blendbsdf' needs two bsdfs inside, not {}", count), e.at);
     return {mixed(parts[0].shader, parts[1].shader, scalar(e, "weight", 0.5, uv), name), any};
   }
+  constexpr size_t most = 100;  // each lies in a mixture with those before it
+  if (count > most) throw Error(fmt::format("a mixture of {} bsdfs: {} are the most", count, most), e.at);
   // Each of the first i parts has its share of what these make up; what is missing to 1 is black.
   const std::string text = e.string("weights", "");
   std::vector<double> weights = parse_numbers({text, e.location_of("weights")});
