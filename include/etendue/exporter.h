@@ -24,9 +24,9 @@ class Exporting {
   const std::string& folder() const { return folder_; }
   const std::string& stem() const { return stem_; }
 
-  /// Notes what the other program cannot express, or only nearly, at the place where the part was written. The same words
-  /// about several parts are told once with their number.
-  void inexact(const std::string& what, const Component* of = nullptr);
+  /// Notes what the other program cannot express, or only nearly, at the place where the part, or a member of it, was written.
+  /// The same words about several parts are told once with their number.
+  void inexact(const std::string& what, const Component* of = nullptr, std::string_view member = {});
   /// All notes, one for each text, in the order in which they came.
   std::vector<Error> notes() const;
 

@@ -41,6 +41,9 @@ class Importing {
   /// The same for what a scene can do without, such as a texture: nothing and a note when there is none.
   std::optional<std::string> optional_file(const std::string& named, Location at, const std::string& beside = {});
 
+  /// The names of an image's channels. A file that many materials name is opened once. Throws Error where it cannot be read.
+  const std::vector<std::string>& image_channels(const std::string& path);
+
   /// Notes what the source says and this program could not express, or only nearly: a warning, or an error when strict. The
   /// same words at several places are told once with their number. At most one call for each place and thing.
   void inexact(const std::string& what, Location at);
@@ -71,6 +74,7 @@ class Importing {
   std::vector<std::pair<std::string, std::string>> parameters_;
   std::vector<bool> used_;
   std::vector<std::string> search_folders_;
+  std::map<std::string, std::vector<std::string>> channels_;  // of images
   std::map<std::string, Note> notes_;
 };
 

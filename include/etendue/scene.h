@@ -23,9 +23,9 @@ class Scene : public SceneObject {
   std::optional<float> chooses_centre;
 
   /// The nearest hit with t in (0, ray.maximum).
-  virtual bool nearest(const Ray&, Hit&) const = 0;
+  bool nearest(const Ray& ray, Hit& hit) const { return unseen_ ? nearest_with_unseen(ray, hit) : find_nearest(ray, hit); }
   /// Whether anything lies on the ray.
-  virtual bool any(const Ray&) const = 0;
+  bool any(const Ray& ray) const { return find_any(ray) || (unseen_ && !ray.of_camera && unseen_->find_any(ray)); }
 
   /// Whether anything lies on a shadow ray (null: there is none), and what the nearest hit of another one is. The two need
   /// nothing of each other, and asked one right after the other the processor works on both at once
@@ -40,9 +40,9 @@ class Scene : public SceneObject {
 
   /// Every hit on a short ray, in no order; a scene that cannot tell gives the nearest. Objects that have a hit in the list
   /// already may be left out.
-  virtual void all(const Ray& ray, HitList& list) const {
-    Hit hit;
-    if (nearest(ray, hit)) list.add(hit);
+  void all(const Ray& ray, HitList& list) const {
+    find_all(ray, list);
+    if (unseen_ && !ray.of_camera) all_unseen(ray, list);
   }
 
   /// The surface point of a hit found by `nearest`, through all the nested scenes it lies in.
@@ -59,8 +59,12 @@ class Scene : public SceneObject {
   /// Objects that emit, those at infinity included. One in a nested scene is in the list once for each place where that
   /// stands, by an object that stands for it there (see SceneObject::original), as points on it name it.
   std::span<const SceneObject* const> luminaires() const { return luminaires_; }
-  /// Luminaires at infinity that rays which hit nothing see; those without extent are not among them.
-  std::span<const SceneObject* const> infinite_luminaires() const { return infinite_; }
+  /// Luminaires at infinity that such a ray sees when it hits nothing; those without extent are not among them.
+  std::span<const SceneObject* const> infinite_luminaires(const Ray& ray) const {
+    return ray.of_camera ? std::span(infinite_).first(infinite_seen_) : std::span(infinite_);
+  }
+  /// Whether the camera is not to see everything that is in it.
+  bool has_unseen() const { return has_unseen_; }
   /// A sphere around all finite objects.
   Point3 centre() const { return bounds_.empty() ? Point3{} : bounds_.centre(); }
   float radius() const { return bounds_.empty() ? 1.0f : length(bounds_.diagonal()) / 2; }
@@ -100,27 +104,44 @@ class Scene : public SceneObject {
   SurfaceSample sample_area(Point2 u, float time) const override;
 
  protected:
-  /// Builds the structure over finite objects; called by prepare.
+  /// Builds the structure over finite objects; called by prepare. What the camera does not see is not among them: it has a
+  /// structure of its own, so that none need know of it.
   virtual void build(std::span<const SceneObject* const> finite) = 0;
+  /// What `nearest`, `any` and `all` say, of what was built.
+  virtual bool find_nearest(const Ray&, Hit&) const = 0;
+  virtual bool find_any(const Ray&) const = 0;
+  virtual void find_all(const Ray& ray, HitList& list) const {
+    Hit hit;
+    if (find_nearest(ray, hit)) list.add(hit);
+  }
 
  private:
   friend class Instance;
   void require_good_objects();
-  std::vector<const SceneObject*> survey();
+  struct Finite {
+    std::vector<const SceneObject*> seen, unseen;  // by the camera
+  };
+  Finite survey();
   void note_interior(const SceneObject&);
   void choose_centre();
   void locate_nested(const Ray&, const Hit&, SurfacePoint&) const;
   Bounds3 placed_bounds(const AnimatedTransform& placed) const;
+  bool nearest_with_unseen(const Ray&, Hit&) const;
+  void all_unseen(const Ray&, HitList&) const;
+  bool note_unseen(const SceneObject&);
   bool in_interior_tree(const Point3&) const;
   void build_interior_tree(std::span<Bounds3>);
 
   Bounds3 bounds_;  // of the objects, in the scene's own coordinates
-  std::vector<const SceneObject*> luminaires_, infinite_;
+  std::vector<const SceneObject*> luminaires_;
+  std::vector<const SceneObject*> infinite_;  // those that the camera sees come first
+  size_t infinite_seen_ = 0;                  // so many
+  Ref<Scene> unseen_;                         // finite objects that the camera does not see; null: there are none
   const SceneObject* surroundings_ = nullptr;
   std::shared_ptr<const NestedLuminaires> nested_;  // null: there are none, or this scene is a nested one itself
   std::vector<Bounds3> interiors_;  // of the objects that paths can enter, and of scenes in which there are such; of many
                                     // such only the union, and the tree
-  bool has_interiors_ = false, has_null_surfaces_ = false, unbounded_ = false;
+  bool has_interiors_ = false, has_null_surfaces_ = false, has_unseen_ = false, unbounded_ = false;
   struct Node {
     Bounds3 box;
     std::uint32_t next = 0;  // after all below it; of a leaf 0

@@ -80,6 +80,7 @@ class SceneObject : public Component {
   Sides sides = Sides::both;     ///< which sides scatter light; the other lets what goes straight on pass, and absorbs the rest
   int priority = 0;              ///< where objects overlap, the one of highest priority fills the space
   ShadingNormals shading_normals = ShadingNormals::folded;  ///< what becomes of light they would send through the surface
+  bool visible_to_camera = true;                            ///< false: for rays of the camera it is not there
 
   bool luminaire() const { return bool(emission); }
 
@@ -153,6 +154,8 @@ class SceneObject : public Component {
 
   /// The object the user wrote, when this one stands for it: in one of several places, or with another shader.
   virtual const SceneObject& original() const { return *this; }
+  /// All that members say of another object's surface, light and inside is said of this one, which stands for it.
+  void stand_for(const SceneObject&);
 
   /// Objects that stand within this one's own coordinates: those of a scene, the operands of a solid.
   virtual std::vector<SceneObject*> placed_within() const { return {}; }

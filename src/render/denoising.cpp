@@ -29,7 +29,8 @@ class GuideProcess final : public RenderProcess {
     Vector3 normal;
     while (true) {
       if (!walk.next_vertex(nothing)) {
-        if (walk.vertex.kind == Vertex::Kind::escape && !context.scene.infinite_luminaires().empty()) color = walk.throughput;
+        if (walk.vertex.kind == Vertex::Kind::escape && !context.scene.infinite_luminaires(walk.ray).empty())
+          color = walk.throughput;
         break;
       }
       const Vertex& v = walk.vertex;

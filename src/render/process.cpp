@@ -122,6 +122,7 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   }
   from.ray.width *= renderer.map_filter;
   from.ray.spread *= renderer.map_filter;
+  from.ray.of_camera = true;
   if (record) [[unlikely]]
     record_camera(*record, camera, from.ray);
   s.value = from.weight * radiance(from.ray, sample);

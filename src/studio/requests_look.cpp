@@ -27,7 +27,8 @@ Json pick(const Call& call) {
   const Document& document = call.studio.document();
   const Job& job = document.job();
   const Point2 film{float(call.number("x")) + 0.5f, float(call.number("y")) + 0.5f};
-  const Ray ray = job.camera->ray(film, {0.5f, 0.5f}, job.camera->shutter_open);
+  Ray ray = job.camera->ray(film, {0.5f, 0.5f}, job.camera->shutter_open);
+  ray.of_camera = true;
   Hit hit;
   if (!job.scene->nearest(ray, hit)) return {{"component", nullptr}};
   SurfacePoint point;

@@ -71,7 +71,8 @@ Json lobes(const Call& call) {
   const Point2 film{float(call.number("x")) + 0.5f, float(call.number("y")) + 0.5f};
   const std::unique_ptr<RenderProcess> process = last_process(*render);
   const ShownInSpace& shown = shown_of(*process, *render, "guide");
-  const Ray ray = job.camera->ray(film, {0.5f, 0.5f}, job.camera->shutter_open);
+  Ray ray = job.camera->ray(film, {0.5f, 0.5f}, job.camera->shutter_open);
+  ray.of_camera = true;
   Hit hit;
   if (!job.scene->nearest(ray, hit)) throw Error("nothing is seen in this pixel");
   SurfacePoint point;

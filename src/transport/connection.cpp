@@ -65,6 +65,7 @@ std::optional<LuminaireConnection> connect_to_luminaire(const Scene& scene, cons
 std::optional<LensConnection> connect_to_lens(const RenderContext& context, const KeptVertex& y, const Wavelengths& wavelengths,
                                               NumberStream& numbers, Arena& arena) {
   const Camera& camera = context.camera;
+  if (unseen(y)) return {};
   const std::optional<LensSample> lens = camera.sample_lens(y.point.position, y.point.time, numbers.next_pair());
   if (!lens || !(lens->density > 0)) return {};
   const ScatterValue f = scattering(y, y.out, lens->direction, Transport::importance);

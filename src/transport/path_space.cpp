@@ -43,6 +43,7 @@ bool PathSpace::follow(const PathVertex& from, const Vector3& direction, LightPa
     const Camera::Reach reach = context.camera.reach(ray);
     ray.origin = ray(reach.nearest);
     ray.maximum = reach.farthest - reach.nearest;
+    ray.of_camera = true;
   }
   MediumStack media;
   const bool tracks = scene.has_interiors();
@@ -177,6 +178,8 @@ bool PathSpace::visible(const LightPath& path, int i) const {
   } else {
     ray = connecting_ray(from, to);
   }
+  ray.of_camera = b.kind == Vertex::Kind::camera;
+  if (ray.of_camera && unseen(a)) return false;
   if (!context.scene.has_interiors()) return !context.scene.any(ray);
   MediumStack scratch;
   const NoNumbers none;

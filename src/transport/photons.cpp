@@ -129,7 +129,8 @@ float seen_pixel_width(const RenderContext& context) {
     for (int column = 0; column < across; ++column) {
       const Point2 film{(float(column) + 0.5f) / across * width, (float(row) + 0.5f) / across * height};
       const Point2 middle{0.5f, 0.5f};
-      const Ray ray = context.camera.ray(film, middle, time);
+      Ray ray = context.camera.ray(film, middle, time);
+      ray.of_camera = true;
       const Ray next = context.camera.ray({film.x + (film.x > width / 2 ? -1.0f : 1.0f), film.y}, middle, time);
       Hit hit;
       if (context.scene.nearest(ray, hit)) widths.push_back(length(next(hit.distance) - ray(hit.distance)));

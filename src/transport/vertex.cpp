@@ -29,6 +29,7 @@ Ray connecting_ray(const Vertex& from, const Vertex& to) {
 Ray lens_ray(const Vertex& v, const LensSample& lens) {
   Ray ray = leaving_ray(v, lens.direction);
   ray.maximum = (lens.distance - lens.nearest) * SurfacePoint::almost_there;
+  ray.of_camera = true;
   return ray;
 }
 

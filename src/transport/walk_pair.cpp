@@ -61,7 +61,8 @@ void WalkPair::meet(int t, LightListener& listener) const {
     ray.origin = camera_vertex(t - 1).point.position;
     ray.direction = -z.out;
     ray.time = camera_[0].point.time;
-    for (const SceneObject* far : context_.scene.infinite_luminaires()) {
+    ray.of_camera = t == 2;
+    for (const SceneObject* far : context_.scene.infinite_luminaires(ray)) {
       far->surface_point(ray, {}, point);
       meet_at(z, point, t, listener);
     }

@@ -20,7 +20,7 @@ class DimRenderer final : public Renderer {
       Hit hit;
       SurfacePoint point;
       if (!context.scene.nearest(ray, hit)) {
-        for (const SceneObject* far : context.scene.infinite_luminaires()) {
+        for (const SceneObject* far : context.scene.infinite_luminaires(ray)) {
           far->surface_point(ray, hit, point);
           light += throughput * far->emission->radiance(point, -ray.direction, sample.wavelengths);
         }

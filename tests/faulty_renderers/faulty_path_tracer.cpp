@@ -38,7 +38,7 @@ class FaultyPathTracer final : public Renderer {
     while (walk.next_vertex()) {
       Vertex& v = walk.vertex;
       if (v.kind == Vertex::Kind::escape) {
-        for (const SceneObject* far : context.scene.infinite_luminaires()) {
+        for (const SceneObject* far : context.scene.infinite_luminaires(walk.ray)) {
           far->surface_point(walk.ray, walk.hit, v.point);
           add(walk.length, met(walk));
         }

@@ -118,11 +118,12 @@ TEST(GltfExport, TellsWhatItCannotExpress) {
   const std::string told =
       export_job(folder,
                  job("Torus { shader: PhongShader {} }, Environment { emission: DiffuseEmission {} },"
-                     "Sphere { shader: Lambertian { color: CheckerMap {} }, interior: HomogeneousVolume { scattering: 1 } }"),
+                     "Sphere { shader: Lambertian { color: CheckerMap {} }, interior: HomogeneousVolume { scattering: 1 }, "
+                     "priority: 1 }"),
                  "out.gltf")
           .told;
   for (const char* words : {"Torus", "an environment is left out", "curved shapes become triangles", "a map like CheckerMap",
-                            "media do not scatter in glTF"})
+                            "media do not scatter in glTF", "'priority' of Sphere is left out"})
     EXPECT_NE(told.find(words), std::string::npos) << words << " in " << told;
 }
 

@@ -39,6 +39,28 @@ TEST(MitsubaLight, RgbIsWhiteAndSpectraAreAsTheyAre) {
   EXPECT_NEAR(lamp("<spectrum name=\"radiance\" value=\"360:1, 555:1\"/>").y, 0.4654, 0.006);
 }
 
+// Measured in Mitsuba 3.9.1: rays of the camera go on behind hidden emitters, what lies there being lit and shaded by them, and
+// end in black where nothing lies.
+TEST(MitsubaIntegrator, HiddenEmittersLightAndAreNotSeen) {
+  const auto seen_of = [](const std::string& content, bool hidden) {
+    const std::string hide = hidden ? "<boolean name=\"hide_emitters\" value=\"true\"/>" : "";
+    return seen(import_text(scene(sensor() + "<integrator type=\"path\"><integer name=\"max_depth\" value=\"2\"/>" + hide +
+                                  "</integrator>" + content)),
+                8192)
+        .y;
+  };
+  const std::string around = "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"0.5\"/></emitter>";
+  EXPECT_NEAR(seen_of(around, false), 0.5, 0.01);
+  EXPECT_EQ(seen_of(around, true), 0);
+  EXPECT_NEAR(seen_of(around + wall(matt("0.5")), true), 0.25, 0.005);
+  // A disc of radius 1 at z = 4 that shines towards the wall: sin^2 = 1 / 2.
+  const std::string disc =
+      "<shape type=\"disk\"><transform name=\"to_world\"><translate z=\"4\"/></transform>"
+      "<emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>";
+  EXPECT_NEAR(seen_of(disc + wall(matt("0.5")), true), 0.25, 0.005);
+  EXPECT_EQ(seen_of(disc + wall(matt("0.5")), false), 0);  // its back
+}
+
 // The wall stands at z = 5. What a file does not state is not clipped.
 TEST(MitsubaCamera, ClipsWhereTheFileSaysSo) {
   const auto bright = [](const std::string& clip) {

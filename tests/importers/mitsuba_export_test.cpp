@@ -1,6 +1,8 @@
 // What is exported to Mitsuba's XML is the same scene: read back, it makes the same picture. That Mitsuba itself makes it is
 // tried by references/exports.py.
 
+#include <cstring>
+
 #include "etendue/exporter.h"
 #include "etendue/language/language.h"
 #include "mitsuba_support.h"
@@ -113,6 +115,59 @@ TEST(MitsubaExport, TellsWhatItCannotExpress) {
   std::string told;
   for (const Error& note : exported.notes) told += note.what() + std::string("\n");
   EXPECT_NE(told.find("Mitsuba has no shape like Torus"), std::string::npos) << told;
+}
+
+// Whatever an exporter does not ask for is told, at its place, where it says something.
+TEST(MitsubaExport, MembersThatAreLeftOutAreTold) {
+  const TemporaryFolder folder;
+  const Exported e = export_job(folder, job("Sphere { priority: 2, shader: Dielectric {} },\nSphere { priority: 0 },\n"
+                                            "Sphere { priority: 3, shading_normals: clipped }"));
+  ASSERT_EQ(e.notes.size(), 2u);
+  EXPECT_STREQ(e.notes[0].what(), "'priority' of Sphere is left out (2 times)");
+  EXPECT_EQ(e.notes[0].location.line, 5);
+  EXPECT_EQ(e.notes[0].location.column, 20);
+  EXPECT_STREQ(e.notes[1].what(), "'shading_normals' of Sphere is left out");
+  EXPECT_EQ(e.notes[1].location.line, 7);
+}
+
+TEST(MitsubaExport, NormalsThatAMeshFindsForItself) {
+  const TemporaryFolder folder;
+  export_job(folder,
+             job("TriangleMesh { positions: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], triangles: [0, 2, 1, 0, 1, 3], "
+                 "smooth: true }"));
+  const std::string ply = file_text(folder / "out-mesh-1.ply");
+  EXPECT_NE(ply.find("property float nx"), std::string::npos);
+  const char* vertices = ply.data() + ply.find("end_header\n") + 11;
+  float first[6];
+  std::memcpy(first, vertices, sizeof first);
+  // Between the triangles' own, (0, 0, -1) and (0, -1, 0): both meet there in right angles.
+  EXPECT_NEAR(first[3], 0, 1e-5f);
+  EXPECT_NEAR(first[4], -std::sqrt(0.5f), 1e-5f);
+  EXPECT_NEAR(first[5], -std::sqrt(0.5f), 1e-5f);
+  // Corners that there are not are the reader's to refuse.
+  const Exported bad = export_job(folder, job("TriangleMesh { positions: [[0, 0, 0], [1, 0, 0]], triangles: [0, 1, 7], smooth: "
+                                              "true }"));
+  EXPECT_NE(bad.text.find("ply"), std::string::npos);
+}
+
+TEST(MitsubaExport, HidesEmittersIfNoneIsSeen) {
+  const TemporaryFolder folder;
+  const auto exported = [&](const std::string& objects) { return export_job(folder, job(objects)); };
+  const std::string unseen = ", visible_to_camera: false }", lamp = "Sphere { emission: DiffuseEmission {}";
+  const Exported all = exported("Environment { emission: EnvironmentEmission {}" + unseen + ",\n" + lamp + unseen +
+                                ",\nPoint { emission: DiffuseEmission {} }, Sphere {}");
+  EXPECT_TRUE(all.notes.empty()) << all.notes[0].what();
+  EXPECT_NE(all.text.find("hide_emitters"), std::string::npos);
+  EXPECT_EQ(all.back.told(), "");
+  for (int i : {0, 1}) EXPECT_FALSE(*get(all.back.object(size_t(i)), "visible_to_camera").as<bool>()) << i;
+  for (int i : {2, 3}) EXPECT_TRUE(*get(all.back.object(size_t(i)), "visible_to_camera").as<bool>()) << i;
+  for (const std::string& other : {lamp + " }", "Sphere {" + unseen.substr(1)}) {
+    const Exported some = exported(lamp + unseen + ",\n" + other);
+    EXPECT_EQ(some.text.find("hide_emitters"), std::string::npos);
+    ASSERT_EQ(some.notes.size(), 1u);
+    EXPECT_NE(std::string(some.notes[0].what()).find("the camera sees this"), std::string::npos);
+    EXPECT_EQ(some.notes[0].location.line, 5);
+  }
 }
 
 }  // namespace

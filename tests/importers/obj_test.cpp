@@ -13,6 +13,7 @@
 #include "etendue/importer.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
+#include "support/image_file.h"
 
 namespace etendue {
 namespace {
@@ -71,6 +72,21 @@ TEST_F(ObjTest, WhatIsMissingIsToldAndNotFatal) {
   std::vector<int> lines;
   for (const Error& note : importing.notes()) lines.push_back(note.location.line);
   EXPECT_EQ(lines, (std::vector<int>{2, 3, 9}));  // the texture, the reflections, the material that no file describes
+}
+
+// An image of which the beginning can be read and the rest cannot: the model is there, and whoever opens the image for the
+// picture tells.
+TEST_F(ObjTest, ImagesThatAreCutOff) {
+  const std::string image = folder_ + "/bumps.png";
+  std::vector<float> texels;
+  for (int i = 0; i < 32 * 32 * 3; ++i) texels.push_back(float(i * i % 251) / 251);
+  test::write_image(image, {32, 32, 3, NumberType::uint8}, texels);
+  std::filesystem::resize_file(image, std::filesystem::file_size(image) / 2);
+  write("colors.mtl", "newmtl shiny\nbump -bm 0.5 bumps.png\nmap_Kd bumps.png\nnewmtl glass one\nbump bumps.png\n");
+  Importing importing(write("model.obj", two_materials), {});
+  const Ref<Scene> scene = import(importing);
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(part(*scene->objects[0], "shader")->class_info().name, "BumpShader");
 }
 
 TEST_F(ObjTest, ErrorsNameTheLine) {

@@ -154,6 +154,10 @@ TEST(PbrtExport, WhatCannotBeExpressedIsTold) {
   const TemporaryFolder folder;
   const Exported e = exported(job_of("Torus { shader: PhongShader {} }\n"), folder / "scene.pbrt");
   EXPECT_NE(e.told.find("pbrt has no shape like Torus"), std::string::npos) << e.told;
+  // Members that nobody asked for.
+  const Exported f = exported(job_of("Sphere { priority: 1, visible_to_camera: false }\n"), folder / "scene.pbrt");
+  EXPECT_NE(f.told.find("'priority' of Sphere is left out"), std::string::npos) << f.told;
+  EXPECT_NE(f.told.find("'visible_to_camera' of Sphere is left out"), std::string::npos) << f.told;
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ class PhotonProcess final : public RenderProcess {
     while (walk.next_vertex()) {
       const Vertex& v = walk.vertex;
       if (v.kind == Vertex::Kind::escape) {
-        for (const SceneObject* far : context.scene.infinite_luminaires()) {
+        for (const SceneObject* far : context.scene.infinite_luminaires(walk.ray)) {
           SurfacePoint p;
           far->surface_point(walk.ray, walk.hit, p);
           add(walk.length, walk.throughput * far->emission->radiance(p, v.out, sample.wavelengths));

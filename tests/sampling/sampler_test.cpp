@@ -190,8 +190,8 @@ TEST(SobolSampler, IntegratesSmoothFunctionsBetter) {
 /// A scene that only lists its objects.
 class ListScene final : public Scene {
  public:
-  bool nearest(const Ray&, Hit&) const override { return false; }
-  bool any(const Ray&) const override { return false; }
+  bool find_nearest(const Ray&, Hit&) const override { return false; }
+  bool find_any(const Ray&) const override { return false; }
 
  protected:
   void build(std::span<const SceneObject* const>) override {}

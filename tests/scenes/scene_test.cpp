@@ -208,7 +208,7 @@ TEST(Scene, LuminairesAndInteriors) {
   EXPECT_EQ(&outer->luminaires()[2]->original(), inner_lamp.get());
   EXPECT_EQ(outer->luminaires()[2]->luminaire_index, 2);
   EXPECT_TRUE(inner->luminaires().empty());
-  ASSERT_EQ(outer->infinite_luminaires().size(), 1u);
+  ASSERT_EQ(outer->infinite_luminaires({}).size(), 1u);
   EXPECT_EQ(outer->luminaires()[size_t(lamp->luminaire_index)], lamp.get());
   EXPECT_EQ(outer->luminaires()[size_t(sky->luminaire_index)], sky.get());
   EXPECT_EQ(inner_lamp->luminaire_index, -1);
@@ -222,6 +222,88 @@ TEST(Scene, LuminairesAndInteriors) {
   EXPECT_TRUE(outer->has_interiors());
   EXPECT_EQ(prepared({inner, inner_lamp})->luminaires().size(), 2u);  // in both places
   EXPECT_THROW(prepared({prepared({sky})}), Error);
+}
+
+// A hidden ball, and a hidden cube of triangles in a scene that stands twice, before a wall: for rays of the camera only the
+// wall is there, for all others everything, whichever structure finds it.
+TEST(Scene, RaysOfTheCameraPassByWhatItDoesNotSee) {
+  for (const char* structure : {"BruteForceScene", "BvhScene", "EmbreeScene", "GridScene", "OctreeScene"}) {
+    const Ref<SceneObject> ball = object("Sphere"), cube = object("TriangleMesh", cube_settings()),
+                           wall = object("Rectangle",
+                                         {{"corner", {-20, -20, -2}}, {"edge_u", {40, 0, 0}}, {"edge_v", {0, 40, 0}}});
+    ball->visible_to_camera = cube->visible_to_camera = false;
+    const Ref<Scene> nested = scene(structure, {cube}, Transform::translate({5, 0, 0}));
+    EXPECT_TRUE(nested->has_unseen());
+    const Ref<Instance> instance = ref_cast<Instance>(Registry::instance().create("Instance"));
+    instance->scene = scene(structure, {cube, object("Sphere", {{"radius", 0.25}}, Transform::translate({0, 0, 3}))});
+    instance->transform = Transform::translate({-5, 0, 0});
+    instance->prepare();
+    const Ref<Scene> all = scene(structure, {ball, wall, nested, instance});
+    for (const float x : {0.1f, 5.1f, -5.1f}) {
+      Ray r = ray({x, 0.2f, 1.5f}, {0, 0, -1});
+      Hit hit;
+      ASSERT_TRUE(all->nearest(r, hit));
+      EXPECT_EQ(hit.object, x == 0.1f ? ball.get() : cube.get()) << structure;
+      EXPECT_EQ(hit.depth, x == 0.1f ? 0 : 1);
+      HitList list;
+      all->all(r, list);
+      EXPECT_GE(list.size, structure == std::string("BruteForceScene") ? 2 : 1);
+      r.of_camera = true;
+      ASSERT_TRUE(all->nearest(r, hit));
+      EXPECT_EQ(hit.object, wall.get()) << structure;
+      EXPECT_NEAR(hit.distance, 3.5f, 1e-5f);
+      HitList seen;
+      all->all(r, seen);
+      for (int i = 0; i < seen.size; ++i) EXPECT_EQ(seen.hits[i].object, wall.get());
+      r.maximum = 3;  // short of the wall
+      EXPECT_FALSE(all->any(r)) << structure;
+      r.of_camera = false;
+      EXPECT_TRUE(all->any(r)) << structure;
+    }
+  }
+}
+
+TEST(Scene, WhatCannotBeHiddenFromTheCameraIsRefused) {
+  const auto refused = [](const Ref<SceneObject>& o, const Ref<SceneObject>& outer) {
+    o->visible_to_camera = false;
+    EXPECT_THROW(scene("BruteForceScene", {outer}), Error);
+    o->visible_to_camera = true;
+    EXPECT_NO_THROW(scene("BruteForceScene", {outer}));
+  };
+  const Ref<SceneObject> nested = scene("BruteForceScene", {object("Sphere")});
+  refused(nested, nested);
+  const Ref<SceneObject> glass = object("Sphere");
+  glass->shader = make<TestShader>();
+  refused(glass, glass);
+  const Ref<SceneObject> surroundings = object("Surroundings");
+  refused(surroundings, surroundings);
+  // What the shader of an instance makes enterable.
+  const Ref<SceneObject> ball = object("Sphere");
+  const Ref<Instance> instance = ref_cast<Instance>(Registry::instance().create("Instance"));
+  instance->scene = ref_cast<Scene>(nested);
+  instance->scene->objects = {ball};
+  instance->shader = make<TestShader>();
+  ball->visible_to_camera = false;
+  instance->scene->prepare();
+  instance->prepare();
+  EXPECT_THROW(scene("BruteForceScene", {instance}), Error);
+}
+
+TEST(Scene, LuminairesAtInfinityThatTheCameraDoesNotSee) {
+  const auto sky = [](bool seen) {
+    const Ref<SceneObject> o = object("Environment");
+    o->emission = make<TestEmission>();
+    o->visible_to_camera = seen;
+    return o;
+  };
+  Ref<Scene> s = ref_cast<Scene>(Registry::instance().create("BruteForceScene"));
+  s->objects = {sky(false), sky(true), sky(false)};
+  s->prepare();
+  Ray r;
+  EXPECT_EQ(s->infinite_luminaires(r).size(), 3u);
+  r.of_camera = true;
+  ASSERT_EQ(s->infinite_luminaires(r).size(), 1u);
+  EXPECT_EQ(s->infinite_luminaires(r)[0], s->objects[1].get());
 }
 
 TEST(Scene, BadListsAreRefused) {

@@ -20,6 +20,9 @@ struct Ray {
   /// A cone around the ray, for filtering maps: width [m] at the origin and its growth per distance (Akenine-Möller
   /// et al. 2021, "Improved shader and texture level of detail using ray cones").
   float width = 0, spread = 0;
+  /// Joins the camera to what it sees first, whichever way it goes: what the camera is not to see is not there
+  /// (SceneObject::visible_to_camera).
+  bool of_camera = false;
 
   Point3 operator()(float t) const { return origin + t * direction; }
 };

@@ -76,7 +76,7 @@ class CameraWalk : public Walk<clear> {
                                      this->crossed);
       if (vertex.point.object->luminaire()) add_luminaire(weight);
     } else {
-      for (const SceneObject* far : scene.infinite_luminaires()) {
+      for (const SceneObject* far : scene.infinite_luminaires(ray)) {
         far->surface_point(ray, this->hit, vertex.point);
         sample.observe.escape(*far, ray, placed(throughput));
         add_luminaire(weight);

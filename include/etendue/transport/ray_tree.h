@@ -40,6 +40,7 @@ inline void go_on(const SurfacePoint& point, const ScatterSample& next, Ray& ray
   ray.maximum = next.lobe == pass_through ? ray.maximum - distance(ray.origin, point.position) : infinity;
   ray.origin = point.exit(next.direction);
   ray.direction = next.direction;
+  ray.of_camera &= next.lobe == pass_through;
   ray.width = point.footprint;
 }
 

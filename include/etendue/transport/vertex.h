@@ -64,6 +64,10 @@ inline std::optional<ScatterSample> scattered_towards(const Vertex& v, const Vec
 
 /// A ray from one vertex to another that ends just before it.
 Ray connecting_ray(const Vertex& from, const Vertex& to);
+/// Whether the camera does not see what a vertex lies on.
+inline bool unseen(const Vertex& v) {
+  return (v.on_surface() || v.kind == Vertex::Kind::luminaire) && !v.point.object->visible_to_camera;
+}
 /// A ray from a vertex to a point of the lens.
 Ray lens_ray(const Vertex&, const LensSample&);
 /// A ray that leaves a vertex.

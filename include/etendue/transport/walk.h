@@ -171,6 +171,7 @@ class Walk {
     // Member by member: copying a ray just written stalls for its parts to reach memory.
     ray.direction = next.direction;
     ray.maximum = infinity;
+    ray.of_camera = false;
     if (!clear && vertex.in_medium()) {
       specular = false;
       ray.origin = from;

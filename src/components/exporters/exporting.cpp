@@ -21,9 +21,9 @@ Exporting::Exporting(std::string path) : path_(std::move(path)) {
   stem_ = fs::path(path_).stem().string();
 }
 
-void Exporting::inexact(const std::string& what, const Component* of) {
+void Exporting::inexact(const std::string& what, const Component* of, std::string_view member) {
   const auto [place, added] = note_of_.emplace(what, notes_.size());
-  if (added) notes_.push_back({what, of ? of->location_of() : Location{}, 0});
+  if (added) notes_.push_back({what, of ? of->location_of(member) : Location{}, 0});
   ++notes_[place->second].count;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <regex>
 
+#include "asked_members.h"
 #include "etendue/describe/description.h"
 #include "etendue/describe/registry.h"
 #include "etendue/phase_function.h"
@@ -18,44 +19,49 @@ double shortest(double value) { return double(float(value)) == value ? std::stod
 
 }  // namespace
 
+Value value_of(const Component& of, std::string_view member) {
+  AskedMembers::note(of, member);
+  return get(of, member);
+}
+
 double number_of(const Component& of, std::string_view member) {
-  const Value value = get(of, member);
+  const Value value = value_of(of, member);
   const Number* n = value.as<Number>();
   if (!n) return 0;
   // Angles come in radians, and are floats in degrees.
   return n->dimension == Dimension::angle ? shortest(double(float(n->value * 180 / std::numbers::pi))) : shortest(n->value);
 }
 bool truth_of(const Component& of, std::string_view member) {
-  const Value value = get(of, member);
+  const Value value = value_of(of, member);
   const bool* is = value.as<bool>();
   return is && *is;
 }
 std::string word_of(const Component& of, std::string_view member) {
-  const Value value = get(of, member);
+  const Value value = value_of(of, member);
   if (const FilePath* path = value.as<FilePath>()) return path->empty() ? "" : path->resolved();
   const std::string* text = value.as<std::string>();
   return text ? *text : std::string();
 }
 Ref<Component> part_of(const Component& of, std::string_view member) {
-  const Value value = get(of, member);
+  const Value value = value_of(of, member);
   const Ref<Component>* found = value.as<Ref<Component>>();
   return found ? *found : nullptr;
 }
 std::vector<double> numbers_of(const Component& of, std::string_view member) {
-  const Value value = get(of, member);
+  const Value value = value_of(of, member);
   const Numbers* found = value.as<Numbers>();
   std::vector<double> all = found ? found->values : std::vector<double>();
   for (double& x : all) x = shortest(x);
   return all;
 }
 Color color_of(const Component& of, std::string_view member) {
-  const Value value = get(of, member);
+  const Value value = value_of(of, member);
   if (const Color* found = value.as<Color>()) return *found;
   const Number* n = value.as<Number>();
   return n ? flat_spectrum(float(n->value)) : nullptr;
 }
 AnimatedTransform transform_of(const Component& of, std::string_view member) {
-  const Value value = get(of, member);
+  const Value value = value_of(of, member);
   if (const auto* moving = value.as<AnimatedTransform>()) return *moving;
   const auto* still = value.as<Transform>();
   return still ? AnimatedTransform(*still) : AnimatedTransform();
@@ -68,7 +74,8 @@ bool textured(const Component* shader) {
   if (type == "ImageMap" || type == "CheckerMap" || type == "UvTransformMap") return true;
   for (const Member& m : shader->class_info().members)
     if (m.kind == Kind::component && !m.list)
-      if (const Ref<Component> inner = part_of(*shader, m.name); inner && textured(inner.get())) return true;
+      if (const Value value = get(*shader, m.name); const auto* inner = value.as<Ref<Component>>())
+        if (*inner && textured(inner->get())) return true;
   return false;
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "etendue/importer.h"
+#include "images/linear_image.h"
 
 namespace etendue {
 
@@ -124,6 +125,11 @@ std::optional<std::string> Importing::optional_file(const std::string& named, Lo
   if (auto found = find(named, beside, why_not)) return found;
   inexact(why_not, at);
   return std::nullopt;
+}
+
+const std::vector<std::string>& Importing::image_channels(const std::string& path) {
+  const auto known = channels_.find(path);
+  return known != channels_.end() ? known->second : channels_[path] = etendue::image_channels(path);
 }
 
 void Importing::inexact(const std::string& what, Location at) {

@@ -63,7 +63,7 @@ class DirectRenderer final : public Renderer {
     for (int crossings = 0; crossings <= most_crossings; ++crossings) {  // goes round where light passes straight on
       const ArenaScope memory(sample.arena);
       if (!meet_surface(scene, ray, media, hit, point)) {
-        for (const SceneObject* far : scene.infinite_luminaires()) {
+        for (const SceneObject* far : scene.infinite_luminaires(ray)) {
           far->surface_point(ray, hit, point);
           const Spectrum light = throughput * far->emission->radiance(point, -ray.direction, sample.wavelengths);
           add(1, light, far);
@@ -167,7 +167,7 @@ class DirectRenderer final : public Renderer {
       for (int crossings = 0; crossings <= most_crossings; ++crossings) {
         const ArenaScope memory(sample.arena);
         if (!meet_surface(scene, ray, around, hit, met)) {
-          for (const SceneObject* far : scene.infinite_luminaires()) {
+          for (const SceneObject* far : scene.infinite_luminaires(ray)) {
             far->surface_point(ray, hit, met);
             add(throughput * far->emission->radiance(met, -ray.direction, wavelengths) * weight(met), far);
           }

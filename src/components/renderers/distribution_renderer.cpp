@@ -120,7 +120,7 @@ class DistributionRenderer final : public Renderer {
       const ArenaScope memory(sample.arena);
       if (sample.aborted()) return;
       if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
-        for (const SceneObject* far : scene.infinite_luminaires()) {
+        for (const SceneObject* far : scene.infinite_luminaires(branch.ray)) {
           far->surface_point(branch.ray, hit, point);
           sample.observe.escape(*far, branch.ray, branch.throughput);
           add_emission(tree, branch, point);

@@ -48,6 +48,7 @@ class LightTracer final : public Renderer {
                SampleContext& sample) const {
     const KeptVertex& v = path[i];
     const bool luminaire = i == 0;
+    if (unseen(v)) return;
     if (luminaire && (light.infinite || v.point.normal == Normal3{})) return;  // of these the film holds no image
     NumberStream numbers = sample.numbers.fork("lens", std::uint32_t(i));
     const auto lens = context.camera.sample_lens(v.point.position, v.point.time, numbers.next_pair());

@@ -57,7 +57,7 @@ class WhittedRenderer final : public Renderer {
     Hit hit;
     SurfacePoint point;
     if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
-      for (const SceneObject* far : scene.infinite_luminaires()) {
+      for (const SceneObject* far : scene.infinite_luminaires(branch.ray)) {
         far->surface_point(branch.ray, hit, point);
         const Spectrum light = branch.throughput * far->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
         tree.add(branch.depth, light, far);

@@ -17,18 +17,18 @@ class BruteForceScene final : public Scene {
         "triangle test: Moeller & Trumbore 1997");
   }
 
-  bool nearest(const Ray& ray, Hit& hit) const override {
+  bool find_nearest(const Ray& ray, Hit& hit) const override {
     return others_.empty() ? triangles_.nearest(ray, hit) : nearest_of_all(ray, hit);
   }
 
-  void all(const Ray& ray, HitList& list) const override {
+  void find_all(const Ray& ray, HitList& list) const override {
     triangles_.all(ray, list);
     const Inverse inverse(ray);
     for (const Other& other : others_)
       if (inverse.meets(other.bounds, ray.maximum)) other.object->all_hits(ray, list);
   }
 
-  bool any(const Ray& ray) const override { return others_.empty() ? triangles_.any(ray) : any_of_all(ray); }
+  bool find_any(const Ray& ray) const override { return others_.empty() ? triangles_.any(ray) : any_of_all(ray); }
 
  protected:
   void build(std::span<const SceneObject* const> finite) override {

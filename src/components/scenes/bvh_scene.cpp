@@ -47,7 +47,7 @@ class BvhScene final : public Scene {
         "Wald, Benthin & Boulos 2008, \"Getting rid of packets\"; Woop, Benthin & Wald 2013; Ize 2013");
   }
 
-  bool nearest(const Ray& ray, Hit& hit) const override {
+  bool find_nearest(const Ray& ray, Hit& hit) const override {
     Ray rest = ray;
     bool found = primitives_.nearest_endless(rest, hit);
     const ShearedRay<Floats> sheared(ray);
@@ -81,7 +81,7 @@ class BvhScene final : public Scene {
     return true;
   }
 
-  bool any(const Ray& ray) const override {
+  bool find_any(const Ray& ray) const override {
     if (primitives_.any_endless(ray)) return true;
     const ShearedRay<Floats> sheared(ray);
     bool found = false;
@@ -98,7 +98,7 @@ class BvhScene final : public Scene {
     return found;
   }
 
-  void all(const Ray& ray, HitList& list) const override {
+  void find_all(const Ray& ray, HitList& list) const override {
     primitives_.all_endless(ray, list);
     const ShearedRay<Floats> sheared(ray);
     traverse(bvh_, ray, ray.maximum, [&](std::uint32_t first, std::uint32_t count) {

@@ -48,7 +48,7 @@ struct CellRay {
 template <class Structure>
 class CellScene : public Scene {
  public:
-  bool nearest(const Ray& ray, Hit& hit) const override {
+  bool find_nearest(const Ray& ray, Hit& hit) const override {
     Ray rest = ray;
     bool found = primitives_.nearest_endless(rest, hit);
     const ShearedRay<double> sheared(ray);
@@ -64,7 +64,7 @@ class CellScene : public Scene {
     return found;
   }
 
-  bool any(const Ray& ray) const override {
+  bool find_any(const Ray& ray) const override {
     if (primitives_.any_endless(ray)) return true;
     const ShearedRay<double> sheared(ray);
     Mailbox mailbox;
@@ -77,7 +77,7 @@ class CellScene : public Scene {
     return found;
   }
 
-  void all(const Ray& ray, HitList& list) const override {
+  void find_all(const Ray& ray, HitList& list) const override {
     const int before = list.size;
     primitives_.all_endless(ray, list);
     const ShearedRay<double> sheared(ray);

@@ -28,7 +28,7 @@ class EmbreeScene final : public Scene {
         .member<&EmbreeScene::compact>("compact", "", "less memory, slower", Effect::rebuild);
   }
 
-  bool nearest(const Ray& ray, Hit& hit) const override {
+  bool find_nearest(const Ray& ray, Hit& hit) const override {
     Context context{{}, *this, ray, &hit, nullptr};
     rtcInitIntersectContext(&context.embree);
     RTCRayHit query;
@@ -47,7 +47,7 @@ class EmbreeScene final : public Scene {
   }
 
   // Hits are noted as Embree finds them, and denied, so that it goes on.
-  void all(const Ray& ray, HitList& list) const override {
+  void find_all(const Ray& ray, HitList& list) const override {
     Context context{{}, *this, ray, nullptr, &list};
     rtcInitIntersectContext(&context.embree);
     context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
@@ -62,7 +62,7 @@ class EmbreeScene final : public Scene {
     rtcIntersect1(scene_.get(), &context.embree, &query);
   }
 
-  bool any(const Ray& ray) const override {
+  bool find_any(const Ray& ray) const override {
     Context context{{}, *this, ray, nullptr, nullptr};
     rtcInitIntersectContext(&context.embree);
     context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
@@ -186,7 +186,9 @@ class EmbreeScene final : public Scene {
   const EmbreeScene* instanced(const SceneObject& object) {
     const auto* inner = dynamic_cast<const EmbreeScene*>(scene_within(object));
     if (!inner || inner->levels_ >= RTC_MAX_INSTANCE_LEVEL_COUNT || object.transform.animated()) return nullptr;
-    if (!inverted_well(object.transform.still(), object.bounds()) || !keeps_time(inner->clock_)) return nullptr;
+    // What the camera does not see Embree knows nothing of.
+    if (inner->has_unseen() || !inverted_well(object.transform.still(), object.bounds()) || !keeps_time(inner->clock_))
+      return nullptr;
     levels_ = std::max(levels_, 1 + inner->levels_);
     return inner;
   }

@@ -29,9 +29,9 @@ class Import final : public Scene {
         .member<&Import::time>("time", "s", "of what moves in it", Effect::rebuild);
   }
 
-  bool nearest(const Ray& ray, Hit& hit) const override { return over_->nearest(ray, hit); }
-  bool any(const Ray& ray) const override { return over_->any(ray); }
-  void all(const Ray& ray, HitList& list) const override { over_->all(ray, list); }
+  bool find_nearest(const Ray& ray, Hit& hit) const override { return over_->nearest(ray, hit); }
+  bool find_any(const Ray& ray) const override { return over_->any(ray); }
+  void find_all(const Ray& ray, HitList& list) const override { over_->all(ray, list); }
 
   void prepare() override {
     if (!over_ || read_ != file.resolved() || read_at_ != time) read();

@@ -22,11 +22,8 @@ class Reshaded final : public SceneObject {
   Reshaded(const SceneObject& other, const Ref<Shader>& with) : object(const_cast<SceneObject*>(&other)) {
     transform = object->transform;
     world_centre = object->world_centre;
+    stand_for(other);
     shader = with;
-    emission = object->emission;
-    interior = object->interior;
-    sides = object->sides;
-    priority = object->priority;
     if (object->origin) origin = std::make_unique<Origin>(*object->origin);
   }
 

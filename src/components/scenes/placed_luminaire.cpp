@@ -143,11 +143,7 @@ PlacedLuminaire::PlacedLuminaire(const SceneObject& inner, const Placement& plac
   transform = inner.transform;
   for (const Placement* p = &place; p != nullptr; p = p->outer) transform = p->scene->transform * transform;
   world_centre = inner.world_centre;
-  shader = inner.shader;
-  emission = inner.emission;
-  interior = inner.interior;
-  sides = inner.sides;
-  priority = inner.priority;
+  stand_for(inner);
 }
 
 bool PlacedLuminaire::intersect(const Ray& ray, Hit& hit) const {

@@ -2,6 +2,7 @@
 
 #include "etendue/scene.h"
 
+#include <algorithm>
 #include <atomic>
 #include <unordered_set>
 
@@ -83,6 +84,9 @@ Bounds3 for_endless_ones(const DoublePoint3& centre) {
   return cube;
 }
 
+/// What finds objects that the camera does not see, in whichever scene.
+constexpr const char* structure_of_unseen = "BvhScene";
+
 /// More boxes than this are searched by a tree.
 constexpr size_t few_interiors = 16;
 
@@ -98,7 +102,7 @@ void Scene::describe(Description<Scene>& d) {
        "Objects, and a structure that finds what a ray meets. A scene is itself an object: scenes nest, and one that "
        "stands in several places is stored once. Its luminaires are luminaires in each of these places; amounts of light "
        "they are asked for (a power in watts) are those of each place, whatever its size. A nested scene's own shader, "
-       "emission, interior, sides and priority say nothing.")
+       "emission, interior, sides and priority say nothing, and what the camera does not see is said of the objects in it.")
       .group("Content")
       .member<&Scene::objects>("objects", "", "what is in it", Effect::rebuild);
 }
@@ -128,7 +132,10 @@ void Scene::choose_centre() {
 void Scene::prepare() {
   require_good_objects();
   if (chooses_centre) choose_centre();
-  build(survey());
+  const Finite finite = survey();
+  build(finite.seen);
+  unseen_ = finite.unseen.empty() ? nullptr : ref_cast<Scene>(Registry::instance().create(structure_of_unseen));
+  if (unseen_) unseen_->build(finite.unseen);
 }
 
 // The structure knows where objects are, which stays.
@@ -171,8 +178,46 @@ void Scene::note_interior(const SceneObject& object) {
   interiors_.push_back(object.bounds());
 }
 
+/// Whether an object is one that rays of the camera pass by.
+bool Scene::note_unseen(const SceneObject& object) {
+  const Scene* inner = scene_within(object);
+  if (inner && !object.visible_to_camera)
+    object.fail("visible_to_camera", "the camera sees each object in a scene or does not: say it of those, not of the scene");
+  if (inner) {
+    if (inner->has_unseen_ && inner != &object && object.shader && object.shader->transmits())
+      object.fail("shader", "the camera is not to see some object in the scene, which light cannot be let into, then");
+    has_unseen_ |= inner->has_unseen_;
+    return false;
+  }
+  if (object.visible_to_camera) return false;
+  if (object.surrounds() || enterable(object))
+    object.fail("visible_to_camera",
+                "light goes into this object, so the camera would see what fills it: it cannot be left out");
+  has_unseen_ = true;
+  return !object.infinite();
+}
+
+bool Scene::nearest_with_unseen(const Ray& ray, Hit& hit) const {
+  const bool found = find_nearest(ray, hit);
+  if (ray.of_camera) return found;
+  Ray rest = ray;
+  if (found) rest.maximum = hit.distance;
+  return unseen_->find_nearest(rest, hit) || found;
+}
+
+void Scene::all_unseen(const Ray& ray, HitList& list) const {
+  HitList more;
+  unseen_->find_all(ray, more);
+  const auto known = [&](const Hit& hit) {  // a scene over the objects of another one (Import) has them twice
+    return std::any_of(list.hits, list.hits + list.size,
+                       [&](const Hit& h) { return h.object == hit.object && h.distance == hit.distance; });
+  };
+  for (int i = 0; i < more.size; ++i)
+    if (!known(more.hits[i])) list.add(more.hits[i]);
+}
+
 /// Finds out what is in the scene, and returns the objects that rays meet.
-std::vector<const SceneObject*> Scene::survey() {
+Scene::Finite Scene::survey() {
   luminaires_.clear();
   infinite_.clear();
   interiors_.clear();
@@ -181,7 +226,7 @@ std::vector<const SceneObject*> Scene::survey() {
   surroundings_ = nullptr;
   static std::atomic<std::uint64_t> versions{0};
   version_ = ++versions;
-  has_interiors_ = has_null_surfaces_ = unbounded_ = false;
+  has_interiors_ = has_null_surfaces_ = has_unseen_ = unbounded_ = false;
   // Others stand for luminaires of nested scenes; those scenes gave them places in their own lists before.
   std::unordered_set<const Scene*> visited;
   for_nested(*this, visited, [](Scene& inner) {
@@ -198,7 +243,7 @@ std::vector<const SceneObject*> Scene::survey() {
   const std::shared_ptr<NestedLuminaires> nested = NestedLuminaires::of(*this);
   nested_ = nested;
 
-  std::vector<const SceneObject*> finite;
+  Finite finite;
   Coarse coarse;
   for (const Ref<SceneObject>& object : objects) {
     const Scene* inner = scene_within(*object);
@@ -210,6 +255,7 @@ std::vector<const SceneObject*> Scene::survey() {
       luminaires_.push_back(object.get());
       if (object->infinite() && !object->delta()) infinite_.push_back(object.get());
     }
+    const bool unseen = note_unseen(*object);
     if (object->surrounds()) {
       if (surroundings_) object->fail("", "there are surroundings already: a scene stands in one thing alone");
       surroundings_ = object.get();
@@ -237,8 +283,11 @@ std::vector<const SceneObject*> Scene::survey() {
     } else {
       bounds_.add(box);
     }
-    finite.push_back(object.get());
+    (unseen ? finite.unseen : finite.seen).push_back(object.get());
   }
+  const auto seen = std::stable_partition(infinite_.begin(), infinite_.end(),
+                                          [](const SceneObject* object) { return object->visible_to_camera; });
+  infinite_seen_ = size_t(seen - infinite_.begin());
   coarse.say();
   if (unbounded_ && bounds_.empty()) bounds_ = for_endless_ones(transform.inner());
   if (interiors_.size() > few_interiors) {

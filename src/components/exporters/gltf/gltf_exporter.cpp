@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "components/exporters/asked_members.h"
 #include "writer.h"
 
 namespace etendue {
@@ -30,12 +31,14 @@ std::string as_uri(const std::string& name) {
 }
 
 std::string Writer::write(bool binary) {
+  const AskedMembers asked;
   binary_ = binary;
   document_["asset"] = {{"version", "2.0"}, {"generator", "Etendue"}};
   document_["scene"] = 0;
   Json roots = nodes_of(*job.scene);
   roots = Json::array({group(still(job.scene->transform, *job.scene), std::move(roots))});
   roots.push_back(camera_node());
+  asked.tell(job, exporting);
   document_["scenes"] = Json::array({Json{{"nodes", std::move(roots)}}});
   if (document_.contains("extensionsUsed")) {
     Json used = Json::array();

@@ -56,7 +56,7 @@ void Writer::extend(Json& m, const char* extension, Json content) {
 }
 
 double Writer::scalar(const Component& of, const char* member, double otherwise) {
-  const Value value = get(of, member);
+  const Value value = value_of(of, member);
   if (const Number* n = value.as<Number>()) return n->value;
   const Ref<Component> map = part_of(of, member);
   const Color c = map ? constant_of(*map) : color_of(of, member);

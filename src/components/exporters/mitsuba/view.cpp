@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/exporters/asked_members.h"
 #include "writer.h"
 
 namespace etendue::mitsuba_export {
@@ -99,11 +100,31 @@ void Writer::film(Node sensor) {
   }
 }
 
+// Mitsuba's camera passes by all emitters or by none.
+void Writer::hide_emitters(Node integrator) {
+  std::vector<const SceneObject*> seen, unseen;
+  const auto sort = [&](const Scene& scene, const auto& again) -> void {
+    for (const Ref<SceneObject>& o : scene.objects)
+      if (const Scene* inner = scene_within(*o))
+        again(*inner, again);
+      else if (!truth_of(*o, "visible_to_camera"))
+        unseen.push_back(o.get());
+      else if (o->luminaire() && !o->delta())
+        seen.push_back(o.get());
+  };
+  sort(*job.scene, sort);
+  if (unseen.empty()) return;
+  const bool all = seen.empty() && std::ranges::all_of(unseen, [](const SceneObject* o) { return o->luminaire(); });
+  if (all) return truth(integrator, "hide_emitters", true);
+  for (const SceneObject* o : unseen)
+    exporting.inexact("the camera sees this: Mitsuba hides all luminaires or none, and nothing else", o, "visible_to_camera");
+}
+
 void Writer::integrator() {
   const Component& r = *job.renderer;
   const std::string& type = class_of(r);
   if (type == "DirectRenderer") {
-    plugin(scene_, "integrator", "direct");
+    hide_emitters(plugin(scene_, "integrator", "direct"));
     return;
   }
   const bool media =
@@ -111,14 +132,17 @@ void Writer::integrator() {
   Node n = plugin(scene_, "integrator", media ? "volpath" : "path");
   const double depth = r.class_info().find("max_depth") ? number_of(r, "max_depth") : 64;
   integer(n, "max_depth", depth >= 100000 ? -1 : long(depth));
+  hide_emitters(n);
   if (type != "PathTracer") exporting.inexact(fmt::format("paths are traced from the camera instead of {}", type), &r);
 }
 
 std::string Writer::write() {
+  const AskedMembers asked;
   scene_ = document_.append_child("scene");
   scene_.append_attribute("version") = "3.0.0";
   view();
   objects(scene_, *job.scene, {});
+  asked.tell(job, exporting);
   struct Text final : pugi::xml_writer {
     std::string text;
     void write(const void* data, size_t size) override { text.append(static_cast<const char*>(data), size); }

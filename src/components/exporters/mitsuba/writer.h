@@ -73,6 +73,7 @@ class Writer {
   void camera(Node sensor);
   void film(Node sensor);
   void integrator();
+  void hide_emitters(Node integrator);
 
   const Job& job;
   Exporting& exporting;

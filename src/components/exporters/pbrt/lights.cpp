@@ -106,7 +106,7 @@ std::string Writer::point_light(const SceneObject& object, const Component& emis
 bool Writer::light_source(const SceneObject& object) {
   const std::string name = object.class_info().name;
   if (name != "Point" && name != "Distant" && name != "Environment") return false;
-  const Component* emission = object.emission.get();
+  const Ref<Component> emission = part_of(object, "emission");
   if (!emission) return true;
   std::string text;
   if (name == "Environment" &&
@@ -119,14 +119,15 @@ bool Writer::light_source(const SceneObject& object) {
     return true;
   }
   if (name == "Environment") {
-    exporting.inexact(fmt::format("the environment's {} is left out", emission->class_info().name), emission);
+    exporting.inexact(fmt::format("the environment's {} is left out", emission->class_info().name), emission.get());
     return true;
   }
   if (name == "Point") {
     text = point_light(object, *emission);
   } else {
     const std::vector<double> way = numbers_of(object, "direction");
-    if (emission->class_info().name != "DiffuseEmission") exporting.inexact("a distant light is alike everywhere", emission);
+    if (emission->class_info().name != "DiffuseEmission")
+      exporting.inexact("a distant light is alike everywhere", emission.get());
     text = "LightSource \"distant\"" + light_of(*emission, "L", object) +
            fmt::format(" \"point3 from\" [ 0 0 0 ] \"point3 to\" {}\n", list(way));
   }

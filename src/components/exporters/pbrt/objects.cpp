@@ -63,7 +63,7 @@ std::string Writer::shape(const SceneObject& object, const std::string& more, bo
   }
   // pbrt's discs have surface coordinates that go around.
   const bool disc = name == "Disc" || name == "Annulus";
-  const bool as_disc = disc && (word_of(object, "coordinates") == "around" || !textured(object.shader.get()));
+  const bool as_disc = disc && (word_of(object, "coordinates") == "around" || !textured(part_of(object, "shader").get()));
   if (name == "Disc" && !as_disc) {
     bool curved = false;
     exporting.inexact("a Disc with these surface coordinates becomes triangles", &object);
@@ -107,13 +107,13 @@ std::string Writer::shape(const SceneObject& object, const std::string& more, bo
 }
 
 std::string Writer::emission_of(const SceneObject& object, bool& reversed) {
-  const Component* emission = object.emission.get();
+  const Ref<Component> emission = part_of(object, "emission");
   reversed = false;
   if (!emission) return {};
   const std::string name = emission->class_info().name, sides = word_of(*emission, "sides");
   if (name != "DiffuseEmission") {
     exporting.inexact(fmt::format("light that leaves a surface by {} leaves it alike in all directions in pbrt", name),
-                      emission);
+                      emission.get());
     if (!emission->class_info().find("radiance")) return {};
   }
   reversed = sides == "back";
@@ -143,7 +143,8 @@ void Writer::object(const SceneObject& object, bool instanced) {
     return;
   }
   if (object.surrounds() || light_source(object)) return;
-  const Surface surface = surface_of(object.shader.get());
+  const Ref<Component> shader = part_of(object, "shader"), interior = part_of(object, "interior");
+  const Surface surface = surface_of(shader.get());
   bool reversed = false, placed = false;
   std::string emission = emission_of(object, reversed);
   if (instanced && !emission.empty()) {
@@ -151,8 +152,8 @@ void Writer::object(const SceneObject& object, bool instanced) {
     emission.clear();
   }
   std::string medium;
-  if (object.interior)
-    if (const std::string inside = medium_of(*object.interior); !inside.empty())
+  if (interior)
+    if (const std::string inside = medium_of(*interior); !inside.empty())
       medium = fmt::format("MediumInterface \"{}\" \"{}\"\n", inside, around_);
   // What has no inside has the same medium on both sides: beyond a wall, light that comes back from it goes on in that.
   if (medium.empty() && !around_.empty() && !enterable(object))

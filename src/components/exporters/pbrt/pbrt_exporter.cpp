@@ -1,5 +1,6 @@
 // PbrtExporter: a job as a scene of pbrt-v4.
 
+#include "components/exporters/asked_members.h"
 #include "writer.h"
 
 namespace etendue {
@@ -20,11 +21,13 @@ void Writer::surroundings() {
 }
 
 std::string Writer::write() {
+  const AskedMembers asked;
   surroundings();
   view();
   out_ += "WorldBegin\n";
   out_ += transform_of(job.scene->transform, "ConcatTransform");
   objects(*job.scene, false);
+  asked.tell(job, exporting);
   std::string head = "# Written by Etendue for pbrt-v4.\n";
   const std::vector<Error> notes = exporting.notes();
   if (!notes.empty()) head += "# What is not as there:\n";

@@ -20,7 +20,7 @@ double focus_of(const Component& camera) {
 
 /// A LensCamera's surfaces, with its stop as it is opened [m].
 std::vector<LensSurface> lens_of(const Component& camera) {
-  const Value file = get(camera, "file"), list = get(camera, "surfaces");
+  const Value file = value_of(camera, "file"), list = value_of(camera, "surfaces");
   const FilePath* path = file.as<FilePath>();
   std::vector<LensSurface> surfaces = lens_surfaces(
       path && !path->empty() ? read_lens_file(path->resolved()) : list.as<Numbers>()->values, number_of(camera, "unit"));
@@ -72,7 +72,7 @@ void Writer::camera() {
   }
   const std::vector<double> f = numbers_of(camera, "from"), t = numbers_of(camera, "to"), u = numbers_of(camera, "up");
   const Transform base = Transform::look_at({f[0], f[1], f[2]}, {t[0], t[1], t[2]}, {u[0], u[1], u[2]});
-  const Value moved = get(camera, "transform");
+  const Value moved = value_of(camera, "transform");
   std::vector<AnimatedTransform::Key> keys;
   if (const AnimatedTransform* animated = moved.as<AnimatedTransform>())
     keys = animated->keys();

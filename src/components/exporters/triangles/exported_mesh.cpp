@@ -6,15 +6,30 @@
 #include <cmath>
 #include <cstring>
 
+#include "components/exporters/asked_members.h"
+#include "components/exporters/members.h"
 #include "components/objects/meshes/mesh_data.h"
 
 namespace etendue {
 namespace {
 
 std::vector<double> list(const Component& part, const char* member) {
-  const Value value = get(part, member);
+  const Value value = value_of(part, member);
   const Numbers* numbers = value.as<Numbers>();
   return numbers ? numbers->values : std::vector<double>();
+}
+
+/// Gives a mesh that has none the normals that TriangleMesh finds for it.
+void find_normals(ExportedMesh& mesh) {
+  MeshData data;
+  for (const std::uint32_t i : mesh.indices)
+    if (3 * size_t(i) + 2 >= mesh.positions.size()) return;  // nobody has checked them yet
+  for (size_t i = 0; i + 2 < mesh.positions.size(); i += 3)
+    data.positions.push_back({float(mesh.positions[i]), float(mesh.positions[i + 1]), float(mesh.positions[i + 2])});
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    data.triangles.push_back({mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]});
+  smooth_normals(data);
+  for (const Normal3& n : data.normals) mesh.normals.insert(mesh.normals.end(), {n.x, n.y, n.z});
 }
 
 ExportedMesh from_file(const std::string& path, const std::string& part, bool smooth) {
@@ -31,19 +46,20 @@ ExportedMesh from_file(const std::string& path, const std::string& part, bool sm
 }
 
 ExportedMesh from_members(const SceneObject& object) {
-  const Value file = get(object, "file");
+  const Value file = value_of(object, "file");
   const FilePath* path = file.as<FilePath>();
   ExportedMesh mesh;
   if (path && !path->empty()) {
-    const Value part = get(object, "part"), smooth = get(object, "smooth");
+    const Value part = value_of(object, "part"), smooth = value_of(object, "smooth");
     mesh = from_file(path->resolved(), *part.as<std::string>(), *smooth.as<bool>());
   } else {
     mesh.positions = list(object, "positions");
     for (const double i : list(object, "triangles")) mesh.indices.push_back(std::uint32_t(i));
     for (const double n : list(object, "normals")) mesh.normals.push_back(float(n));
     for (const double t : list(object, "uvs")) mesh.uvs.push_back(float(t));
+    if (mesh.normals.empty() && truth_of(object, "smooth")) find_normals(mesh);
   }
-  const Value flat = get(object, "flat");
+  const Value flat = value_of(object, "flat");
   if (const bool* is = flat.as<bool>(); is && *is) mesh.normals.clear();
   return mesh;
 }
@@ -86,6 +102,7 @@ std::optional<ExportedMesh> mesh_of(const SceneObject& object, bool& placed) {
   if (object.class_info().name == "TriangleMesh") return from_members(object);
   if (object.transform.animated()) return std::nullopt;
   // A copy, as objects may change what they hold when they are prepared.
+  AskedMembers::note_shape(object);
   const Ref<SceneObject> twin = ref_cast<SceneObject>(copy(object));
   prepare_tree(*twin);
   const std::optional<TriangleView> view = twin->triangles();

@@ -7,7 +7,6 @@
 #include "components/objects/meshes/obj_lines.h"
 #include "files/regular_file.h"
 #include "files/text_encoding.h"
-#include "images/linear_image.h"
 
 namespace etendue {
 namespace {
@@ -156,7 +155,7 @@ class MtlReader {
     if (!found) return std::nullopt;
     placed.file = found->file;
     texture.image = placed;
-    texture.has_colors = image_channels(*file).size() >= 3;
+    texture.has_colors = importing_.image_channels(*file).size() >= 3;
     return texture;
   }
 
@@ -301,22 +300,13 @@ class MtlReader {
     }
   }
 
-  /// Many programs write an image of normals where one of heights belongs: it is blue all over.
-  static bool is_of_normals(const std::string& file) {
-    const LinearImage image = read_linear_image(file, "linear");
-    double r = 0, g = 0, b = 0;
-    const size_t pixels = image.rgb.size() / 3, step = std::max<size_t>(pixels / 10000, 1);
-    size_t count = 0;
-    for (size_t i = 0; i < pixels; i += step, ++count) {
-      r += double(image.rgb[3 * i]);
-      g += double(image.rgb[3 * i + 1]);
-      b += double(image.rgb[3 * i + 2]);
-    }
-    const double n = double(std::max<size_t>(count, 1));
-    return std::abs(r / n - 0.5) < 0.1 && std::abs(g / n - 0.5) < 0.1 && b / n > 0.7;
+  bool is_of_normals(const std::string& file) const {
+    const auto known = of_normals_.find(file);
+    return known != of_normals_.end() ? known->second : of_normals_[file] = looks_like_normals(file);
   }
 
   Importing& importing_;
+  mutable std::map<std::string, bool> of_normals_;  // images that were looked at
   std::string path_, folder_;
   const char* file_;
 };

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "etendue/transport/medium_stack.h"
+
 namespace etendue::mitsuba {
 
 namespace {
@@ -97,11 +99,25 @@ Ref<Job> Converter::job(const Element& scene) {
   for (const Value& v : list) world.push_back(ref_cast<SceneObject>(*v.as<Ref<Component>>()));
   if (const Ref<SceneObject> around = settle_media(sensor, knows_media(scene), world))
     list.emplace_back(Ref<Component>(around), scene.at);
+  if (hides_emitters_.known()) hide_emitters(world);
   set(*objects, "objects", Value(std::move(list)));
   set_member(*job, "scene", objects, scene.at);
   add_outputs(*job, film);
   note_unread(scene);
   return ref_cast<Job>(job);
+}
+
+void Converter::hide_emitters(const std::vector<Ref<SceneObject>>& objects) {
+  for (const Ref<SceneObject>& object : objects) {
+    if (const Scene* inner = scene_within(*object))
+      hide_emitters(inner->objects);
+    else if (!object->luminaire() || object->delta())
+      continue;
+    else if (enterable(*object))
+      importing_.inexact("an emitter that light goes into is seen: it cannot be hidden from the camera", hides_emitters_);
+    else
+      set_member(*object, "visible_to_camera", false, hides_emitters_);
+  }
 }
 
 void Converter::set_transform(Component& part, const TransformValue& t, Location at) {

@@ -52,6 +52,12 @@ class Converter {
   Ref<Component> renderer(const Element* integrator, const Element* sampler);
   Ref<Component> light_transport(const Element& integrator);
   void set_depths(Component& renderer, const Element& integrator);
+  /// Notes where an integrator says that the camera is not to see emitters.
+  void note_hidden_emitters(const Element& integrator) {
+    if (integrator.boolean("hide_emitters", false)) hides_emitters_ = integrator.location_of("hide_emitters");
+  }
+  /// Lets the camera see none of these that emit.
+  void hide_emitters(const std::vector<Ref<SceneObject>>&);
 
   // shapes
   Ref<SceneObject> shape(const Element&);
@@ -154,7 +160,8 @@ class Converter {
 
   Importing& importing_;
   std::vector<MediumSides> sides_;
-  int groups_read_ = 0;  ///< within one another, at present
+  Location hides_emitters_;  // unknown: they are seen
+  int groups_read_ = 0;      ///< within one another, at present
   std::map<std::pair<const Element*, Uv>, Surface> surfaces_;
   std::map<const Element*, Ref<Component>> media_, groups_;
   std::map<const Element*, bool> textured_, tilts_;

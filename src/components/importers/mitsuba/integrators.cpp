@@ -82,8 +82,7 @@ void Converter::set_depths(Component& outer, const Element& e) {
   };
   set_or_tell("max_depth", longest, "max_depth");
   set_or_tell("roulette_depth", double(std::max<std::int64_t>(e.integer("rr_depth", 5), 1)), "rr_depth");
-  if (e.boolean("hide_emitters", false))
-    importing_.inexact("emitters are seen: they cannot be hidden from the camera alone", e.location_of("hide_emitters"));
+  note_hidden_emitters(e);
   if (e.boolean("strict_normals", false))
     e.ignore({"strict_normals"});  // light that interpolated normals would send through a surface never goes through here
 }
@@ -110,8 +109,7 @@ Ref<Component> Converter::light_transport(const Element& e) {
     set_member(*made, "strategy", bsdfs == 0 ? "light" : (lights == 0 ? "shader" : "both"), e.location_of("bsdf_samples"));
     set_member(*made, "light_samples", double(std::max<std::int64_t>(lights, 1)), e.location_of("emitter_samples"));
     set_member(*made, "shader_samples", double(std::max<std::int64_t>(bsdfs, 1)), e.location_of("bsdf_samples"));
-    if (e.boolean("hide_emitters", false))
-      importing_.inexact("emitters are seen: they cannot be hidden from the camera alone", e.location_of("hide_emitters"));
+    note_hidden_emitters(e);
     e.ignore({"strict_normals"});
     return made;
   }

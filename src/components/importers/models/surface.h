@@ -88,6 +88,8 @@ MadeSurface make_surface(Importing&, const Surface&, Location at);
 
 /// An image that can be read, or nothing and a note. `has_alpha` is told when asked for.
 std::optional<SurfaceTexture> readable_texture(Importing&, const std::string& file, Location at, bool* has_alpha = nullptr);
+/// Whether an image is blue all over, as one of normals is: many programs write that where one of heights belongs.
+bool looks_like_normals(const std::string& file);
 
 /// A map of such a colour; none: it is the same everywhere.
 Ref<Component> surface_color_map(Importing&, const SurfaceColor&, Location at);

@@ -31,7 +31,23 @@ void SceneObject::describe(Description<SceneObject>& d) {
           "shading_normals", "",
           "what becomes of light that normals which are interpolated, bumped or read from an image would send through the "
           "surface: folded, it is turned back to the side it belongs to and nothing is lost; clipped, it is lost",
-          choices("folded", "clipped"));
+          choices("folded", "clipped"))
+      .group("Visibility")
+      .member<&SceneObject::visible_to_camera>(
+          "visible_to_camera", "",
+          "whether the camera sees it; if not, its light, its shadow and its image in mirrors are there all the same. Pictures "
+          "are made so, the world is not",
+          Effect::rebuild);
+}
+
+void SceneObject::stand_for(const SceneObject& other) {
+  shader = other.shader;
+  emission = other.emission;
+  interior = other.interior;
+  sides = other.sides;
+  priority = other.priority;
+  shading_normals = other.shading_normals;
+  visible_to_camera = other.visible_to_camera;
 }
 
 SurfaceSample SceneObject::sample_visible(const Point3& from, Point2 u, float time) const {

@@ -1,0 +1,102 @@
+// Objects that the camera does not see: their light, their shadows and their images in mirrors have known sizes, and nothing is
+// seen of themselves, whichever way paths are built.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "support/closed_form_rows.h"
+
+namespace etendue::closed_form {
+namespace {
+
+/// Irradiance at the distance r from the axis of a disc of radius R and radiance 1 that faces it from height h (Howell, "A
+/// catalog of radiation heat transfer configuration factors", B-12).
+double irradiance_by_disc(double r, double radius, double h) {
+  const double a = r * r + h * h, b = radius * radius;
+  return exact_pi / 2 * (1 - (a - b) / std::sqrt((a + b) * (a + b) - 4 * b * r * r));
+}
+
+/// Its mean over the square of half a side `half` around the axis.
+double mean_by_disc(double half, double radius, double h) {
+  constexpr int steps = 200;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int k = 0; k < steps; ++k)
+      sum += irradiance_by_disc(half * std::hypot((2 * i + 1.0) / steps - 1, (2 * k + 1.0) / steps - 1), radius, h);
+  return sum / (steps * steps);
+}
+
+std::vector<Row> rows() {
+  const std::string unseen = "visible_to_camera: false";
+  const std::string disc = "Disc { radius: 1, transform: translate(0, 0, 1), emission: " + glow + ", " + unseen + " }";
+  const std::string two = "max_depth: 2", three = "max_depth: 3";
+  std::vector<Row> all;
+
+  // Between the camera and a matt plate, whole and before all that is seen.
+  all.push_back({"DiscBefore",
+                 square("[0, 0, 5]", "[0, 0, 0]", 1),
+                 plate(4, 0, "shader: Lambertian { color: 0.5 }") + disc,
+                 0.5 / exact_pi * mean_by_disc(0.5, 1, 1),
+                 {{"PathTracer", two, 64},
+                  {"PathTracer", two + ", next_event: false", 256},
+                  {"GuidedPathTracer", two, 256},
+                  {"BidirectionalPathTracer", two, 32},
+                  {"VertexConnectionMerging", two + ", merging: false", 32},
+                  {"LightTracer", two, 1024},
+                  {"InstantRadiosity", two, 64},
+                  {"DistributionRenderer", two, 32},
+                  {"DirectRenderer", "", 64},
+                  {"PrimarySampleMetropolis", two, 1024},
+                  {"MultiplexedMetropolis", two, 1024},
+                  {"PathSpaceMetropolis", two, 1024}}});
+  // What lets all light pass does not make the disc behind it seen either.
+  all.push_back({"DiscBehindAPane",
+                 square("[0, 0, 5]", "[0, 0, 0]", 1),
+                 plate(4, 0, "shader: Lambertian { color: 0.5 }") + plate(4, 3, "shader: PassThrough {}") + disc,
+                 0.5 / exact_pi * mean_by_disc(0.5, 1, 1),
+                 {{"PathTracer", two, 64}, {"BidirectionalPathTracer", two, 32}, {"LightTracer", two, 1024}}});
+  // A plate on a quarter of the picture, in even light from all around: the rest is black.
+  all.push_back({"Environment",
+                 square("[0, 0, 5]", "[0, 0, 0]", 2),
+                 plate(0.5, 0, "shader: Lambertian { color: 0.5 }") +
+                     "Environment { emission: EnvironmentEmission { radiance: 1 }, " + unseen + " }",
+                 0.125,
+                 {{"PathTracer", two, 256},
+                  {"PathTracer", two + ", next_event: false", 256},
+                  {"BidirectionalPathTracer", two, 128},
+                  {"LightTracer", two, 2048},
+                  {"DistributionRenderer", two, 64},
+                  {"DirectRenderer", "", 128},
+                  {"PrimarySampleMetropolis", two, 1024},
+                  {"MultiplexedMetropolis", two, 1024}}});
+  // The camera looks through it into a mirror, which shows it.
+  all.push_back({"InAMirror",
+                 square("[0, 0, 5]", "[0, 0, 0]", 0.5),
+                 plate(400, 0, "shader: PerfectSpecular { color: 1 }") + disc,
+                 1,
+                 {{"PathTracer", three, 4},
+                  {"BidirectionalPathTracer", three, 4},
+                  {"WhittedRenderer", three, 4},
+                  {"DistributionRenderer", three, 4},
+                  {"DirectRenderer", "", 4}}});
+  // A wall in the way of half of the light and of half of the view.
+  all.push_back({"Shadow",
+                 square("[0, 0, 9]", "[0, 0, 0]", 1),
+                 plate(4, 0, "shader: Lambertian { color: 0.5 }") +
+                     "Rectangle { corner: [-9, -9, 1], edge_u: [18, 0, 0], edge_v: [0, 9, 0], " + unseen +
+                     " } Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: 2 } }",
+                 0.5 / exact_pi,
+                 {{"PathTracer", two, 16},
+                  {"BidirectionalPathTracer", two, 16},
+                  {"LightTracer", two, 4096},
+                  {"WhittedRenderer", two, 16},
+                  {"DirectRenderer", "", 16}}});
+  return all;
+}
+
+class VisibleToCamera : public testing::TestWithParam<Case> {};
+TEST_P(VisibleToCamera, IsWhatIsKnown) { expect_row(GetParam()); }
+INSTANTIATE_TEST_SUITE_P(ClosedForms, VisibleToCamera, testing::ValuesIn(cases(rows())), case_name);
+
+}  // namespace
+}  // namespace etendue::closed_form
