@@ -124,10 +124,10 @@ TEST(MitsubaExport, MembersThatAreLeftOutAreTold) {
                                             "Sphere { priority: 3, shading_normals: clipped }"));
   ASSERT_EQ(e.notes.size(), 2u);
   EXPECT_STREQ(e.notes[0].what(), "'priority' of Sphere is left out (2 times)");
-  EXPECT_EQ(e.notes[0].location.line, 5);
+  EXPECT_EQ(e.notes[0].location.line, 6);
   EXPECT_EQ(e.notes[0].location.column, 20);
   EXPECT_STREQ(e.notes[1].what(), "'shading_normals' of Sphere is left out");
-  EXPECT_EQ(e.notes[1].location.line, 7);
+  EXPECT_EQ(e.notes[1].location.line, 8);
 }
 
 TEST(MitsubaExport, NormalsThatAMeshFindsForItself) {
@@ -166,7 +166,7 @@ TEST(MitsubaExport, HidesEmittersIfNoneIsSeen) {
     EXPECT_EQ(some.text.find("hide_emitters"), std::string::npos);
     ASSERT_EQ(some.notes.size(), 1u);
     EXPECT_NE(std::string(some.notes[0].what()).find("the camera sees this"), std::string::npos);
-    EXPECT_EQ(some.notes[0].location.line, 5);
+    EXPECT_EQ(some.notes[0].location.line, 6);
   }
 }
 

@@ -77,12 +77,12 @@ TEST_F(ObjTest, WhatIsMissingIsToldAndNotFatal) {
 // An image of which the beginning can be read and the rest cannot: the model is there, and whoever opens the image for the
 // picture tells.
 TEST_F(ObjTest, ImagesThatAreCutOff) {
-  const std::string image = folder_ + "/bumps.png";
+  const std::string image = folder_ + "/bumps.tga";
   std::vector<float> texels;
   for (int i = 0; i < 32 * 32 * 3; ++i) texels.push_back(float(i * i % 251) / 251);
   test::write_image(image, {32, 32, 3, NumberType::uint8}, texels);
   std::filesystem::resize_file(image, std::filesystem::file_size(image) / 2);
-  write("colors.mtl", "newmtl shiny\nbump -bm 0.5 bumps.png\nmap_Kd bumps.png\nnewmtl glass one\nbump bumps.png\n");
+  write("colors.mtl", "newmtl shiny\nbump -bm 0.5 bumps.tga\nmap_Kd bumps.tga\nnewmtl glass one\nbump bumps.tga\n");
   Importing importing(write("model.obj", two_materials), {});
   const Ref<Scene> scene = import(importing);
   ASSERT_TRUE(scene);

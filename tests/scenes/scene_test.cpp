@@ -273,7 +273,7 @@ TEST(Scene, WhatCannotBeHiddenFromTheCameraIsRefused) {
   const Ref<SceneObject> nested = scene("BruteForceScene", {object("Sphere")});
   refused(nested, nested);
   const Ref<SceneObject> glass = object("Sphere");
-  glass->shader = make<TestShader>();
+  glass->shader = ref_cast<Shader>(Registry::instance().create("Dielectric"));
   refused(glass, glass);
   const Ref<SceneObject> surroundings = object("Surroundings");
   refused(surroundings, surroundings);
@@ -282,7 +282,7 @@ TEST(Scene, WhatCannotBeHiddenFromTheCameraIsRefused) {
   const Ref<Instance> instance = ref_cast<Instance>(Registry::instance().create("Instance"));
   instance->scene = ref_cast<Scene>(nested);
   instance->scene->objects = {ball};
-  instance->shader = make<TestShader>();
+  instance->shader = glass->shader;
   ball->visible_to_camera = false;
   instance->scene->prepare();
   instance->prepare();

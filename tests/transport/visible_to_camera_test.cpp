@@ -46,9 +46,14 @@ std::vector<Row> rows() {
                   {"InstantRadiosity", two, 64},
                   {"DistributionRenderer", two, 32},
                   {"DirectRenderer", "", 64},
-                  {"PrimarySampleMetropolis", two, 1024},
-                  {"MultiplexedMetropolis", two, 1024},
-                  {"PathSpaceMetropolis", two, 1024}}});
+                  {"PrimarySampleMetropolis", "inner: PathTracer { max_depth: 2 }", 1024},
+                  {"MultiplexedMetropolis", two, 1024}}});
+  // The same seen from a place, which chains of paths need.
+  all.push_back({"DiscBeforeAPinhole",
+                 "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], focal_length: 5, sensor_size: 1 }",
+                 plate(4, 0, "shader: Lambertian { color: 0.5 }") + disc,
+                 0.5 / exact_pi * mean_by_disc(0.5, 1, 1),
+                 {{"BidirectionalPathTracer", two, 32}, {"PathSpaceMetropolis", two, 1024}}});
   // What lets all light pass does not make the disc behind it seen either.
   all.push_back({"DiscBehindAPane",
                  square("[0, 0, 5]", "[0, 0, 0]", 1),
@@ -67,7 +72,7 @@ std::vector<Row> rows() {
                   {"LightTracer", two, 2048},
                   {"DistributionRenderer", two, 64},
                   {"DirectRenderer", "", 128},
-                  {"PrimarySampleMetropolis", two, 1024},
+                  {"PrimarySampleMetropolis", "inner: PathTracer { max_depth: 2 }", 1024},
                   {"MultiplexedMetropolis", two, 1024}}});
   // The camera looks through it into a mirror, which shows it.
   all.push_back({"InAMirror",
@@ -84,7 +89,7 @@ std::vector<Row> rows() {
                  square("[0, 0, 9]", "[0, 0, 0]", 1),
                  plate(4, 0, "shader: Lambertian { color: 0.5 }") +
                      "Rectangle { corner: [-9, -9, 1], edge_u: [18, 0, 0], edge_v: [0, 9, 0], " + unseen +
-                     " } Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: 2 } }",
+                     " }\n Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: 2 } }",
                  0.5 / exact_pi,
                  {{"PathTracer", two, 16},
                   {"BidirectionalPathTracer", two, 16},
