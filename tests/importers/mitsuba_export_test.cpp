@@ -135,7 +135,7 @@ TEST(MitsubaExport, NormalsThatAMeshFindsForItself) {
   export_job(folder,
              job("TriangleMesh { positions: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], triangles: [0, 2, 1, 0, 1, 3], "
                  "smooth: true }"));
-  const std::string ply = file_text(folder / "out-mesh-1.ply");
+  const std::string ply = file_text(folder / "out-mesh1.ply");
   EXPECT_NE(ply.find("property float nx"), std::string::npos);
   const char* vertices = ply.data() + ply.find("end_header\n") + 11;
   float first[6];
