@@ -1,88 +1,12 @@
 // Details of glTF files, against the words and formulas of the specification and its extensions.
 
-#include <cstring>
-#include <nlohmann/json.hpp>
-
 #include "components/objects/meshes/mesh_data.h"
-#include "mitsuba_support.h"
+#include "gltf_support.h"
 
 namespace etendue {
 namespace {
 
-using Json = nlohmann::json;
-using mitsuba_test::number;
-using mitsuba_test::part;
-
-/// A square of two triangles with a material; more accessors can be added.
-class Square {
- public:
-  Square() {
-    json_ = {{"asset", {{"version", "2.0"}}},
-             {"buffers", Json::array()},
-             {"bufferViews", Json::array()},
-             {"accessors", Json::array()},
-             {"images", {{{"uri", "n.ppm"}}}},
-             {"textures", {{{"source", 0}}}},
-             {"materials", {{{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}}},
-             {"nodes", {{{"mesh", 0}}}},
-             {"scenes", {{{"nodes", {0}}}}},
-             {"scene", 0}};
-    json_["meshes"] = {{{"primitives", {{{"material", 0}, {"attributes", Json::object()}}}}}};
-    json_["meshes"][0]["primitives"][0]["indices"] = add<std::uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR", 1, 5123);
-    vertices("POSITION", {0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0}, 3);
-    vertices("NORMAL", {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
-    vertices("TEXCOORD_0", {0, 1, 1, 1, 1, 0, 0, 0}, 2);  // v downwards
-  }
-  Json& primitive() { return json_["meshes"][0]["primitives"][0]; }
-  Json& material() { return json_["materials"][0]; }
-  Json& json() { return json_; }
-  int floats(const std::vector<float>& values, int width) {
-    return add<float>(values, "VEC" + std::to_string(width), size_t(width), 5126);
-  }
-  void vertices(const char* name, const std::vector<float>& values, int width) {
-    primitive()["attributes"][name] = floats(values, width);
-  }
-
-  std::string write(const TemporaryFolder& folder) const {
-    folder.write("n.ppm", "P6\n1 1\n255\n\x80\x80\xff");
-    folder.write("s.bin", binary_);
-    Json all = json_;
-    all["buffers"] = {{{"uri", "s.bin"}, {"byteLength", binary_.size()}}};
-    return folder.write("s.gltf", all.dump());
-  }
-  mitsuba_test::Imported import(const TemporaryFolder& folder) const {
-    mitsuba_test::Imported result;
-    const std::string path = write(folder);
-    Importing importing(path, {});
-    try {
-      scene_ = ref_cast<Scene>(importer_of(path)->import(importing));
-      result.notes = importing.notes();
-    } catch (const Error& e) {
-      result.errors = {e};
-    }
-    return result;
-  }
-  /// What its shader is, and what was told.
-  const Component& shader(const TemporaryFolder& folder, std::string& told) const {
-    told = import(folder).told();
-    return part(*scene_->objects.at(0), "shader");
-  }
-
- private:
-  template <class T>
-  int add(const std::vector<T>& values, const std::string& type, size_t width, int component) {
-    json_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", values.size() * sizeof(T)}});
-    binary_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-    json_["accessors"].push_back({{"bufferView", int(json_["bufferViews"].size()) - 1},
-                                  {"componentType", component},
-                                  {"type", type},
-                                  {"count", values.size() / width}});
-    return int(json_["accessors"].size()) - 1;
-  }
-  Json json_;
-  std::string binary_;
-  mutable Ref<Scene> scene_;
-};
+using namespace gltf_test;
 
 // 3.9.3: scaled normal = normalize((sampled * 2 - 1) * vec3(scale, scale, 1)).
 TEST(GltfDetails, NormalsOfNegativeScaleTiltTheOtherWay) {
@@ -144,12 +68,7 @@ TEST(GltfDetails, AnisotropyStretchesAlongAndKeepsWidth) {
       std::string told;
       const Component& shader = square.shader(folder, told);
       EXPECT_EQ(told, "");
-      const auto value = [&](const char* member) {
-        const Value constant = get(part(shader, member), "value");
-        const Color* color = constant.as<Color>();
-        return color ? double((*color)->at(550, ColorUse::coefficient)) : constant.as<Number>()->value;
-      };
-      const double r = value("specular_roughness"), a = value("specular_roughness_anisotropy");
+      const double r = constant(shader, "specular_roughness"), a = constant(shader, "specular_roughness_anisotropy");
       const double along = r * r * std::sqrt(2 / (1 + (1 - a) * (1 - a))), alpha = roughness * roughness;
       EXPECT_NEAR(along, alpha + (1 - alpha) * strength * strength, 1e-6);
       EXPECT_NEAR((1 - a) * along, alpha, 1e-6);

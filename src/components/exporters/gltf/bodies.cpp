@@ -92,7 +92,11 @@ void Writer::principled(Json& m, const Component& s) {
   if (const double weight = scalar(s, "fuzz_weight", 0); weight > 0) {
     Look fuzz = look(s, "fuzz_color", ColorUse::reflectance);
     for (double& x : fuzz.factor) x *= weight;
-    Json sheen{{"sheenColorFactor", clamped(fuzz.factor)}, {"sheenRoughnessFactor", scalar(s, "fuzz_roughness", 0.5)}};
+    Json sheen{{"sheenColorFactor", clamped(fuzz.factor)},
+               {"sheenRoughnessFactor", std::sqrt(std::max(0.0, scalar(s, "fuzz_roughness", 0.5)))}};
+    // What fibres hide is told by the strongest of their colours there.
+    if (fuzz.texture || std::ranges::max(fuzz.factor) < 0.999 * weight)
+      exporting.inexact("fibres hide as much below them as their strongest colour says in glTF", &s);
     if (fuzz.texture) sheen["sheenColorTexture"] = *fuzz.texture;
     extend(m, "KHR_materials_sheen", std::move(sheen));
   }

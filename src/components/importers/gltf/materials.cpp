@@ -151,6 +151,7 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
   if (const Json& e = named("KHR_materials_sheen"); !e.empty()) {
     s.sheen_color = color(e, "sheenColorFactor", "sheenColorTexture", 0);
     s.sheen_roughness = number(e, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", "A");
+    s.sheen_roughness.squared = true;  // alpha_g = roughness^2
   }
   if (const Json& e = named("KHR_materials_iridescence"); !e.empty()) {
     s.film = number(e, "iridescenceFactor", 0, "iridescenceTexture", "R");

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/shaders/layered/sheen.h"
 #include "etendue/describe/color.h"
 #include "language/writer.h"
 
 namespace etendue {
 namespace {
+
+constexpr double sharpest_fibres = double(SheenLobe::sharpest);
 
 class SurfaceMaker {
  public:
@@ -101,7 +104,7 @@ class SurfaceMaker {
 
   /// Sets a member that is a number or a map of numbers; when it is the default nothing is written.
   void number(Component& to, std::string_view member, const SurfaceNumber& n) const {
-    const double value = std::isfinite(n.value) ? n.value : 0;
+    const double said = std::isfinite(n.value) ? n.value : 0, value = n.squared ? said * said : said;
     if (Ref<Component> map = number_map(n))
       put(to, member, map, at_);
     else
@@ -133,6 +136,12 @@ class SurfaceMaker {
       return moved;
     }
     if (map && n.value != 1) map = product(map, Value(Number{n.value}, at_));
+    if (map && n.squared) {
+      Ref<Component> square = part("PowerMap");
+      put(*square, "base", map, at_);
+      set_member(*square, "exponent", 2.0, at_);
+      return square;
+    }
     return map;
   }
 
@@ -177,17 +186,30 @@ class SurfaceMaker {
       set_member(p, "coat_ior", 1.5, at_);
       set_member(p, "coat_darkening", 0.0, at_);
     }
-    if (!s_.sheen_color.black()) {
-      set_member(p, "fuzz_weight", 1.0, at_);
-      color(p, "fuzz_color", s_.sheen_color);
-      number(p, "fuzz_roughness", s_.sheen_roughness);
-    }
+    if (!s_.sheen_color.black()) sheen(p);
     if (is_there(s_.film)) {
       number(p, "thin_film_weight", s_.film);
       number(p, "thin_film_thickness", s_.film_thickness);
       set_member(p, "thin_film_ior", within(s_.film_ior, 1, 4, "an index of refraction"), at_);
     }
     return shader;
+  }
+
+  // Light gets to what is below as far as the strongest colour of the fibres leaves it (KHR_materials_sheen: 1 - max(colour)
+  // E), so that this is the fraction of the surface which has them.
+  void sheen(Component& p) const {
+    SurfaceColor fibres = s_.sheen_color;
+    const double most = std::ranges::max(fibres.value), weight = std::min(most, 1.0);
+    if (most < 1)
+      for (double& x : fibres.value) x /= most;
+    if (fibres.texture)
+      importing_.inexact("fibres whose colour is an image's hide as much everywhere as where it is white", at_);
+    const SurfaceNumber& r = s_.sheen_roughness;
+    if (const double least = r.squared ? std::sqrt(sharpest_fibres) : sharpest_fibres; !r.texture && r.value < least)
+      importing_.inexact(fmt::format("a roughness of fibres of {} becomes {:.2f}", r.value, least), at_);
+    set_member(p, "fuzz_weight", weight, at_);
+    color(p, "fuzz_color", fibres);
+    number(p, "fuzz_roughness", s_.sheen_roughness);
   }
 
   static bool is_there(const SurfaceNumber& n) { return n.value > 0; }

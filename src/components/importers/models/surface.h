@@ -30,6 +30,7 @@ struct SurfaceNumber {
   bool inverted = false;                 ///< 1 minus the texture
   double inverted_share = 1;             ///< of the texture that 1 is made less by
   double offset = 0;                     ///< what is added to the product of the number and the texture
+  bool squared = false;                  ///< what counts is its square
   std::string attribute;                 ///< times what vertices have of this name
   SurfaceNumber(double v) : value(v) {}  // NOLINT: a number is one
 };
@@ -67,8 +68,8 @@ struct Surface {
   double attenuation_distance = std::numeric_limits<double>::infinity();  ///< at which so much is left of white light [m]
   double abbe_number = 0;                                                 ///< 0: no dispersion
   SurfaceNumber coat = 0, coat_roughness = 0;
-  SurfaceColor sheen_color = 0.0;
-  SurfaceNumber sheen_roughness = 0;
+  SurfaceColor sheen_color = 0.0;     ///< the strongest of its numbers is also what it takes from below
+  SurfaceNumber sheen_roughness = 0;  ///< exponent 1 / r of its fibres' distribution (Estevez & Kulla 2017)
   SurfaceNumber film = 0, film_thickness = 400;  ///< [nm]
   double film_ior = 1.3;
   SurfaceColor emission = 0.0;
