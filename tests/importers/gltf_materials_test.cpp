@@ -51,5 +51,31 @@ TEST(GltfMaterials, SheenSharperThanThereIsIsTold) {
   EXPECT_NE(square.import(folder).told().find("a roughness of fibres of 0 becomes"), std::string::npos);
 }
 
+// KHR_materials_specular: "The metal BRDF is not affected by the parameter."
+TEST(GltfMaterials, SpecularIsNotOfMetal) {
+  const TemporaryFolder folder;
+  Square square;
+  std::string told;
+  extended(square, "KHR_materials_specular") = {{"specularFactor", 0.25}, {"specularColorFactor", {1, 0, 0}}};
+  square.material()["pbrMetallicRoughness"]["metallicFactor"] = 1;
+  const Component& metal = square.shader(folder, told);
+  EXPECT_EQ(told, "");
+  EXPECT_EQ(constant(metal, "specular_weight"), 1);
+  EXPECT_EQ(constant(metal, "specular_color"), 1);
+
+  // Where an image says what is metal: F90 = mix(specular, 1, metallic).
+  extended(square, "KHR_materials_specular") = {{"specularFactor", 0.25}};
+  square.material()["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 0}};
+  const Component& mixed = part(square.shader(folder, told), "specular_weight");
+  EXPECT_EQ(told, "");
+  ASSERT_EQ(mixed.class_info().name, "RemapMap");
+  EXPECT_EQ(get(mixed, "to").as<Numbers>()->values, (std::vector<double>{0.25, 1}));
+  EXPECT_EQ(*get(part(mixed, "input"), "channel").as<std::string>(), "B");
+
+  square.material()["pbrMetallicRoughness"] = {{"metallicFactor", 0.5}};
+  EXPECT_NEAR(constant(square.shader(folder, told), "specular_weight"), 0.625, 1e-6);
+  EXPECT_NE(told.find("mixture of metal"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace etendue

@@ -108,6 +108,6 @@ inline std::array<double, 3> color(const Component& of, const std::string& membe
   return rgb;
 }
 /// The class of what a member is.
-inline std::string class_of(const Component& of, const std::string& member) { return part(of, member).class_info().name(); }
+inline std::string class_of(const Component& of, const std::string& member) { return part(of, member).class_info().name; }
 
 }  // namespace etendue::gltf_test

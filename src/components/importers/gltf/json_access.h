@@ -102,6 +102,10 @@ std::optional<std::array<double, n>> numbers(const Json& object, const char* key
   return values;
 }
 
+inline std::array<double, 3> rgb(const Json& object, const char* key, double otherwise) {
+  return numbers<3>(object, key).value_or(std::array<double, 3>{otherwise, otherwise, otherwise});
+}
+
 /// The places in another list that a list names.
 inline std::vector<size_t> places(const Json& object, const char* key, size_t count) {
   std::vector<size_t> all;

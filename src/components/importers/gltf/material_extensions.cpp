@@ -1,0 +1,101 @@
+// The KHR_materials extensions of glTF.
+
+#include <algorithm>
+
+#include "materials.h"
+
+namespace etendue::gltf {
+namespace {
+
+/// F0 of dielectrics.
+double reflectance_of(double ior) { return std::pow((ior - 1) / (ior + 1), 2); }
+
+}  // namespace
+
+void Materials::read_extensions(const Json& extensions, Surface& s) {
+  const auto named = [&](const char* name) -> const Json& { return object_in(extensions, name); };
+  s.ior = gltf::number(named("KHR_materials_ior"), "ior", s.ior);
+  if (const Json& e = named("KHR_materials_specular"); !e.empty()) read_specular(e, s);
+  if (const Json& e = named("KHR_materials_clearcoat"); !e.empty()) {
+    s.coat = number(e, "clearcoatFactor", 0, "clearcoatTexture", "R");
+    s.coat_roughness = number(e, "clearcoatRoughnessFactor", 0, "clearcoatRoughnessTexture", "G");
+    if (find(e, "clearcoatNormalTexture") && s.coat.value > 0)
+      importing_.inexact("a clear coat has the normals of what it covers", at());
+  }
+  if (const Json& e = named("KHR_materials_sheen"); !e.empty()) {
+    s.sheen_color = color(e, "sheenColorFactor", "sheenColorTexture", 0);
+    s.sheen_roughness = number(e, "sheenRoughnessFactor", 0, "sheenRoughnessTexture", "A");
+    s.sheen_roughness.squared = true;  // alpha_g = roughness^2
+  }
+  if (const Json& e = named("KHR_materials_iridescence"); !e.empty()) {
+    s.film = number(e, "iridescenceFactor", 0, "iridescenceTexture", "R");
+    s.film_ior = gltf::number(e, "iridescenceIor", 1.3);
+    s.film_thickness = number(e, "iridescenceThicknessMaximum", 400, "iridescenceThicknessTexture", "G");
+    if (s.film_thickness.texture && gltf::number(e, "iridescenceThicknessMinimum", 100) != 0)
+      importing_.inexact("the thickness of a film begins at 0 where its texture is black", at());
+  }
+  if (const Json& e = named("KHR_materials_anisotropy"); !e.empty()) {
+    // The ratio of roughnesses alpha is 1 / (1 - a) in Principled and in glTF (alpha + (1 - alpha) s^2) / alpha.
+    const double strength = gltf::number(e, "anisotropyStrength", 0);
+    const double alpha = std::max(s.roughness.value * s.roughness.value, 1e-3);
+    const double along = alpha + (1 - alpha) * strength * strength;
+    s.anisotropy = 1 - alpha / along;
+    // glTF keeps the alpha across and stretches that along; Principled, given the ratio, keeps the sum of their squares.
+    if (!s.roughness.texture)
+      s.roughness.value = std::pow((along * along + alpha * alpha) / 2, 0.25);
+    else if (strength != 0)
+      importing_.inexact("stretched highlights whose roughness is an image's are as large as without stretching, not longer",
+                         at());
+    if (find(e, "anisotropyTexture") || gltf::number(e, "anisotropyRotation", 0) != 0)
+      importing_.inexact("stretched highlights lie along u, whatever their texture or rotation", at());
+  }
+  read_volume(extensions, s);
+}
+
+void Materials::read_specular(const Json& e, Surface& s) {
+  const SurfaceNumber& metal = s.metalness;
+  if (metal.value >= 1 && !metal.texture) return;  // of metals it says nothing
+  s.specular = number(e, "specularFactor", 1, "specularTexture", "A");
+  s.specular_color = color(e, "specularColorFactor", "specularColorTexture", 1);
+  // Factors above 1 raise the reflectance, which only an index can here.
+  if (const double most = std::ranges::max(s.specular_color.value); most > 1) {
+    const double f0 = std::min(reflectance_of(s.ior) * most, 0.9);
+    s.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
+    for (double& x : s.specular_color.value) x /= most;
+  }
+  if (metal.value > 0) keep_metal(s);
+}
+
+// Principled weakens and tints what metal reflects too. Where it is metal or not, place by place, the weight can be
+// mix(specular, 1, metalness).
+void Materials::keep_metal(Surface& s) {
+  if (s.specular_color.texture || s.specular_color.value != std::array<double, 3>{1, 1, 1})
+    importing_.inexact("the edges of metal are tinted by KHR_materials_specular as those of what is not metal", at());
+  if (s.specular.texture) {
+    importing_.inexact("metal reflects less too where the image of KHR_materials_specular says it of what is not metal", at());
+    return;
+  }
+  const double weight = s.specular.value;
+  if (weight == 1) return;
+  s.specular = s.metalness;
+  s.specular.value *= 1 - weight;
+  s.specular.offset = weight;
+  if (s.metalness.texture) return;
+  s.specular = weight + s.specular.value;
+  importing_.inexact("of a mixture of metal and what is not metal both reflect as much less as KHR_materials_specular says", at());
+}
+
+void Materials::read_volume(const Json& extensions, Surface& s) {
+  const Json& e = object_in(extensions, "KHR_materials_transmission");
+  s.transmission = number(e, "transmissionFactor", 0, "transmissionTexture", "R");
+  s.transmission_color = s.base_color;
+  const Json& volume = object_in(extensions, "KHR_materials_volume");
+  s.thin = !(gltf::number(volume, "thicknessFactor", 0) > 0);
+  s.attenuation_color = rgb(volume, "attenuationColor", 1);
+  s.attenuation_distance = gltf::number(volume, "attenuationDistance", s.attenuation_distance);
+  // KHR_materials_dispersion: 20 over the Abbe number.
+  const double dispersion = gltf::number(object_in(extensions, "KHR_materials_dispersion"), "dispersion", 0);
+  if (dispersion > 0) s.abbe_number = 20 / dispersion;
+}
+
+}  // namespace etendue::gltf
