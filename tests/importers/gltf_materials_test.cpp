@@ -77,5 +77,20 @@ TEST(GltfMaterials, SpecularIsNotOfMetal) {
   EXPECT_NE(told.find("mixture of metal"), std::string::npos);
 }
 
+// KHR_materials_iridescence: mix(minimum, maximum, texture.g) [nm]; the maximum where there is no texture.
+TEST(GltfMaterials, FilmsAreBetweenTheirThicknesses) {
+  const TemporaryFolder folder;
+  Square square;
+  std::string told;
+  extended(square, "KHR_materials_iridescence") = {{"iridescenceFactor", 1}, {"iridescenceThicknessMinimum", 150}};
+  EXPECT_EQ(constant(square.shader(folder, told), "thin_film_thickness"), 400);
+  extended(square, "KHR_materials_iridescence")["iridescenceThicknessTexture"] = {{"index", 0}};
+  const Component& thickness = part(square.shader(folder, told), "thin_film_thickness");
+  EXPECT_EQ(told, "");
+  ASSERT_EQ(thickness.class_info().name, "RemapMap");
+  EXPECT_EQ(get(thickness, "to").as<Numbers>()->values, (std::vector<double>{150, 400}));
+  EXPECT_EQ(*get(part(thickness, "input"), "channel").as<std::string>(), "G");
+}
+
 }  // namespace
 }  // namespace etendue

@@ -30,9 +30,17 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
   if (const Json& e = named("KHR_materials_iridescence"); !e.empty()) {
     s.film = number(e, "iridescenceFactor", 0, "iridescenceTexture", "R");
     s.film_ior = gltf::number(e, "iridescenceIor", 1.3);
-    s.film_thickness = number(e, "iridescenceThicknessMaximum", 400, "iridescenceThicknessTexture", "G");
-    if (s.film_thickness.texture && gltf::number(e, "iridescenceThicknessMinimum", 100) != 0)
-      importing_.inexact("the thickness of a film begins at 0 where its texture is black", at());
+    // mix(minimum, maximum, texture); without one, the maximum.
+    const double thickest = gltf::number(e, "iridescenceThicknessMaximum", 400);
+    s.film_thickness = thickest;
+    if (auto thickness = texture(e, "iridescenceThicknessTexture")) {
+      const double thinnest = gltf::number(e, "iridescenceThicknessMinimum", 100);
+      s.film_thickness.value = thickest - thinnest;
+      s.film_thickness.offset = thinnest;
+      s.film_thickness.texture = thickness;
+      s.film_thickness.channel = "G";
+      if (thickest == thinnest) s.film_thickness = thickest;
+    }
   }
   if (const Json& e = named("KHR_materials_anisotropy"); !e.empty()) {
     // The ratio of roughnesses alpha is 1 / (1 - a) in Principled and in glTF (alpha + (1 - alpha) s^2) / alpha.
