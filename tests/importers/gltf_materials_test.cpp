@@ -92,5 +92,34 @@ TEST(GltfMaterials, FilmsAreBetweenTheirThicknesses) {
   EXPECT_EQ(*get(part(thickness, "input"), "channel").as<std::string>(), "G");
 }
 
+// KHR_materials_diffuse_transmission: mix(diffuse_brdf(baseColor), diffuse_btdf(diffuseTransmissionColor), factor).
+TEST(GltfMaterials, LeavesLetLightThrough) {
+  const TemporaryFolder folder;
+  Square square;
+  std::string told;
+  square.json()["extensionsRequired"] = {"KHR_materials_diffuse_transmission"};
+  extended(square, "KHR_materials_diffuse_transmission") = {{"diffuseTransmissionFactor", 0.4},
+                                                            {"diffuseTransmissionColorFactor", {0.25, 0.25, 0.25}}};
+  const Component& leaf = square.shader(folder, told);
+  EXPECT_EQ(told, "");
+  EXPECT_EQ(constant(leaf, "subsurface_weight"), 0.4f);
+  EXPECT_NEAR(constant(leaf, "subsurface_color"), 0.25, 1e-6);
+  EXPECT_EQ(number(leaf, "subsurface_scatter_anisotropy"), 1);
+  EXPECT_TRUE(*get(leaf, "thin_walled").as<bool>());
+  extended(square, "KHR_materials_transmission") = {{"transmissionFactor", 0.5}};
+  extended(square, "KHR_materials_volume") = {{"thicknessFactor", 1}};
+  EXPECT_NE(square.import(folder).told().find("lets no light through"), std::string::npos);
+}
+
+// The colours of vertices tint what goes through as they tint what is reflected: baseColor is their product.
+TEST(GltfMaterials, VerticesTintWhatGoesThrough) {
+  const TemporaryFolder folder;
+  Square square;
+  std::string told;
+  square.vertices("COLOR_0", {1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}, 3);
+  extended(square, "KHR_materials_transmission") = {{"transmissionFactor", 1}};
+  EXPECT_EQ(class_of(square.shader(folder, told), "transmission_color"), "AttributeMap");
+}
+
 }  // namespace
 }  // namespace etendue

@@ -97,6 +97,10 @@ void Materials::read_volume(const Json& extensions, Surface& s) {
   const Json& e = object_in(extensions, "KHR_materials_transmission");
   s.transmission = number(e, "transmissionFactor", 0, "transmissionTexture", "R");
   s.transmission_color = s.base_color;
+  if (const Json& diffuse = object_in(extensions, "KHR_materials_diffuse_transmission"); !diffuse.empty()) {
+    s.translucence = number(diffuse, "diffuseTransmissionFactor", 0, "diffuseTransmissionTexture", "A");
+    s.translucent_color = color(diffuse, "diffuseTransmissionColorFactor", "diffuseTransmissionColorTexture", 1);
+  }
   const Json& volume = object_in(extensions, "KHR_materials_volume");
   s.thin = !(gltf::number(volume, "thicknessFactor", 0) > 0);
   s.attenuation_color = rgb(volume, "attenuationColor", 1);

@@ -8,6 +8,7 @@ namespace etendue::gltf {
 namespace {
 
 constexpr const char* known_extensions[] = {"KHR_materials_transmission",
+                                            "KHR_materials_diffuse_transmission",
                                             "KHR_materials_volume",
                                             "KHR_materials_ior",
                                             "KHR_materials_specular",

@@ -175,10 +175,18 @@ class SurfaceMaker {
       number(p, "transmission_weight", s_.transmission);
       color(p, "transmission_color", s_.transmission_color);
       if (s_.thin) set_member(p, "thin_walled", true, at_);
+      if (is_there(s_.translucence) && !s_.thin)
+        importing_.inexact("what is matt of a body that refracts lets no light through", at_);
       if (s_.abbe_number > 0) {
         set_member(p, "transmission_dispersion_scale", 1.0, at_);
         set_member(p, "transmission_dispersion_abbe_number", within(s_.abbe_number, 5, 1000, "an Abbe number"), at_);
       }
+    }
+    if (is_there(s_.translucence) && (s_.thin || !is_there(s_.transmission))) {
+      set_member(p, "thin_walled", true, at_);
+      number(p, "subsurface_weight", s_.translucence);
+      color(p, "subsurface_color", s_.translucent_color);
+      set_member(p, "subsurface_scatter_anisotropy", 1.0, at_);
     }
     if (is_there(s_.coat)) {
       number(p, "coat_weight", s_.coat);
@@ -223,7 +231,7 @@ class SurfaceMaker {
 
   /// What light loses on its way: after the distance the colour is left of white, so that it loses -ln(colour) / distance.
   Ref<Component> interior() const {
-    if (!is_there(s_.transmission) || s_.thin || !(s_.attenuation_distance > 0) || !std::isfinite(s_.attenuation_distance))
+    if (!(is_there(s_.transmission) || is_there(s_.translucence)) || s_.thin || !(s_.attenuation_distance > 0) || !std::isfinite(s_.attenuation_distance))
       return nullptr;
     std::array<double, 3> absorbed{};
     for (size_t i = 0; i < 3; ++i)

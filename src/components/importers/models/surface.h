@@ -63,7 +63,9 @@ struct Surface {
   SurfaceNumber anisotropy = 0;
   SurfaceNumber transmission = 0;
   SurfaceColor transmission_color = 1.0;
-  bool thin = true;  ///< of what transmits: a sheet without an inside
+  bool thin = true;                     ///< of what transmits: a sheet without an inside
+  SurfaceNumber translucence = 0;       ///< fraction of the matt body that sends light to the other side
+  SurfaceColor translucent_color = 1.0;
   std::array<double, 3> attenuation_color{1, 1, 1};
   double attenuation_distance = std::numeric_limits<double>::infinity();  ///< at which so much is left of white light [m]
   double abbe_number = 0;                                                 ///< 0: no dispersion
