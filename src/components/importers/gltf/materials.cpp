@@ -34,7 +34,7 @@ const Material& Materials::get(std::optional<size_t> material, bool colored, boo
   Surface surface;
   if (material)
     surface = within(fmt::format("materials[{}]", *material), [&] { return read(document_.element("materials", *material)); });
-  surface.base_color.by_vertex = colored;
+  surface.base_color.by_vertex = surface.transmission_color.by_vertex = colored;
   if (faded && material && text(document_.element("materials", *material), "alphaMode", "OPAQUE") != "OPAQUE")
     surface.opacity.attribute = "alpha";
   Material made;
