@@ -121,5 +121,41 @@ TEST(GltfMaterials, VerticesTintWhatGoesThrough) {
   EXPECT_EQ(class_of(square.shader(folder, told), "transmission_color"), "AttributeMap");
 }
 
+// KHR_materials_ior: 0 stands for an F0 of 1, so that specularColorFactor is F0 itself: how files with
+// KHR_materials_pbrSpecularGlossiness are converted, some with an ior of 1000 instead.
+TEST(GltfMaterials, InfiniteIndicesLeaveTheReflectanceToItsColour) {
+  const TemporaryFolder folder;
+  for (const double ior : {0.0, 1000.0}) {
+    Square square;
+    std::string told;
+    extended(square, "KHR_materials_ior")["ior"] = ior;
+    extended(square, "KHR_materials_specular")["specularColorFactor"] = {0.04, 0.04, 0.02};
+    const Component& plastic = square.shader(folder, told);
+    EXPECT_EQ(told, "");
+    EXPECT_NEAR(number(plastic, "specular_ior"), 1.5, 2e-3) << ior;
+    EXPECT_NEAR(color(plastic, "specular_color")[2], 0.5, 2e-3);
+    EXPECT_NEAR(color(plastic, "specular_color")[0], 1, 2e-3);
+
+    square.material()["pbrMetallicRoughness"]["baseColorFactor"] = {0, 0, 0, 1};
+    extended(square, "KHR_materials_specular")["specularColorFactor"] = {0.9, 0.6, 0.3};
+    const Component& gold = square.shader(folder, told);
+    EXPECT_EQ(told, "");
+    EXPECT_EQ(constant(gold, "base_metalness"), 1);
+    EXPECT_NEAR(color(gold, "base_color")[1], 0.6, 3e-3);
+    EXPECT_EQ(constant(gold, "specular_color"), 1);
+  }
+}
+
+// KHR_materials_specular: the direction of refracted light is that of KHR_materials_ior alone.
+TEST(GltfMaterials, RefractionByAnotherIndexIsTold) {
+  const TemporaryFolder folder;
+  Square square;
+  extended(square, "KHR_materials_transmission")["transmissionFactor"] = 1;
+  extended(square, "KHR_materials_volume")["thicknessFactor"] = 1;
+  EXPECT_EQ(square.import(folder).told(), "");
+  extended(square, "KHR_materials_specular")["specularColorFactor"] = {2, 2, 2};
+  EXPECT_NE(square.import(folder).told().find("refracted by the index"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace etendue

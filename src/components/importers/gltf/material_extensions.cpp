@@ -7,15 +7,18 @@
 namespace etendue::gltf {
 namespace {
 
+/// The highest index of Principled; a file's 0 stands for an infinite one (KHR_materials_ior).
+constexpr double highest_ior = 4;
 /// F0 of dielectrics.
-double reflectance_of(double ior) { return std::pow((ior - 1) / (ior + 1), 2); }
+double reflectance_of(double ior) { return ior == 0 ? 1 : std::pow((ior - 1) / (ior + 1), 2); }
 
 }  // namespace
 
 void Materials::read_extensions(const Json& extensions, Surface& s) {
   const auto named = [&](const char* name) -> const Json& { return object_in(extensions, name); };
   s.ior = gltf::number(named("KHR_materials_ior"), "ior", s.ior);
-  if (const Json& e = named("KHR_materials_specular"); !e.empty()) read_specular(e, s);
+  const double refracting = s.ior;
+  if (!find(extensions, "KHR_materials_pbrSpecularGlossiness")) read_specular(named("KHR_materials_specular"), s);
   if (const Json& e = named("KHR_materials_clearcoat"); !e.empty()) {
     s.coat = number(e, "clearcoatFactor", 0, "clearcoatTexture", "R");
     s.coat_roughness = number(e, "clearcoatRoughnessFactor", 0, "clearcoatRoughnessTexture", "G");
@@ -58,20 +61,45 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
       importing_.inexact("stretched highlights lie along u, whatever their texture or rotation", at());
   }
   read_volume(extensions, s);
+  if (!s.thin && s.transmission.value > 0 && s.ior != refracting)
+    importing_.inexact("light is refracted by the index that its reflection has, which KHR_materials_specular raises", at());
 }
 
 void Materials::read_specular(const Json& e, Surface& s) {
   const SurfaceNumber& metal = s.metalness;
-  if (metal.value >= 1 && !metal.texture) return;  // of metals it says nothing
+  if (metal.value >= 1 && !metal.texture) {  // of metals it says nothing, nor does an index
+    s.ior = 1.5;
+    return;
+  }
   s.specular = number(e, "specularFactor", 1, "specularTexture", "A");
   s.specular_color = color(e, "specularColorFactor", "specularColorTexture", 1);
-  // Factors above 1 raise the reflectance, which only an index can here.
-  if (const double most = std::ranges::max(s.specular_color.value); most > 1) {
-    const double f0 = std::min(reflectance_of(s.ior) * most, 0.9);
-    s.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
-    for (double& x : s.specular_color.value) x /= most;
+  // What reflects more than its index says has another one.
+  const double most = std::ranges::max(s.specular_color.value);
+  if (most > 1 || s.ior == 0 || s.ior > highest_ior) {
+    const double f0 = reflectance_of(s.ior);
+    SurfaceColor reflected = s.specular_color;
+    for (double& x : reflected.value) x = std::min(x * f0, 1.0);
+    reflect(reflected, s);
   }
   if (metal.value > 0) keep_metal(s);
+}
+
+/// Sets what is reflected of light straight on. A dark body that reflects more than insulators do is metal (as in Khronos' own
+/// conversion of KHR_materials_pbrSpecularGlossiness, without its blend between the two).
+void Materials::reflect(const SurfaceColor& reflected, Surface& s) {
+  const double strongest = std::ranges::max(reflected.value);
+  if (strongest > 0.25 && !(s.metalness.value > 0) && !s.base_color.texture && std::ranges::max(s.base_color.value) < 0.1) {
+    s.metalness = 1;
+    s.base_color = reflected;
+    s.specular_color = 1.0;
+    s.ior = 1.5;
+    return;
+  }
+  const double f0 = std::clamp(strongest, 0.0, 0.9);
+  s.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
+  s.specular_color = reflected;
+  if (strongest > 0)
+    for (double& x : s.specular_color.value) x /= strongest;
 }
 
 // Principled weakens and tints what metal reflects too. Where it is metal or not, place by place, the weight can be

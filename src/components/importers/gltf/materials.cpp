@@ -88,8 +88,7 @@ void Materials::read_metal(const Json& pbr, Surface& s) {
   s.roughness = number(pbr, "roughnessFactor", 1, "metallicRoughnessTexture", "G");
 }
 
-// The old way to say metals: by the colour of their reflections. A reflectance above what insulators have makes it metal
-// (as in Khronos' own conversion, without its blend between the two).
+// The old way to say metals: by the colour of their reflections.
 void Materials::read_specular_glossiness(const Json& old, Surface& s) {
   const auto factor = numbers<4>(old, "diffuseFactor").value_or(std::array<double, 4>{1, 1, 1, 1});
   bool has_alpha = false;
@@ -101,9 +100,7 @@ void Materials::read_specular_glossiness(const Json& old, Surface& s) {
     s.opacity.channel = "A";
   }
   const double glossiness = gltf::number(old, "glossinessFactor", 1);
-  const auto specular = rgb(old, "specularFactor", 1);
   const auto map = texture(old, "specularGlossinessTexture");
-  const double strongest = std::ranges::max(specular), diffuse = std::max({factor[0], factor[1], factor[2]});
   s.roughness = 1 - glossiness;
   if (map) {
     s.roughness = 1;
@@ -112,14 +109,8 @@ void Materials::read_specular_glossiness(const Json& old, Surface& s) {
     s.roughness.inverted = true;
     s.roughness.inverted_share = std::clamp(glossiness, 0.0, 1.0);
     importing_.inexact("KHR_materials_pbrSpecularGlossiness with a texture: its colours of reflections are left out", at());
-  } else if (strongest > 0.25 && diffuse < 0.1) {
-    s.metalness = 1;
-    s.base_color.value = specular;
   } else {
-    const double f0 = std::clamp(strongest, 0.0, 0.9);
-    s.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
-    if (strongest > 0)
-      for (size_t i = 0; i < 3; ++i) s.specular_color.value[i] = specular[i] / strongest;
+    reflect(rgb(old, "specularFactor", 1), s);
   }
 }
 

@@ -44,6 +44,7 @@ class Materials {
   void read_extensions(const Json& extensions, Surface&);
   void read_specular(const Json&, Surface&);
   void keep_metal(Surface&);
+  void reflect(const SurfaceColor& straight_on, Surface&);
   void read_volume(const Json& extensions, Surface&);
   std::optional<SurfaceTexture> texture(const Json& object, const char* key, bool* has_alpha = nullptr);
   SurfaceColor color(const Json& object, const char* factor, const char* texture_key, double otherwise);
