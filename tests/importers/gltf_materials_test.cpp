@@ -157,5 +157,23 @@ TEST(GltfMaterials, RefractionByAnotherIndexIsTold) {
   EXPECT_NE(square.import(folder).told().find("refracted by the index"), std::string::npos);
 }
 
+// KHR_materials_clearcoat: "The index of refraction of clearcoat and base layer do not influence each other." Principled's
+// base reflects by the ratio mix(base, base / coat, weight).
+TEST(GltfMaterials, CoatsLeaveTheReflectanceBelowThem) {
+  const TemporaryFolder folder;
+  for (const double weight : {1.0, 0.5}) {
+    Square square;
+    std::string told;
+    extended(square, "KHR_materials_clearcoat") = {{"clearcoatFactor", weight}, {"clearcoatRoughnessFactor", 0.1}};
+    const Component& shader = square.shader(folder, told);
+    EXPECT_EQ(told, "");
+    const double ior = number(shader, "specular_ior");
+    EXPECT_NEAR(ior * (1 - weight) + ior / number(shader, "coat_ior") * weight, 1.5, 1e-6) << weight;
+  }
+  Square square;
+  extended(square, "KHR_materials_clearcoat") = {{"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 0}}}};
+  EXPECT_NE(square.import(folder).told().find("what is under a coat"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace etendue

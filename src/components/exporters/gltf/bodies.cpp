@@ -66,7 +66,13 @@ void Writer::principled_base(Json& m, const Component& s, double clear) {
 void Writer::principled(Json& m, const Component& s) {
   const double clear = scalar(s, "transmission_weight", 0);
   principled_base(m, s, clear);
-  if (const double ior = scalar(s, "specular_ior", 1.5); ior != 1.5) extend(m, "KHR_materials_ior", {{"ior", ior}});
+  const double coat = scalar(s, "coat_weight", 0);
+  double ior = number_of(s, "specular_ior");
+  if (coat > 0 && !(clear > 0)) {  // in glTF coats leave the index of what they cover alone
+    ior *= 1 - coat + coat / number_of(s, "coat_ior");
+    ior = std::max(ior, 1 / ior);
+  }
+  if (std::abs(ior - 1.5) > 1e-6) extend(m, "KHR_materials_ior", {{"ior", ior}});
   const Look tint = look(s, "specular_color", ColorUse::reflectance);
   const double specular = scalar(s, "specular_weight", 1);
   if (specular > 1) exporting.inexact("a 'specular_weight' above 1 is 1 in glTF", &s);
@@ -82,7 +88,7 @@ void Writer::principled(Json& m, const Component& s) {
       extend(m, "KHR_materials_dispersion",
              {{"dispersion", 20 * amount / number_of(s, "transmission_dispersion_abbe_number")}});
   }
-  if (const double coat = scalar(s, "coat_weight", 0); coat > 0) {
+  if (coat > 0) {
     extend(m, "KHR_materials_clearcoat",
            {{"clearcoatFactor", coat}, {"clearcoatRoughnessFactor", scalar(s, "coat_roughness", 0)}});
     if (number_of(s, "coat_ior") != 1.5) exporting.inexact("the index of a clear coat is 1.5 in glTF", &s);

@@ -10,6 +10,7 @@
 namespace etendue {
 namespace {
 
+constexpr double coat_ior = 1.5;
 constexpr double sharpest_fibres = double(SheenLobe::sharpest);
 
 class SurfaceMaker {
@@ -166,7 +167,8 @@ class SurfaceMaker {
     color(p, "base_color", s_.base_color);
     if (is_there(s_.metalness)) number(p, "base_metalness", s_.metalness);
     number(p, "specular_roughness", s_.roughness);
-    if (s_.ior != 1.5) set_member(p, "specular_ior", within(s_.ior, 1, 4, "an index of refraction"), at_);
+    if (const double ior = ior_below_coat(); ior != 1.5)
+      set_member(p, "specular_ior", within(ior, 1, 4, "an index of refraction"), at_);
     if (s_.specular.value != 1 || s_.specular.texture) number(p, "specular_weight", s_.specular);
     if (s_.specular_color.value != std::array<double, 3>{1, 1, 1} || s_.specular_color.texture)
       color(p, "specular_color", s_.specular_color);
@@ -191,7 +193,10 @@ class SurfaceMaker {
     if (is_there(s_.coat)) {
       number(p, "coat_weight", s_.coat);
       number(p, "coat_roughness", s_.coat_roughness);
-      set_member(p, "coat_ior", 1.5, at_);
+      set_member(p, "coat_ior", coat_ior, at_);
+      const bool metal = s_.metalness.value >= 1 && !s_.metalness.texture;
+      if (!metal && (s_.coat.texture || is_there(s_.transmission)))
+        importing_.inexact("what is under a coat reflects by its index against the coat's, not against air's", at_);
       set_member(p, "coat_darkening", 0.0, at_);
     }
     if (!s_.sheen_color.black()) sheen(p);
@@ -201,6 +206,14 @@ class SurfaceMaker {
       set_member(p, "thin_film_ior", within(s_.film_ior, 1, 4, "an index of refraction"), at_);
     }
     return shader;
+  }
+
+  // What a coat covers reflects in glTF, MTL and UsdPreviewSurface as if it were bare; in Principled by its index against the
+  // coat's, which must therefore be higher by as much. Of what refracts or has a film the index itself is needed.
+  double ior_below_coat() const {
+    if (!is_there(s_.coat) || s_.coat.texture || is_there(s_.transmission) || is_there(s_.film)) return s_.ior;
+    const double covered = std::min(s_.coat.value, 1.0);
+    return s_.ior / (1 - covered + covered / coat_ior);
   }
 
   // Light gets to what is below as far as the strongest colour of the fibres leaves it (KHR_materials_sheen: 1 - max(colour)
