@@ -1,5 +1,6 @@
 #include "document.h"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -36,6 +37,13 @@ std::string image_ending(std::string_view start, const std::string& type) {
   if (start.starts_with("BM")) return "bmp";
   if (start.starts_with("\xabKTX 20"sv)) return "ktx2";
   return type == "image/jpeg" ? "jpg" : (type == "image/x-tga" ? "tga" : "png");
+}
+
+/// Compressed views name besides a buffer of what is not compressed, which may have no bytes.
+constexpr const char* compressions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+bool is_placeholder(const Json& buffer) {
+  if (find(buffer, "uri")) return false;
+  return std::ranges::any_of(compressions, [&](const char* name) { return truth(extension(buffer, name), "fallback", false); });
 }
 
 std::uint32_t word(const char* at) {
@@ -165,6 +173,10 @@ void Document::find_buffers(const Importing& importing) {
       const std::uint64_t length = needed_whole(list[i], "byteLength");
       Buffer buffer;
       const std::string uri = text(list[i], "uri");
+      if (is_placeholder(list[i])) {
+        buffers_.emplace_back();
+        return;
+      }
       if (uri.empty()) {
         if (i > 0 || !chunk_) throw Error("it has no 'uri', and there is no binary part for it");
         buffer = *chunk_;
@@ -196,11 +208,12 @@ std::uint64_t Document::buffer_bytes() const {
 std::uint64_t Document::view_size(size_t view) const {
   const Json& v = element("bufferViews", view);
   return within(fmt::format("bufferViews[{}]", view), [&] {
-    if (has_extension(v, "EXT_meshopt_compression"))
-      throw Error("it is compressed by EXT_meshopt_compression, which is not read; programs such as gltfpack undo it");
     const size_t buffer = needed_whole(v, "buffer"), length = needed_whole(v, "byteLength");
     const size_t offset = whole(v, "byteOffset").value_or(0);
     if (buffer >= buffers_.size()) throw Error(fmt::format("there is no buffers[{}]", buffer));
+    for (const char* compression : compressions)
+      if (has_extension(v, compression) && is_placeholder(list_in(json_, "buffers")[buffer]))
+        throw Error(fmt::format("it is compressed by {}, which is not read; programs such as gltfpack undo it", compression));
     if (offset > buffers_[buffer].size || length > buffers_[buffer].size - offset)
       throw Error(
           fmt::format("it reaches to byte {} of buffers[{}], which has {}", offset + length, buffer, buffers_[buffer].size));

@@ -211,8 +211,7 @@ std::vector<Ref<SceneObject>> SceneBuilder::primitives(size_t mesh, const PartNa
 }
 
 Ref<SceneObject> SceneBuilder::primitive(const Json& p, PartName part, const std::string& name) {
-  if (has_extension(p, "KHR_draco_mesh_compression"))
-    throw Error("it is compressed by KHR_draco_mesh_compression, which is not read; programs such as gltf-transform undo it");
+  require_uncompressed(document_, p);
   if (!is_triangles(p)) {
     importing_.inexact("points and lines are not shown", at());
     return nullptr;
