@@ -175,5 +175,22 @@ TEST(GltfMaterials, CoatsLeaveTheReflectanceBelowThem) {
   EXPECT_NE(square.import(folder).told().find("what is under a coat"), std::string::npos);
 }
 
+// KHR_materials_variants: a primitive names the variants in which it has another material.
+TEST(GltfMaterials, VariantsAreChosenByName) {
+  const TemporaryFolder folder;
+  Square square;
+  square.json()["materials"].push_back({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.25}}}});
+  square.json()["extensionsUsed"] = {"KHR_materials_variants"};
+  square.json()["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "matt"}}, {{"name", "silk"}}};
+  square.primitive()["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 1}, {"variants", {1}}}};
+  EXPECT_NE(square.import(folder).told().find("none of its 2 variants"), std::string::npos);
+  EXPECT_EQ(constant(part(square.object(), "shader"), "specular_roughness"), 1);
+  for (const auto& [name, roughness] : {std::pair{"matt", 1.0}, {"silk", 0.25}, {"1", 0.25}}) {
+    EXPECT_EQ(square.import(folder, {{"variant", name}}).told(), "");
+    EXPECT_EQ(constant(part(square.object(), "shader"), "specular_roughness"), roughness) << name;
+  }
+  EXPECT_NE(square.import(folder, {{"variant", "silky"}}).told().find("silk"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace etendue

@@ -12,7 +12,7 @@ namespace {
 
 /// Extensions that are read, or whose absence changes nothing that is shown, those of materials aside.
 constexpr const char* known_extensions[] = {"KHR_texture_transform", "KHR_lights_punctual", "KHR_mesh_quantization",
-                                            "EXT_mesh_gpu_instancing", "EXT_texture_webp"};
+                                            "EXT_mesh_gpu_instancing", "EXT_texture_webp",  "KHR_materials_variants"};
 
 void check_extensions(Importing& importing, const Document& document) {
   const auto known = [](const std::string& name) {
@@ -82,7 +82,7 @@ class GltfImporter final : public Importer {
   static void describe(Description<GltfImporter>& d) {
     d.summary(
         "glTF 2.0 files (.gltf, .glb) with their materials, lights, cameras, skins, morph targets and animations. "
-        "-D camera=, scene= and animation= choose by name or number, -D time= the second of the animation.",
+        "-D camera=, scene=, animation= and variant= choose by name or number, -D time= the second of the animation.",
         "The Khronos Group 2021, glTF 2.0 Specification");
   }
   std::vector<std::string> extensions() const override { return {"glb", "gltf"}; }

@@ -4,6 +4,7 @@
 
 #include "accessor.h"
 #include "described.h"
+#include "variants.h"
 
 namespace etendue::gltf {
 
@@ -12,6 +13,7 @@ SceneBuilder::SceneBuilder(Importing& importing, const Document& document)
       document_(document),
       moment_(moment()),
       pose_(document, moment_),
+      variant_(chosen_variant(importing, document)),
       materials_(importing, document),
       scene_(ref_cast<Scene>(importing.make(imported_structure, importing.at()))) {}
 
@@ -229,7 +231,7 @@ Ref<SceneObject> SceneBuilder::primitive(const Json& p, PartName part, const std
   bool faded = false;
   const bool colored = find(attributes, "COLOR_0") != nullptr;
   if (colored) faded = Accessor(document_, needed_whole(attributes, "COLOR_0")).width == 4;
-  const Material& material = materials_.get(whole(p, "material"), colored, faded);
+  const Material& material = materials_.get(material_of(p, variant_), colored, faded);
   part.uv_set = material.uv_set;
   if (material.by_tangents && find(attributes, "TANGENT"))
     if (const double share = differing_tangents(document_, p, part.uv_set); share > 0.05)

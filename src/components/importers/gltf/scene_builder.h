@@ -40,6 +40,7 @@ class SceneBuilder {
   const Document& document_;
   Moment moment_;
   Pose pose_;
+  std::optional<size_t> variant_;
   Materials materials_;
   Ref<Scene> scene_;
   std::map<size_t, size_t> uses_;  // of meshes, by nodes
