@@ -111,5 +111,26 @@ TEST(GltfDetails, InstancesWithoutTheirMorphAreTold) {
   EXPECT_NE(square.import(folder).told().find("without what its morph targets add"), std::string::npos);
 }
 
+// KHR_node_visibility: of what is below an invisible node nothing is shown, but cameras stay.
+TEST(GltfDetails, InvisibleNodesAreNotShown) {
+  const TemporaryFolder folder;
+  Square square;
+  square.json()["extensionsRequired"] = {"KHR_node_visibility"};
+  square.json()["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+  square.json()["nodes"] = {{{"children", {1, 2}}},
+                            {{"mesh", 0}, {"extensions", {{"KHR_node_visibility", {{"visible", true}}}}}},
+                            {{"camera", 0}},
+                            {{"mesh", 0}}};
+  square.json()["scenes"][0]["nodes"] = {0, 3};
+  const auto shown = [&](bool visible) {
+    square.json()["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = visible;
+    const mitsuba_test::Imported imported = mitsuba_test::import_file(square.write(folder));
+    EXPECT_EQ(imported.told(), "");
+    return imported.job ? imported.job->scene->objects.size() : 0;
+  };
+  EXPECT_EQ(shown(true), 2u);
+  EXPECT_EQ(shown(false), 1u);
+}
+
 }  // namespace
 }  // namespace etendue

@@ -67,11 +67,15 @@ Ref<Scene> SceneBuilder::build() {
   std::vector<size_t> order = roots();
   std::set<size_t> seen(order.begin(), order.end());
   if (seen.size() != order.size()) throw Error("a node is twice a root of the scene");
-  for (size_t k = 0; k < order.size(); ++k)
-    for (const size_t child : places(document_.element("nodes", order[k]), "children", document_.count("nodes"))) {
+  for (size_t k = 0; k < order.size(); ++k) {
+    const Json& n = document_.element("nodes", order[k]);
+    if (!truth(extension(n, "KHR_node_visibility"), "visible", true)) hidden_.insert(order[k]);
+    for (const size_t child : places(n, "children", document_.count("nodes"))) {
       if (!seen.insert(child).second) throw Error(fmt::format("nodes[{}] is a root of the scene and a child", child));
+      if (hidden_.contains(order[k])) hidden_.insert(child);
       order.push_back(child);
     }
+  }
   count_uses(order);
   std::ranges::sort(order);
   for (const size_t node : order) within(fmt::format("nodes[{}]", node), [&] { add_node(node); });
@@ -91,6 +95,7 @@ void SceneBuilder::add_node(size_t node) {
   const Json& n = document_.element("nodes", node);
   const Transform& place = pose_.global(node);
   if (const auto camera = whole(n, "camera")) cameras_.emplace_back(*camera, place);
+  if (hidden_.contains(node)) return;
   const Json& light = extension(n, "KHR_lights_punctual");
   if (!light.empty()) {
     add(ref_cast<SceneObject>(make_light(importing_, document_, needed_whole(light, "light"), place)));

@@ -43,6 +43,7 @@ class SceneBuilder {
   std::optional<size_t> variant_;
   Materials materials_;
   Ref<Scene> scene_;
+  std::set<size_t> hidden_;        // nodes: all but their cameras (KHR_node_visibility)
   std::map<size_t, size_t> uses_;  // of meshes, by nodes
   std::map<size_t, Ref<Scene>> shared_;
   std::vector<std::pair<size_t, Transform>> cameras_;
