@@ -194,7 +194,8 @@ TEST(GltfExport, KeepsThePartsOfPrincipledOrSaysSo) {
     return at == std::string::npos ? -1 : std::stod(back.substr(at + words.size()));
   };
   EXPECT_NEAR(after(" base_color: rgb("), 0.25, 1e-3) << back;
-  EXPECT_NEAR(after("fuzz_color: rgb("), 0.5, 1e-3) << back;
+  EXPECT_NEAR(after("fuzz_weight: "), 0.5, 1e-3) << back;
+  EXPECT_NEAR(after("fuzz_roughness: "), 0.5, 1e-3) << back;
   EXPECT_NEAR(after("transmission_color: rgb("), 0.125, 1e-3) << back;
   EXPECT_EQ(after(" opacity: "), 0.25) << back;
   EXPECT_EQ(after("thin_film_weight: "), 0.5) << back;

@@ -192,5 +192,17 @@ TEST(GltfMaterials, VariantsAreChosenByName) {
   EXPECT_NE(square.import(folder, {{"variant", "silky"}}).told().find("silk"), std::string::npos);
 }
 
+// KHR_materials_anisotropy: the direction of greater roughness, counter-clockwise from the tangent [rad].
+TEST(GltfMaterials, StretchedHighlightsTurn) {
+  const TemporaryFolder folder;
+  Square square;
+  std::string told;
+  extended(square, "KHR_materials_anisotropy") = {{"anisotropyStrength", 0.5}, {"anisotropyRotation", 1.5707963267948966}};
+  EXPECT_NEAR(constant(square.shader(folder, told), "geometry_tangent_rotation"), 0.25, 1e-6);
+  EXPECT_EQ(told, "");
+  extended(square, "KHR_materials_anisotropy")["anisotropyTexture"] = {{"index", 0}};
+  EXPECT_NE(square.import(folder).told().find("whatever their texture says"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace etendue

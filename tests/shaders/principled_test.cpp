@@ -164,6 +164,20 @@ TEST(Principled, DispersionIsThatOfTheAbbeNumber) {
   EXPECT_NEAR((n[0] - 1) / (n[1] - n[2]), 40, 0.01);
 }
 
+TEST(Principled, RotationTurnsTheRoughnessCounterClockwise) {
+  const Settings brushed{{"base_metalness", 1.0}, {"specular_roughness_anisotropy", 0.8}, {"specular_roughness", 0.5}};
+  const Bound along(brushed), turned(with(brushed, {{"geometry_tangent_rotation", 0.1}}));
+  const Frame& frame = along.scatter->frame();
+  const double tenth = 0.2 * M_PI;
+  for (const double azimuth : {0.0, 1.0, 2.0}) {
+    const auto value = [&](const Bound& b, double more) {
+      return double(b.scatter->evaluate(at_angle(frame, 20, azimuth + more), at_angle(frame, 40, azimuth + 2.5 + more))[0]);
+    };
+    EXPECT_NEAR(value(turned, tenth) / value(along, 0), 1, 1e-3) << azimuth;
+    EXPECT_GT(std::abs(value(turned, -tenth) / value(along, 0) - 1), 0.05) << azimuth;
+  }
+}
+
 TEST(Principled, EveryMemberHasAnEffect) {
   const std::vector<std::pair<Setting, Settings>> cases{
       {{"base_weight", 0.5}, {}},
@@ -195,6 +209,7 @@ TEST(Principled, EveryMemberHasAnEffect) {
       {{"thin_film_thickness", 300.0}, {{"thin_film_weight", 1.0}}},
       {{"thin_film_ior", 2.0}, {{"thin_film_weight", 1.0}}},
       {{"geometry_opacity", 0.5}, {}},
+      {{"geometry_tangent_rotation", 0.25}, {{"specular_roughness_anisotropy", 0.9}}},
       {thin_walled(), glass}};
   size_t members = 0;
   for (const Member& m : Registry::instance().create("Principled")->class_info().members) {
@@ -207,7 +222,7 @@ TEST(Principled, EveryMemberHasAnEffect) {
     double most = 0;
     for (const double in : {-30.0, 20.0, 50.0, 70.0, 165.0, 200.0}) {
       const Spectrum a = before.scatter->evaluate(before.at(30), before.at(in)),
-                     b = after.scatter->evaluate(after.at(30), after.at(in));
+                     b = after.scatter->evaluate(before.at(30), before.at(in));
       for (int i = 0; i < spectrum_size; ++i)
         most = std::max(most, std::abs(double(a[i] - b[i])) / std::max({double(a[i]), double(b[i]), 1e-3}));
     }

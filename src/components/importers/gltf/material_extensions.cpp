@@ -1,6 +1,7 @@
 // The KHR_materials extensions of glTF.
 
 #include <algorithm>
+#include <numbers>
 
 #include "materials.h"
 
@@ -57,8 +58,9 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
     else if (strength != 0)
       importing_.inexact("stretched highlights whose roughness is an image's are as large as without stretching, not longer",
                          at());
-    if (find(e, "anisotropyTexture") || gltf::number(e, "anisotropyRotation", 0) != 0)
-      importing_.inexact("stretched highlights lie along u, whatever their texture or rotation", at());
+    s.anisotropy_rotation = gltf::number(e, "anisotropyRotation", 0) / (2 * std::numbers::pi);
+    if (find(e, "anisotropyTexture") && strength != 0)
+      importing_.inexact("stretched highlights lie in one direction and are as long everywhere, whatever their texture says", at());
   }
   read_volume(extensions, s);
   if (!s.thin && s.transmission.value > 0 && s.ior != refracting)

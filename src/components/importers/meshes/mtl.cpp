@@ -285,7 +285,7 @@ class MtlReader {
     s.coat = said.number("pc", 0);
     s.coat_roughness = said.number("pcr", 0);
     s.anisotropy = std::clamp(said.number("aniso", 0), 0.0, 1.0);
-    if (said.number("anisor", 0) != 0) importing_.inexact("stretched highlights lie along u, whatever 'anisor' says", said.at);
+    s.anisotropy_rotation = said.number("anisor", 0);
     if (const Texture* normals = said.texture("norm"))
       s.normals = SurfaceNormals{normals->image, normals->bump, false};
     else if (const Texture* bumps = said.texture("map_bump")) {

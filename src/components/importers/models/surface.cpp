@@ -172,7 +172,10 @@ class SurfaceMaker {
     if (s_.specular.value != 1 || s_.specular.texture) number(p, "specular_weight", s_.specular);
     if (s_.specular_color.value != std::array<double, 3>{1, 1, 1} || s_.specular_color.texture)
       color(p, "specular_color", s_.specular_color);
-    if (is_there(s_.anisotropy)) number(p, "specular_roughness_anisotropy", s_.anisotropy);
+    if (is_there(s_.anisotropy)) {
+      number(p, "specular_roughness_anisotropy", s_.anisotropy);
+      if (s_.anisotropy_rotation != 0) set_member(p, "geometry_tangent_rotation", s_.anisotropy_rotation, at_);
+    }
     if (is_there(s_.transmission)) {
       number(p, "transmission_weight", s_.transmission);
       color(p, "transmission_color", s_.transmission_color);

@@ -61,6 +61,7 @@ struct Surface {
   SurfaceNumber specular = 1;
   SurfaceColor specular_color = 1.0;
   SurfaceNumber anisotropy = 0;
+  double anisotropy_rotation = 0;  ///< from u, counter-clockwise [turns]
   SurfaceNumber transmission = 0;
   SurfaceColor transmission_color = 1.0;
   bool thin = true;                     ///< of what transmits: a sheet without an inside

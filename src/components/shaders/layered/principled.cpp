@@ -52,7 +52,8 @@ class Principled final : public Shader {
     const Lobes lobes = PrincipledScatter::lobes_of(layers);
     if (lobes == no_lobes) return nullptr;
     const bool turned = !layers.facets.isotropic() || !layers.coat_facets.isotropic();
-    return arena.make<PrincipledScatter>(p, turned ? tangent_frame(p) : Frame(p.shading_normal), layers);
+    return arena.make<PrincipledScatter>(
+        p, turned ? tangent_frame(p, geometry_tangent_rotation->scalar(p)) : Frame(p.shading_normal), layers);
   }
 
   Lobes possible_lobes() const override { return possible_lobes_; }
@@ -76,7 +77,7 @@ class Principled final : public Shader {
   Ref<ObjectMap> fuzz_weight = constant(0.0f), fuzz_color = constant(1.0f), fuzz_roughness = constant(0.5f);
   Ref<ObjectMap> thin_film_weight = constant(0.0f), thin_film_thickness = constant(500.0f);
   float thin_film_ior = 1.4f;
-  Ref<ObjectMap> geometry_opacity = constant(1.0f);
+  Ref<ObjectMap> geometry_opacity = constant(1.0f), geometry_tangent_rotation = constant(0.0f);
   bool thin_walled = false;
 
  private:
@@ -188,6 +189,10 @@ void Principled::describe_upper_layers(Description<Principled>& d) {
       .group("Geometry")
       .member<&Principled::geometry_opacity>("geometry_opacity", "1", "fraction of the surface that is there", Meaning::number,
                                              soft(0, 1))
+      .member<&Principled::geometry_tangent_rotation>(
+          "geometry_tangent_rotation", "turn",
+          "by how many turns dpdu is rotated for the roughness of base and coat, counter-clockwise seen from the front",
+          Meaning::number, soft(0, 1))
       .member<&Principled::thin_walled>("thin_walled", "", "a sheet without an inside, such as a leaf, paper or a window pane");
 }
 
@@ -216,6 +221,7 @@ void Principled::prepare() {
   for (const auto& [name, map] : fractions) require_scalar(*this, name, *map);
   require_scalar(*this, "specular_weight", specular_weight, 0, highest_specular_weight);
   require_scalar(*this, "thin_film_thickness", thin_film_thickness, 0, thickest_film);
+  if (!geometry_tangent_rotation) fail("geometry_tangent_rotation", "a map or a number is needed");
 
   const bool clear = !always(transmission_weight, 0) && !always(base_metalness, 1);
   const bool matt = !always(transmission_weight, 1) && !always(base_metalness, 1);
