@@ -90,7 +90,8 @@ void Materials::read_specular(const Json& e, Surface& s) {
 /// conversion of KHR_materials_pbrSpecularGlossiness, without its blend between the two).
 void Materials::reflect(const SurfaceColor& reflected, Surface& s) {
   const double strongest = std::ranges::max(reflected.value);
-  if (strongest > 0.25 && !(s.metalness.value > 0) && !s.base_color.texture && std::ranges::max(s.base_color.value) < 0.1) {
+  const double diffuse = std::ranges::max(s.base_color.value) * (1 - strongest);  // what is not reflected gets to the body
+  if (strongest > 0.25 && !(s.metalness.value > 0) && !s.base_color.texture && diffuse < 0.1) {
     s.metalness = 1;
     s.base_color = reflected;
     s.specular_color = 1.0;
