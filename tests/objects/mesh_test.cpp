@@ -237,6 +237,19 @@ TEST_F(MeshFiles, MeshFromFile) {
   EXPECT_TRUE(object("TriangleMesh", cube_settings())->closed());
 }
 
+// Spheres that programs make end at sin(2 pi) = -2.4e-16 and begin at 0.
+TEST(Mesh, SeamsOfRoundingAreClosed) {
+  const auto tetrahedron = [](double seam, double size) {
+    return object("TriangleMesh", {{"positions", {0, 0, 0, size, 0, 0, 0, size, 0, 0, 0, size, seam, 0, 0}},
+                                   {"triangles", {0, 2, 1, 4, 1, 3, 0, 3, 2, 1, 2, 3}}});
+  };
+  for (const double size : {1.0, 1e-6, 1e6}) {
+    EXPECT_TRUE(tetrahedron(-2.4e-16 * size, size)->closed()) << size;
+    EXPECT_FALSE(tetrahedron(-1e-6 * size, size)->closed()) << size;
+    EXPECT_EQ(tetrahedron(-1e-6 * size, size)->open_edges(), 4u);
+  }
+}
+
 TEST_F(MeshFiles, ErrorsNameTheFile) {
   const auto error = [&](const std::string& path) -> std::string {
     try {

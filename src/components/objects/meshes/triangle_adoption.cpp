@@ -14,6 +14,19 @@ Normal3 unit_or_zero(const Normal3& n) {
   return l > 0 && l < infinity ? Normal3(Vector3(n) / l) : Normal3{};
 }
 
+// Programs that make a sphere end it at sin(2 pi), which is -2e-16 of its radius and not where it began: what is so much less
+// than a float of the object's size can tell counts as 0.
+float least_length(const Bounds3& bounds) {
+  constexpr float fraction = 1e-9f;
+  return fraction * length(bounds.high - bounds.low);
+}
+std::uint64_t place_hash(std::uint64_t h, const Point3& p, float least) {
+  const auto bits = [least](float x) { return std::bit_cast<std::uint32_t>(std::abs(x) <= least ? 0.0f : x); };
+  h = mix_bits(h ^ bits(p.x));
+  h = mix_bits((h << 32 | bits(p.y)) + 0x9e3779b97f4a7c15ull);
+  return mix_bits(h ^ bits(p.z));
+}
+
 /// Up to this many triangles have their planes remembered: 1 MB, and a tenth of a path's time.
 constexpr size_t remembered_planes = 1 << 16;
 
@@ -101,14 +114,11 @@ bool TriangleObject::closed() const {
   // and its opposite contribute inverse terms, is zero; of an open surface it is so with probability 2^-64. Corners are
   // told by position, not index: seams of texture coordinates are no holes.
   std::call_once(lazy_->closed_known, [this] {
-    const auto corner = [this](std::uint32_t i) {
+    const float least = least_length(stored_bounds_);
+    const auto corner = [this, least](std::uint32_t i) {
       std::uint64_t h = 0;
-      for (size_t k = i; k + 1 < mesh_.positions.size(); k += vertices_) {  // at all keys
-        const Point3& p = mesh_.positions[k];
-        h = mix_bits(h ^ std::bit_cast<std::uint32_t>(p.x + 0.0f));
-        h = mix_bits((h << 32 | std::bit_cast<std::uint32_t>(p.y + 0.0f)) + 0x9e3779b97f4a7c15ull);
-        h = mix_bits(h ^ std::bit_cast<std::uint32_t>(p.z + 0.0f));
-      }
+      for (size_t k = i; k + 1 < mesh_.positions.size(); k += vertices_)  // at all keys
+        h = place_hash(h, mesh_.positions[k], least);
       return h;
     };
     std::uint64_t sum = 0;
@@ -140,12 +150,8 @@ ObjectNotes TriangleObject::notes() const {
 std::uint64_t TriangleObject::open_edges() const {
   if (closed()) return 0;
   std::uint64_t open = 0;
-  const auto key = [this](std::uint32_t i) {
-    const Point3& p = mesh_.positions[i];
-    std::uint64_t h = mix_bits(std::bit_cast<std::uint32_t>(p.x + 0.0f));
-    h = mix_bits((h << 32 | std::bit_cast<std::uint32_t>(p.y + 0.0f)) + 0x9e3779b97f4a7c15ull);
-    return mix_bits(h ^ std::bit_cast<std::uint32_t>(p.z + 0.0f));
-  };
+  const float least = least_length(stored_bounds_);
+  const auto key = [this, least](std::uint32_t i) { return place_hash(0, mesh_.positions[i], least); };
   std::vector<std::uint64_t> edges;
   edges.reserve(3 * mesh_.triangles.size());
   for (const auto& t : mesh_.triangles) {
