@@ -204,5 +204,26 @@ TEST(GltfMaterials, StretchedHighlightsTurn) {
   EXPECT_NE(square.import(folder).told().find("whatever their texture says"), std::string::npos);
 }
 
+// KHR_materials_volume: after attenuationDistance white light has attenuationColor.
+TEST(GltfMaterials, WhiteLightHasTheColourAfterTheDistance) {
+  const TemporaryFolder folder;
+  for (const std::array<double, 3>& wanted : {std::array{0.9, 0.4, 0.2}, {0.1, 0.5, 0.9}, {0.5, 0.5, 0.5}}) {
+    Square square;
+    extended(square, "KHR_materials_transmission")["transmissionFactor"] = 1;
+    extended(square, "KHR_materials_volume") = {
+        {"thicknessFactor", 1}, {"attenuationDistance", 0.25}, {"attenuationColor", wanted}};
+    EXPECT_EQ(square.import(folder).told(), "");
+    const Value absorption = get(part(square.object(), "interior"), "absorption");
+    ASSERT_TRUE(absorption.as<Color>());
+    std::vector<float> wavelengths, left;
+    for (float nm = wavelength_low; nm <= wavelength_high; nm += 5) {
+      wavelengths.push_back(nm);
+      left.push_back(std::exp(-0.25f * (*absorption.as<Color>())->at(nm, ColorUse::coefficient)));
+    }
+    const std::array<double, 3> rgb = rgb_of(*table_spectrum(wavelengths, left));
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(rgb[i], wanted[i], 3e-3) << i;
+  }
+}
+
 }  // namespace
 }  // namespace etendue

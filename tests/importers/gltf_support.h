@@ -4,6 +4,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "etendue/describe/color.h"
 #include "mitsuba_support.h"
 
 namespace etendue::gltf_test {
@@ -96,16 +97,20 @@ inline double constant(const Component& of, const std::string& member) {
   const Color* color = value.as<Color>();
   return color ? double((*color)->at(550, ColorUse::coefficient)) : value.as<Number>()->value;
 }
+inline std::array<double, 3> rgb_of(const SpectralFunction& reflectance) {
+  const RgbSpace& space = rgb_space("srgb");
+  const Xyz xyz = to_xyz(reflectance, ColorUse::reflectance, space.illuminant.get());
+  std::array<double, 3> rgb{};
+  for (size_t i = 0; i < 3; ++i)
+    rgb[i] = space.from_xyz[3 * i] * double(xyz.x) + space.from_xyz[3 * i + 1] * double(xyz.y) +
+             space.from_xyz[3 * i + 2] * double(xyz.z);
+  return rgb;
+}
 /// A colour that is the same everywhere, as red, green and blue.
 inline std::array<double, 3> color(const Component& of, const std::string& member) {
   const Value value = get(part(of, member), "value");
   const Color* said = value.as<Color>();
-  if (!said) return {constant(of, member), constant(of, member), constant(of, member)};
-  const Xyz xyz = to_xyz(**said, ColorUse::reflectance, rgb_space("srgb").illuminant.get());
-  const auto& m = rgb_space("srgb").from_xyz;
-  std::array<double, 3> rgb{};
-  for (size_t i = 0; i < 3; ++i) rgb[i] = m[3 * i] * double(xyz.x) + m[3 * i + 1] * double(xyz.y) + m[3 * i + 2] * double(xyz.z);
-  return rgb;
+  return said ? rgb_of(**said) : std::array<double, 3>{constant(of, member), constant(of, member), constant(of, member)};
 }
 /// The class of what a member is.
 inline std::string class_of(const Component& of, const std::string& member) { return part(of, member).class_info().name; }
