@@ -131,7 +131,7 @@ TEST(GltfMaterials, InfiniteIndicesLeaveTheReflectanceToItsColour) {
     extended(square, "KHR_materials_ior")["ior"] = ior;
     extended(square, "KHR_materials_specular")["specularColorFactor"] = {0.04, 0.04, 0.02};
     const Component& plastic = square.shader(folder, told);
-    EXPECT_EQ(told, "");
+    EXPECT_NE(told.find("as coloured at grazing angles"), std::string::npos);
     EXPECT_NEAR(number(plastic, "specular_ior"), 1.5, 2e-3) << ior;
     EXPECT_NEAR(color(plastic, "specular_color")[2], 0.5, 2e-3);
     EXPECT_NEAR(color(plastic, "specular_color")[0], 1, 2e-3);
@@ -143,6 +143,21 @@ TEST(GltfMaterials, InfiniteIndicesLeaveTheReflectanceToItsColour) {
     EXPECT_EQ(constant(gold, "base_metalness"), 1);
     EXPECT_NEAR(color(gold, "base_color")[1], 0.6, 3e-3);
     EXPECT_EQ(constant(gold, "specular_color"), 1);
+  }
+}
+
+// KHR_materials_specular: F0 = F0(ior) specularColor, F90 = 1.
+TEST(GltfMaterials, GreySpecularColoursAreIndices) {
+  const TemporaryFolder folder;
+  for (const double grey : {0.25, 2.0}) {
+    Square square;
+    std::string told;
+    extended(square, "KHR_materials_specular")["specularColorFactor"] = {grey, grey, grey};
+    const Component& shader = square.shader(folder, told);
+    EXPECT_EQ(told, "");
+    const double n = number(shader, "specular_ior");
+    EXPECT_NEAR(std::pow((n - 1) / (n + 1), 2), 0.04 * grey, 1e-6);
+    EXPECT_NEAR(color(shader, "specular_color")[1], 1, 1e-3);
   }
 }
 
@@ -197,6 +212,7 @@ TEST(GltfMaterials, StretchedHighlightsTurn) {
   const TemporaryFolder folder;
   Square square;
   std::string told;
+  square.material()["pbrMetallicRoughness"]["roughnessFactor"] = 0.3;
   extended(square, "KHR_materials_anisotropy") = {{"anisotropyStrength", 0.5}, {"anisotropyRotation", 1.5707963267948966}};
   EXPECT_NEAR(constant(square.shader(folder, told), "geometry_tangent_rotation"), 0.25, 1e-6);
   EXPECT_EQ(told, "");

@@ -11,8 +11,9 @@ namespace gltf {
 namespace {
 
 /// Extensions that are read, or whose absence changes nothing that is shown, those of materials aside.
-constexpr const char* known_extensions[] = {"KHR_texture_transform", "KHR_lights_punctual", "KHR_mesh_quantization",
-                                            "EXT_mesh_gpu_instancing", "EXT_texture_webp",  "KHR_materials_variants", "KHR_node_visibility"};
+constexpr const char* known_extensions[] = {"KHR_texture_transform",   "KHR_lights_punctual", "KHR_mesh_quantization",
+                                            "EXT_mesh_gpu_instancing", "EXT_texture_webp",    "KHR_materials_variants",
+                                            "KHR_node_visibility"};
 
 void check_extensions(Importing& importing, const Document& document) {
   const auto known = [](const std::string& name) {

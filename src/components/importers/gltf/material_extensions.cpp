@@ -17,6 +17,7 @@ double reflectance_of(double ior) { return ior == 0 ? 1 : std::pow((ior - 1) / (
 
 void Materials::read_extensions(const Json& extensions, Surface& s) {
   const auto named = [&](const char* name) -> const Json& { return object_in(extensions, name); };
+  read_volume(extensions, s);
   s.ior = gltf::number(named("KHR_materials_ior"), "ior", s.ior);
   const double refracting = s.ior;
   if (!find(extensions, "KHR_materials_pbrSpecularGlossiness")) read_specular(named("KHR_materials_specular"), s);
@@ -60,9 +61,13 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
                          at());
     s.anisotropy_rotation = gltf::number(e, "anisotropyRotation", 0) / (2 * std::numbers::pi);
     if (find(e, "anisotropyTexture") && strength != 0)
-      importing_.inexact("stretched highlights lie in one direction and are as long everywhere, whatever their texture says", at());
+      importing_.inexact("stretched highlights lie in one direction and are as long everywhere, whatever their texture says",
+                         at());
   }
-  read_volume(extensions, s);
+  const auto [least, most] = std::ranges::minmax(s.specular_color.value);
+  if ((s.specular_color.texture || least < 0.95 * most) && (s.metalness.value < 1 || s.metalness.texture))
+    importing_.inexact("coloured reflections are as coloured at grazing angles, where KHR_materials_specular has them white",
+                       at());
   if (!s.thin && s.transmission.value > 0 && s.ior != refracting)
     importing_.inexact("light is refracted by the index that its reflection has, which KHR_materials_specular raises", at());
 }
@@ -75,9 +80,11 @@ void Materials::read_specular(const Json& e, Surface& s) {
   }
   s.specular = number(e, "specularFactor", 1, "specularTexture", "A");
   s.specular_color = color(e, "specularColorFactor", "specularColorTexture", 1);
-  // What reflects more than its index says has another one.
+  // What reflects more or less than its index says has another one: F90 stays 1. Where light is refracted it is the tint that
+  // makes it less.
   const double most = std::ranges::max(s.specular_color.value);
-  if (most > 1 || s.ior == 0 || s.ior > highest_ior) {
+  const bool refracts = s.transmission.value > 0 && !s.thin;
+  if (most > 1 || (most < 1 && !refracts) || s.ior == 0 || s.ior > highest_ior) {
     const double f0 = reflectance_of(s.ior);
     SurfaceColor reflected = s.specular_color;
     for (double& x : reflected.value) x = std::min(x * f0, 1.0);
@@ -121,7 +128,8 @@ void Materials::keep_metal(Surface& s) {
   s.specular.offset = weight;
   if (s.metalness.texture) return;
   s.specular = weight + s.specular.value;
-  importing_.inexact("of a mixture of metal and what is not metal both reflect as much less as KHR_materials_specular says", at());
+  importing_.inexact("of a mixture of metal and what is not metal both reflect as much less as KHR_materials_specular says",
+                     at());
 }
 
 void Materials::read_volume(const Json& extensions, Surface& s) {

@@ -64,15 +64,15 @@ struct Surface {
   double anisotropy_rotation = 0;  ///< from u, counter-clockwise [turns]
   SurfaceNumber transmission = 0;
   SurfaceColor transmission_color = 1.0;
-  bool thin = true;                     ///< of what transmits: a sheet without an inside
-  SurfaceNumber translucence = 0;       ///< fraction of the matt body that sends light to the other side
+  bool thin = true;                ///< of what transmits: a sheet without an inside
+  SurfaceNumber translucence = 0;  ///< fraction of the matt body that sends light to the other side
   SurfaceColor translucent_color = 1.0;
   std::array<double, 3> attenuation_color{1, 1, 1};
   double attenuation_distance = std::numeric_limits<double>::infinity();  ///< at which so much is left of white light [m]
   double abbe_number = 0;                                                 ///< 0: no dispersion
   SurfaceNumber coat = 0, coat_roughness = 0;
-  SurfaceColor sheen_color = 0.0;     ///< the strongest of its numbers is also what it takes from below
-  SurfaceNumber sheen_roughness = 0;  ///< exponent 1 / r of its fibres' distribution (Estevez & Kulla 2017)
+  SurfaceColor sheen_color = 0.0;                ///< the strongest of its numbers is also what it takes from below
+  SurfaceNumber sheen_roughness = 0;             ///< exponent 1 / r of its fibres' distribution (Estevez & Kulla 2017)
   SurfaceNumber film = 0, film_thickness = 400;  ///< [nm]
   double film_ior = 1.3;
   SurfaceColor emission = 0.0;
