@@ -186,6 +186,7 @@ TEST(GltfExport, KeepsThePartsOfPrincipledOrSaysSo) {
   const Exported kept = export_job(
       folder,
       job("Box { shader: Principled { base_color: 0.5, base_weight: 0.5, geometry_opacity: 0.25, fuzz_weight: 0.5, "
+          "fuzz_roughness: 0.25, "
           "thin_film_weight: 0.5 } }, Sphere { shader: Principled { transmission_weight: 1, transmission_color: 0.125 } }"),
       "out.gltf");
   const std::string back = write_description(*kept.back.job);
@@ -195,7 +196,7 @@ TEST(GltfExport, KeepsThePartsOfPrincipledOrSaysSo) {
   };
   EXPECT_NEAR(after(" base_color: rgb("), 0.25, 1e-3) << back;
   EXPECT_NEAR(after("fuzz_weight: "), 0.5, 1e-3) << back;
-  EXPECT_NEAR(after("fuzz_roughness: "), 0.5, 1e-3) << back;
+  EXPECT_NEAR(after("fuzz_roughness: "), 0.25, 1e-3) << back;
   EXPECT_NEAR(after("transmission_color: rgb("), 0.125, 1e-3) << back;
   EXPECT_EQ(after(" opacity: "), 0.25) << back;
   EXPECT_EQ(after("thin_film_weight: "), 0.5) << back;
