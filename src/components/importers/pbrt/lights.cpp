@@ -144,17 +144,6 @@ void projection(Reader& reader, const Parameters& p) {
   add_light(reader, placed(reader, "Point", p, Transform::rotate(pi, {0, 0, 1})), emission, p.at);
 }
 
-/// Whether the image of a light has other colours than greys; those that cannot be read are told elsewhere.
-bool colored(const FilePath& file) {
-  try {
-    const LinearImage image = read_linear_image(file.resolved(), automatic_transfer);
-    for (size_t i = 0; i + 2 < image.rgb.size(); i += 3)
-      if (image.rgb[i] != image.rgb[i + 1] || image.rgb[i] != image.rgb[i + 2]) return true;
-  } catch (const Error&) {
-  }
-  return false;
-}
-
 // v4's image is a square of equal areas whose middle is +y, with x to the right and z downwards, of texels without anything
 // between; only the mean of its channels counts. v3's is in longitude, from +x over +z, and latitude, from +y.
 void goniometric(Reader& reader, const Parameters& p) {

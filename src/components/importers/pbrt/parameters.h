@@ -37,7 +37,7 @@ class Parameters {
   const RgbSpace* space = nullptr;  ///< of its "rgb" numbers
   std::vector<Parameter> own;
   std::vector<std::pair<std::string, Location>> overridden;  ///< which were given again, with another value
-  std::shared_ptr<const std::vector<Parameter>> defaults;  ///< from v4's Attribute directive
+  std::shared_ptr<const std::vector<Parameter>> defaults;    ///< from v4's Attribute directive
 
   /// By name; it counts as used then. Null: there is none.
   const Parameter* find(std::string_view name) const;

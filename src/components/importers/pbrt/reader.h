@@ -169,6 +169,12 @@ std::optional<FilePath> image_file(Reader&, const Parameters&, std::string_view 
 Ref<Component> shader_of(Reader&, size_t material, Location used_at);
 Ref<Component> shader_named(Reader&, const std::string& name, Location used_at);
 /// Null: it is none of v4's, or none of v3's materials.
+// image_textures.cpp
+/// The texture "imagemap", as it lies on the unit square.
+Ref<Component> image_texture(Reader&, const Parameters&, bool spectrum);
+/// Whether an image has other colours than greys; one that cannot be read is told elsewhere.
+bool colored(const FilePath&);
+
 Ref<Component> make_v4_shader(Reader&, const Material&);
 Ref<Component> make_v3_shader(Reader&, const Material&);
 /// Sets the roughness of a microfacet shader by GGX's alpha from pbrt's parameters.
