@@ -96,8 +96,14 @@ Ref<Component> hair(Reader& reader, const Parameters& p) {
   }
   set_map(*shader, "longitudinal_roughness", number_map(reader, p, {"beta_m"}, 0.3), at);
   set_map(*shader, "azimuthal_roughness", number_map(reader, p, {"beta_n"}, 0.3), at);
-  set_member(*shader, "tilt", p.number("alpha", 2), at);
-  set_member(*shader, "ior", p.number("eta", 1.55), at);
+  const auto everywhere = [&](const char* name, double otherwise) {
+    const Value value = number_map(reader, p, {name}, otherwise);
+    if (const Number* n = value.as<Number>()) return n->value;
+    reader.importing.inexact(fmt::format("a hair's '{}' that a texture says is {} here", name, otherwise), p.place(name));
+    return otherwise;
+  };
+  set_member(*shader, "tilt", everywhere("alpha", 2), at);
+  set_member(*shader, "ior", everywhere("eta", 1.55), at);
   return shader;
 }
 
