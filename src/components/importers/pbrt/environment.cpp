@@ -99,7 +99,7 @@ void make_environment(Reader& reader, const Parameters& p) {
   const Ref<Component> object = reader.make("Environment", at);
   set_member(*object, "transform", directions_only(reader, to_light(!v3), at), at);
   set_emission(*object, emission, at);
-  reader.add(object);
+  reader.add_light(object);
 }
 
 }  // namespace etendue::pbrt

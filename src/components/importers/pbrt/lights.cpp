@@ -64,7 +64,7 @@ Ref<Component> placed(Reader& reader, const char* class_name, const Parameters& 
 
 void add_light(Reader& reader, const Ref<Component>& object, const Ref<Component>& emission, Location at) {
   set_emission(*object, emission, at);
-  reader.add(object);
+  reader.add_light(object);
 }
 
 void point(Reader& reader, const Parameters& p) {

@@ -68,7 +68,7 @@ Ref<Component> plastic(Reader& reader, const Parameters& p, Value kd, Value ks, 
 
 Ref<Component> glass(Reader& reader, const Parameters& p) {
   const Ref<Component> shader = reader.make("Dielectric", p.at);
-  set_map(*shader, "ior", index_of(reader, p, {"eta", "index"}, 1.5), p.at);
+  set_index(reader, *shader, index_of(reader, p, {"eta", "index"}, 1.5), p.at);
   set_roughness(reader, *shader, p, 0, true);
   if (p.has("Kr")) set_map(*shader, "reflection_tint", color_map(reader, p, {"Kr"}, 1, Use::reflectance), p.at);
   if (p.has("Kt")) set_map(*shader, "transmission_tint", color_map(reader, p, {"Kt"}, 1, Use::reflectance), p.at);
