@@ -126,6 +126,16 @@ TEST(PbrtMaterial, DiffuseAndPlastic) {
               0.4 + 0.5 * 0.04, 0.01);
 }
 
+// v3's plastic takes the Fresnel reflectance of light from within: beyond asin(1 / 1.5), which is 42 degrees, all is reflected.
+TEST(PbrtMaterial, PlasticIsSeenFromWithin) {
+  EXPECT_NEAR(seen(import_text(v3("LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"plastic\" \"rgb Kd\" [0.4 0.4 0.4] "
+                                  "\"rgb Ks\" [0.5 0.5 0.5] \"float roughness\" 0.01 \"bool remaproughness\" "
+                                  "\"false\"\nTranslate 0 0 5 Rotate 60 1 0 0 Shape \"disk\" \"float radius\" 50\n")),
+                   4096)
+                  .y,
+              0.9, 0.01);
+}
+
 TEST(PbrtCamera, RightIsPlusXAndTheFieldOfViewIsOfTheShorterSide) {
   // A light at x = 1 of a picture of 2 x 1 pixels that sees from -2 to 2: the right pixel.
   const std::string text =

@@ -1,5 +1,6 @@
 // Where the directions of environment maps lie.
 
+#include "etendue/describe/color.h"
 #include "pbrt_support.h"
 #include "support/image_file.h"
 
@@ -57,6 +58,37 @@ TEST(PbrtEnvironment, LongitudeAndLatitudeOfVersion3) {
     EXPECT_NEAR(red, u, 0.02) << u << " " << v;
     EXPECT_NEAR(green, v, 0.02) << u << " " << v;
   }
+}
+
+/// A matt floor of reflectance 0.5 that faces +z, seen from above: E / (2 pi).
+double floor_under(const TemporaryFolder& folder, const std::string& light) {
+  return seen(import_text(folder,
+                          "LookAt 0 0 5 0 0 0 0 1 0\n" + v4("LightSource \"infinite\" " + light +
+                                                            "\nMaterial \"diffuse\" Shape \"disk\" \"float radius\" 50")),
+              16384)
+      .y;
+}
+
+// Of a constant light pbrt makes the illuminance that is asked for, of an image twice as much: it weighs texels by 2 pi.
+TEST(PbrtEnvironment, Illuminance) {
+  const TemporaryFolder folder;
+  test::write_image(folder / "map.exr", {size, size, 3, NumberType::single}, std::vector<float>(size * size * 3, 0.5f));
+  EXPECT_NEAR(floor_under(folder, "\"float illuminance\" 5"), 5 / (2 * M_PI), 0.02);
+  EXPECT_NEAR(floor_under(folder, "\"string filename\" \"map.exr\" \"float illuminance\" 5"), 10 / (2 * M_PI), 0.03);
+}
+
+// The light of a portal without an image is not divided by its luminance: a black body's highest value is 1.
+TEST(PbrtEnvironment, LightOfPortals) {
+  const TemporaryFolder folder;
+  const std::string light = "\"blackbody L\" 3000 ";
+  const auto planck = [](double nm) { return 1 / (std::pow(nm, 5) * (std::exp(1.438777e7 / (nm * 3000)) - 1)); };
+  double sum = 0, weights = 0;
+  for (int nm = 360; nm <= 830; ++nm) {
+    sum += double(observer(float(nm)).y) * planck(nm) / planck(2.8977721e6 / 3000);
+    weights += double(observer(float(nm)).y);
+  }
+  EXPECT_NEAR(floor_under(folder, light), 0.5, 0.01);
+  EXPECT_NEAR(floor_under(folder, light + "\"point3 portal\" [-9 -9 9 9 -9 9 9 9 9 -9 9 9]"), 0.5 * sum / weights, 0.01);
 }
 
 }  // namespace

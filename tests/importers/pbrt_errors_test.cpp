@@ -43,6 +43,14 @@ TEST(PbrtErrors, AllAreTold) {
   EXPECT_EQ(i.errors.size(), 3u) << i.told();
 }
 
+// pbrt looks for a parameter from the last one given backwards.
+TEST(PbrtErrors, TheLastOfTwoParametersCounts) {
+  const Imported i = import_text("Film \"rgb\"\nWorldBegin\nShape \"sphere\" \"float radius\" 2\n\"float radius\" 3\n");
+  ASSERT_TRUE(i.job) << i.told();
+  EXPECT_EQ(number(object(i, 0), "radius"), 3);
+  EXPECT_EQ(i.told(), "3:16: the parameter 'radius' of Shape \"sphere\" is given again: the last one counts, as in pbrt\n");
+}
+
 TEST(PbrtErrors, MeshesOfImpossibleIndices) {
   const auto mesh = [](const std::string& indices) {
     return "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [" + indices + "]\n";

@@ -91,6 +91,37 @@ TEST(PbrtMedium, ShinesByTemperature) {
             std::string::npos);
 }
 
+// v4 sorts the corners of a box, v3 mirrors what lies between them.
+TEST(PbrtMedium, CornersOfBoxes) {
+  const auto placed = [](bool v4_file) {
+    const std::string text =
+        std::string("MakeNamedMedium \"m\" \"string type\" \"") + (v4_file ? "uniformgrid" : "heterogeneous") +
+        "\" \"float density\" [1 2] \"integer nx\" 2 \"point p0\" [1 0 0] \"point p1\" [-1 1 1]\nMediumInterface \"m\" \"\" "
+        "Shape \"sphere\"\n";
+    const Imported i = import_text(v4_file ? v4(text) : v3(text));
+    if (!i.job) ADD_FAILURE() << i.told();
+    const Value placement = get(part(object(i, 0), "interior"), "placement");
+    const Transform* still = placement.as<Transform>();
+    return (still ? *still : placement.as<AnimatedTransform>()->still())(DoublePoint3{0.25, 0, 0}).x;
+  };
+  EXPECT_NEAR(placed(true), -0.5, 1e-6);
+  EXPECT_NEAR(placed(false), 0.5, 1e-6);
+}
+
+// What a homogeneous medium is when nothing is said, and by its name.
+TEST(PbrtMedium, DefaultsAndPresets) {
+  const auto absorbs = [](bool v4_file, const std::string& text) {
+    const std::string world =
+        "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" " + text + "\nMediumInterface \"m\" \"\" Shape \"sphere\"\n";
+    return number(part(object(import_text(v4_file ? v4(world) : v3(world)), 0), "interior"), "absorption");
+  };
+  EXPECT_NEAR(absorbs(true, ""), 1, 1e-6);
+  EXPECT_NEAR(absorbs(false, ""), 0.0024, 5e-4);  // green, at 550 nm
+  EXPECT_NEAR(absorbs(true, "\"string preset\" \"Lowfat Milk\""), 0.00575, 2e-3);
+  EXPECT_NEAR(absorbs(true, "\"string preset\" \"Espresso\" \"spectrum sigma_a\" [300 2 900 2]"), 6.6, 0.4);
+  EXPECT_NEAR(absorbs(false, "\"string preset\" \"Espresso\" \"spectrum sigma_a\" [300 2 900 2]"), 2, 1e-4);
+}
+
 // Below its foot, in -y of the coordinates of its directive, a cloud is solid; only within its box.
 TEST(PbrtMedium, CloudsAreSolidBelow) {
   const auto through = [](const char* place) {

@@ -82,6 +82,7 @@ inline double number(const Component& of, const std::string& member) {
   const Value value = get(of, member);
   const Number* found = value.as<Number>();
   if (found) return found->value;
+  if (const Color* color = value.as<Color>(); color && *color) return double((*color)->at(550, ColorUse::coefficient));
   // A map that is a number.
   const Ref<Component>* map = value.as<Ref<Component>>();
   if (!map || !*map) return -1e30;

@@ -71,8 +71,20 @@ std::string Writer::roughness_of(const Component& shader, const std::string& pre
 }
 
 std::string Writer::index_of(const Component& shader, const std::string& name) {
-  const Color c = color_of(shader, "ior");
+  Color c = color_of(shader, "ior");
   if (!c) return fmt::format(" \"float {}\" {}", name, number_of(shader, "ior"));
+  // pbrt's is that of one side against the other.
+  const Color outside = shader.class_info().find("exterior") ? color_of(shader, "exterior") : nullptr;
+  if (outside && outside->varies()) {
+    std::vector<float> wavelengths, quotients;
+    for (int nm = 360; nm <= 830; nm += 5) {
+      wavelengths.push_back(float(nm));
+      quotients.push_back(c->at(float(nm), ColorUse::coefficient) / outside->at(float(nm), ColorUse::coefficient));
+    }
+    c = table_spectrum(wavelengths, quotients);
+  } else if (outside) {
+    c = scaled_spectrum(1 / double(outside->at(550, ColorUse::coefficient)), c);
+  }
   if (!c->varies()) return fmt::format(" \"float {}\" {}", name, c->at(550, ColorUse::coefficient));
   return spectrum(name.c_str(), c, ColorUse::coefficient);
 }

@@ -73,7 +73,9 @@ void Directives::read(std::string_view text) {
   r.materials[0].parameters.at = r.importing.at();
   while (!sources_.empty() && errors_.size() < most_errors) step();
   if (errors_.empty() && !world_) errors_.emplace_back("there is no WorldBegin: the file holds no scene", r.importing.at());
-  if (errors_.empty() && !kept_.empty())
+  if (errors_.empty() && !kept_.empty() && r.version == 3)
+    r.importing.inexact(fmt::format("this {}Begin has no end", kept_.back().what), kept_.back().at);
+  else if (errors_.empty() && !kept_.empty())
     errors_.emplace_back(fmt::format("this {}Begin has no end", kept_.back().what), kept_.back().at);
   if (!errors_.empty()) throw Errors(std::move(errors_));
 }

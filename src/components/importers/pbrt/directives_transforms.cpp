@@ -72,8 +72,11 @@ void Directives::coordinate_system() { named_systems_[text()] = r.state.ctm; }
 void Directives::coordinate_system_transform() {
   const std::string name = text();
   const auto found = named_systems_.find(name);
-  if (found == named_systems_.end()) throw Error(fmt::format("there is no coordinate system '{}'", name), at_);
-  put(found->second);
+  if (found != named_systems_.end())
+    put(found->second);
+  else
+    r.importing.inexact(fmt::format("there is no coordinate system '{}': the transform stays what it is, as in pbrt", name),
+                        at_);
 }
 
 void Directives::transform_times() {

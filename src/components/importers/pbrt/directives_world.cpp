@@ -11,6 +11,7 @@ void Directives::material() {
   r.state.material = r.materials.size();
   r.state.named_material.clear();
   r.materials.push_back(std::move(m));
+  if (r.version == 3) make_with_present_textures(r, r.state.material);
 }
 
 void Directives::make_named_material() {
@@ -19,8 +20,9 @@ void Directives::make_named_material() {
   m.parameters = parameters(m.name, 2);
   m.type = m.parameters.text("type");
   if (m.type.empty()) throw Error(fmt::format("the material '{}' needs its \"string type\"", m.name), at_);
-  r.named_materials[m.name] = r.materials.size();
+  const size_t index = r.named_materials[m.name] = r.materials.size();
   r.materials.push_back(std::move(m));
+  if (r.version == 3) make_with_present_textures(r, index);
 }
 
 void Directives::named_material() {
@@ -47,10 +49,6 @@ void Directives::light_source() {
   need_world();
   const std::string type = text();
   Parameters p = parameters(type, 1);
-  if (r.in_object()) {
-    r.importing.inexact("an object that is instanced cannot hold lights, in pbrt as here: this one is left out", at_);
-    return;
-  }
   make_light(r, type, std::move(p));
 }
 

@@ -72,12 +72,14 @@ void make_environment(Reader& reader, const Parameters& p) {
     set_member(*emission, "file", *file, p.place(name));
     if (!v3) set_member(*emission, "layout", "equal_area", at);
     set_member(*emission, "scale", image_scale(reader, p), at);
-    // The scale counts beside an illuminance too.
-    if (lux > 0) set_member(*emission, "illuminance", lux * luminous_unit * image_scale(reader, p), at);
+    // The scale counts beside an illuminance too. pbrt adds up texels as if all of them were 2 pi instead of 4 pi, and gets
+    // twice the illuminance that is asked for.
+    if (lux > 0) set_member(*emission, "illuminance", 2 * lux * luminous_unit * image_scale(reader, p), at);
   } else {
     const Parameter* given = p.find("L");
-    const Color color =
-        given ? spectrum_of(reader, p, *given, Use::light) : rgb_color(p.space ? p.space->name : "srgb", 1, 1, 1);
+    // What shines through a portal is an image of one texel, whose light is not divided by its luminance.
+    const Color color = given ? spectrum_of(reader, p, *given, p.has("portal") ? Use::coefficient : Use::light)
+                              : rgb_color(p.space ? p.space->name : "srgb", 1, 1, 1);
     const Parameter* s = p.find("scale");
     double scale = reader.exposure;
     if (s && s->is("float"))
@@ -97,7 +99,7 @@ void make_environment(Reader& reader, const Parameters& p) {
   const Ref<Component> object = reader.make("Environment", at);
   set_member(*object, "transform", directions_only(reader, to_light(!v3), at), at);
   set_emission(*object, emission, at);
-  reader.add(object);
+  reader.add_light(object);
 }
 
 }  // namespace etendue::pbrt

@@ -19,7 +19,8 @@ int samples(Reader& reader) {
     p.ignore({"jitter"});
     return int(std::clamp(count, 1.0, 1073741824.0));
   }
-  return std::clamp(p.integer("pixelsamples", 16), 1, 1073741824);
+  const int otherwise = type == "independent" || type == "random" ? 4 : 16;
+  return std::clamp(p.integer("pixelsamples", otherwise), 1, 1073741824);
 }
 
 Ref<Component> sampler(Reader& reader) {

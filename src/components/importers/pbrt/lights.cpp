@@ -64,7 +64,7 @@ Ref<Component> placed(Reader& reader, const char* class_name, const Parameters& 
 
 void add_light(Reader& reader, const Ref<Component>& object, const Ref<Component>& emission, Location at) {
   set_emission(*object, emission, at);
-  reader.add(object);
+  reader.add_light(object);
 }
 
 void point(Reader& reader, const Parameters& p) {
@@ -142,17 +142,6 @@ void projection(Reader& reader, const Parameters& p) {
   if (reader.version == 4)
     reader.importing.inexact("a projected image is smooth between the middles of its texels, which are squares in pbrt", p.at);
   add_light(reader, placed(reader, "Point", p, Transform::rotate(pi, {0, 0, 1})), emission, p.at);
-}
-
-/// Whether the image of a light has other colours than greys; those that cannot be read are told elsewhere.
-bool colored(const FilePath& file) {
-  try {
-    const LinearImage image = read_linear_image(file.resolved(), automatic_transfer);
-    for (size_t i = 0; i + 2 < image.rgb.size(); i += 3)
-      if (image.rgb[i] != image.rgb[i + 1] || image.rgb[i] != image.rgb[i + 2]) return true;
-  } catch (const Error&) {
-  }
-  return false;
 }
 
 // v4's image is a square of equal areas whose middle is +y, with x to the right and z downwards, of texels without anything

@@ -56,9 +56,13 @@ Ref<Component> with_relief(Reader& reader, const Parameters& p, Ref<Component> s
   if (const Parameter* bump = p.first_of({"displacement", "bumpmap"})) {
     const Ref<Component> outer = reader.make("BumpShader", p.at);
     set_member(*outer, "shader", shader, p.at);
-    set_map(*outer, "height", number_map(reader, p, {bump->name}, 0), p.at);
+    Value height = number_map(reader, p, {bump->name}, 0);
+    if (reader.turned) height = Value(formula(reader, p.at, "-h", {{"h", height}}), p.at);
+    set_map(*outer, "height", height, p.at);
     shader = outer;
   }
+  if (p.has("normalmap") && reader.turned)
+    reader.importing.inexact("a normal map on a shape whose orientation is reversed tilts the other way along u", p.at);
   if (p.has("normalmap"))
     if (const auto file = image_file(reader, p, "normalmap")) {
       const Ref<Component> outer = reader.make("NormalMapShader", p.at);
@@ -82,7 +86,26 @@ class Deeper {
   int& level_;
 };
 
+/// Says that a material is being made, as long as it lives.
+class Making {
+ public:
+  explicit Making(bool& making) : making_(making) { making_ = true; }
+  ~Making() { making_ = false; }
+  Making(const Making&) = delete;
+  Making& operator=(const Making&) = delete;
+
+ private:
+  bool& making_;
+};
+
 }  // namespace
+
+// pbrt's index is that of one side against the other, whatever the path came through: boundaries between glass and water have
+// their quotient.
+void set_index(const Reader& reader, Component& dielectric, const Value& eta, Location at) {
+  set_map(dielectric, reader.turned ? "exterior" : "ior", eta, at);
+  set_member(dielectric, reader.turned ? "ior" : "exterior", 1, at);
+}
 
 double v3_alpha(double roughness) {
   const double x = std::log(std::max(roughness, 1e-3));
@@ -112,13 +135,28 @@ std::vector<std::string> material_names() {
   return all;
 }
 
+/// Whether the material is another one when its front is its back.
+bool has_front(const Reader& reader, const Material& m, int depth) {
+  for (const char* relief : {"displacement", "bumpmap", "normalmap"})
+    if (std::ranges::count(m.parameters.own, relief, &Parameter::name)) return true;
+  for (const char* type : {"dielectric", "glass", "subsurface", "kdsubsurface"})
+    if (m.type == type) return true;
+  if (m.type != "mix" || depth > Reader::most_nested) return false;
+  for (const Parameter& p : m.parameters.own)
+    for (const std::string& name : p.strings)
+      if (const auto part = reader.named_materials.find(name); part != reader.named_materials.end())
+        if (has_front(reader, reader.materials[part->second], depth + 1)) return true;
+  return false;
+}
+
 Ref<Component> shader_of(Reader& reader, size_t index, Location used_at) {
   Material& m = reader.materials[index];
-  if (m.shader) return m.shader;
+  Ref<Component>& made = m.shaders[reader.turned ? 1 : 0];
+  if (made) return made;
   if (m.making) throw Error(fmt::format("the material '{}' is a mixture of itself", m.name), used_at);
   if (reader.mixing >= Reader::most_nested)
     throw Error(fmt::format("mixtures of mixtures nest more than {} deep", Reader::most_nested), m.parameters.at);
-  m.making = true;
+  const Making making(m.making);
   const Deeper deeper(reader.mixing);
   Ref<Component> shader = m.type == "mix" ? mix(reader, m) : make_v4_shader(reader, m);
   if (!shader) shader = make_v3_shader(reader, m);
@@ -127,8 +165,15 @@ Ref<Component> shader_of(Reader& reader, size_t index, Location used_at) {
   shader = with_relief(reader, m.parameters, shader);
   if (shader->origin) shader->origin->name = m.name;
   m.parameters.tell_unused(reader.importing);
-  m.shader = shader;
+  made = shader;
   return shader;
+}
+
+void make_with_present_textures(Reader& reader, size_t material) {
+  try {
+    shader_of(reader, material, reader.materials[material].parameters.at);
+  } catch (const Error&) {  // told when it is used, or at the end
+  }
 }
 
 Ref<Component> shader_named(Reader& reader, const std::string& name, Location used_at) {

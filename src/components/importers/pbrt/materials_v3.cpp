@@ -27,7 +27,8 @@ Value divided(Reader& reader, Value v, double by, Location at) {
 /// pbrt's sum of a matt surface and a dielectric's highlight, Kd / pi + Ks F D G / (4 cos cos). A mixture of both in which
 /// each has its colour divided by its share is the same sum, and can be made where the two together are at most 1; beyond,
 /// pbrt's surface may give back more light than it gets, and a coated one stands for it.
-Ref<Component> plastic(Reader& reader, const Parameters& p, Value kd, Value ks, double eta) {
+/// `seen` is the index that pbrt computes the highlight with.
+Ref<Component> plastic(Reader& reader, const Parameters& p, Value kd, Value ks, double eta, double seen) {
   const Location at = p.at;
   const double d = largest(kd), s = largest(ks);
   if (s == 0) {
@@ -52,7 +53,7 @@ Ref<Component> plastic(Reader& reader, const Parameters& p, Value kd, Value ks, 
   }
   const double share = d == 0 ? 0 : d / (d + s);
   const Ref<Component> gloss = reader.make("Conductor", at);
-  set_member(*gloss, "ior", complex_index(flat_spectrum(float(eta)), flat_spectrum(0)), at);
+  set_member(*gloss, "ior", complex_index(flat_spectrum(float(seen)), flat_spectrum(0)), at);
   set_roughness(reader, *gloss, p, 0.1, true);
   set_map(*gloss, "color", divided(reader, ks, 1 - share, at), at);
   if (share == 0) return gloss;
@@ -67,7 +68,7 @@ Ref<Component> plastic(Reader& reader, const Parameters& p, Value kd, Value ks, 
 
 Ref<Component> glass(Reader& reader, const Parameters& p) {
   const Ref<Component> shader = reader.make("Dielectric", p.at);
-  set_map(*shader, "ior", index_of(reader, p, {"eta", "index"}, 1.5), p.at);
+  set_index(reader, *shader, index_of(reader, p, {"eta", "index"}, 1.5), p.at);
   set_roughness(reader, *shader, p, 0, true);
   if (p.has("Kr")) set_map(*shader, "reflection_tint", color_map(reader, p, {"Kr"}, 1, Use::reflectance), p.at);
   if (p.has("Kt")) set_map(*shader, "transmission_tint", color_map(reader, p, {"Kt"}, 1, Use::reflectance), p.at);
@@ -78,8 +79,9 @@ Ref<Component> uber(Reader& reader, const Parameters& p) {
   const Location at = p.at;
   const Value eta = index_of(reader, p, {"eta", "index"}, 1.5);
   const Number* n = eta.as<Number>();
+  const double index = n ? n->value : 1.5;
   Ref<Component> shader = plastic(reader, p, color_map(reader, p, {"Kd"}, 0.25, Use::reflectance),
-                                  color_map(reader, p, {"Ks"}, 0.25, Use::reflectance), n ? n->value : 1.5);
+                                  color_map(reader, p, {"Ks"}, 0.25, Use::reflectance), index, index);
   for (const char* name : {"Kr", "Kt"}) {
     if (!p.has(name)) continue;
     const Value amount = color_map(reader, p, {name}, 0, Use::reflectance);
@@ -198,9 +200,12 @@ Ref<Component> make_v3_shader(Reader& reader, const Material& m) {
     set_map(*shader, "color", color_map(reader, p, {"Kr"}, 0.9, Use::reflectance), at);
     return shader;
   }
-  if (type == "plastic")
+  if (type == "plastic") {
+    // Its highlight is that of light from within, from 1.5 to 1: all of it beyond asin(1 / 1.5).
+    constexpr double index = 1.5;
     return plastic(reader, p, color_map(reader, p, {"Kd"}, 0.25, Use::reflectance),
-                   color_map(reader, p, {"Ks"}, 0.25, Use::reflectance), 1.5);
+                   color_map(reader, p, {"Ks"}, 0.25, Use::reflectance), index, 1 / index);
+  }
   if (type == "uber") return uber(reader, p);
   if (type == "glass") return glass(reader, p);
   if (type == "metal") {

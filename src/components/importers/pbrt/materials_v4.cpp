@@ -48,7 +48,7 @@ void set_layer(Reader& reader, Component& shader, const Parameters& p) {
 Ref<Component> dielectric(Reader& reader, const Parameters& p, const std::string& prefix = {}) {
   const Ref<Component> shader = reader.make("Dielectric", p.at);
   const std::string eta = prefix + "eta";
-  set_map(*shader, "ior", index_of(reader, p, {eta}, 1.5), p.at);
+  set_index(reader, *shader, index_of(reader, p, {eta}, 1.5), p.at);
   set_roughness(reader, *shader, p, 0, false, prefix);
   return shader;
 }
@@ -96,8 +96,14 @@ Ref<Component> hair(Reader& reader, const Parameters& p) {
   }
   set_map(*shader, "longitudinal_roughness", number_map(reader, p, {"beta_m"}, 0.3), at);
   set_map(*shader, "azimuthal_roughness", number_map(reader, p, {"beta_n"}, 0.3), at);
-  set_member(*shader, "tilt", p.number("alpha", 2), at);
-  set_member(*shader, "ior", p.number("eta", 1.55), at);
+  const auto everywhere = [&](const char* name, double otherwise) {
+    const Value value = number_map(reader, p, {name}, otherwise);
+    if (const Number* n = value.as<Number>()) return n->value;
+    reader.importing.inexact(fmt::format("a hair's '{}' that a texture says is {} here", name, otherwise), p.place(name));
+    return otherwise;
+  };
+  set_member(*shader, "tilt", everywhere("alpha", 2), at);
+  set_member(*shader, "ior", everywhere("eta", 1.55), at);
   return shader;
 }
 
@@ -147,6 +153,8 @@ Ref<Component> subsurface(Reader& reader, const Parameters& p, bool kd) {
     set_member(*shader, "mean_free_path", table([&](float nm) { return 1 / std::max(scale * double(extinction(nm)), 1e-9); }),
                at);
   }
+  if (reader.turned)
+    reader.importing.inexact("a subsurface material is inside of its shape, also where its orientation is reversed", at);
   reader.importing.inexact("a subsurface material is a diffusion profile here, by its colour and mean free path", at);
   set_map(*shader, "ior", index_of(reader, p, {"eta"}, 1.33), at);
   if (p.has("roughness") || p.has("uroughness") || p.has("vroughness"))

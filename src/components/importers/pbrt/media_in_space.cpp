@@ -16,10 +16,13 @@ struct Grid {
   DoublePoint3 p0, p1;
 
   /// Reads what says how a grid lies.
-  Grid(const Parameters& p)
+  Grid(const Reader& reader, const Parameters& p)
       : cells{p.integer("nx", 1), p.integer("ny", 1), p.integer("nz", 1)},
         p0(p.point("p0", {0, 0, 0})),
         p1(p.point("p1", {1, 1, 1})) {
+    // v3 mirrors a grid whose first corner is the upper one, v4 sorts them.
+    for (double DoublePoint3::* axis : {&DoublePoint3::x, &DoublePoint3::y, &DoublePoint3::z})
+      if (reader.version != 3 && p0.*axis > p1.*axis) std::swap(p0.*axis, p1.*axis);
     for (const int n : cells)
       if (n < 1) throw Error("a grid needs at least one cell along each axis", p.at);
   }
@@ -121,7 +124,7 @@ Ref<Component> glow_of(Reader& reader, const Grid& grid, Parameters& p) {
 // Density on a regular grid between p0 and p1 of the coordinates of its directive, nothing outside.
 void make_grid(Reader& reader, const std::string& name, Parameters& p) {
   const Location at = p.at;
-  const Grid grid(p);
+  const Grid grid(reader, p);
   std::vector<double> density = grid.take(p, "density");
   if (density.empty()) throw Error("a grid needs a density for each of its cells", p.place("density"));
   scale(density, p.number("scale", 1));
@@ -147,7 +150,7 @@ void make_grid(Reader& reader, const std::string& name, Parameters& p) {
 // Each cell has coefficients and light of its own, in RGB.
 void make_rgb_grid(Reader& reader, const std::string& name, Parameters& p) {
   const Location at = p.at;
-  const Grid grid(p);
+  const Grid grid(reader, p);
   std::vector<double> absorption = grid.take(p, "sigma_a", 3), scattering = grid.take(p, "sigma_s", 3),
                       light = grid.take(p, "Le", 3);
   if (absorption.empty() && scattering.empty()) throw Error("a grid of RGB needs 'sigma_a', 'sigma_s' or both", at);
@@ -225,16 +228,13 @@ void make_cloud(Reader& reader, const std::string& name, const Parameters& p) {
   set_member(*medium, "density", cloud, at);
   set_scaled_coefficients(reader, *medium, p);
   set_member(*medium, "anisotropy", p.number("g", 0), at);
-  const auto corner = [&](const char* member, const char* parameter, const DoublePoint3& otherwise) {
-    const DoublePoint3 c = p.point(parameter, otherwise);
-    set_member(*medium, member, Numbers{{c.x, c.y, c.z}, 1, Dimension::none}, p.place(parameter));
-  };
+  const Grid box_of(reader, p);
+  const DoublePoint3 &low = box_of.p0, &high = box_of.p1;
   set_member(*medium, "limited", true, at);
-  corner("low", "p0", {0, 0, 0});
-  corner("high", "p1", {1, 1, 1});
+  set_member(*medium, "low", Numbers{{low.x, low.y, low.z}, 1, Dimension::none}, p.place("p0"));
+  set_member(*medium, "high", Numbers{{high.x, high.y, high.z}, 1, Dimension::none}, p.place("p1"));
   reader.importing.inexact("the cloud is another one of the same kind: its noise has other random numbers", at);
   place_medium(reader, name, medium, reader.state.ctm[0], at);
-  const DoublePoint3 low = p.point("p0", {0, 0, 0}), high = p.point("p1", {1, 1, 1});
   const Transform box = reader.state.ctm[0] * Transform::translate({low.x, low.y, low.z}) *
                         Transform::scale(DoubleVector3{high.x - low.x, high.y - low.y, high.z - low.z});
   if (box.valid()) reader.boxes[name] = box;

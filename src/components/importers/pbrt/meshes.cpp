@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "components/objects/meshes/mesh_data.h"
-#include "reader.h"
+#include "meshes.h"
 
 namespace etendue::pbrt {
 
@@ -41,11 +41,8 @@ void face_normals(const std::vector<double>& positions, const std::vector<double
   }
 }
 
-struct Mesh {
-  std::vector<double> positions, normals, uvs, indices;
-};
+}  // namespace
 
-/// Turned over when the state says so.
 Shape object_of(Reader& reader, Mesh&& mesh, Location at) {
   if (!mesh.normals.empty()) face_normals(mesh.positions, mesh.normals, mesh.indices);
   if (reader.state.reversed) {
@@ -64,6 +61,8 @@ Shape object_of(Reader& reader, Mesh&& mesh, Location at) {
   give("uvs", std::move(mesh.uvs), 2);
   return {object, {}, false, triangles};
 }
+
+namespace {
 
 Shape triangle_mesh(Reader& reader, Parameters& p) {
   Mesh mesh;
@@ -86,8 +85,7 @@ Shape triangle_mesh(Reader& reader, Parameters& p) {
 }
 
 /// A file's triangles written out: where the way they face matters, which the file's own normals say.
-Shape read_out(Reader& reader, const std::string& path, Location at) {
-  const MeshData data = read_mesh(path);
+Mesh written_out(const MeshData& data) {
   Mesh mesh;
   for (const Point3& q : data.positions)
     mesh.positions.insert(mesh.positions.end(),
@@ -95,7 +93,26 @@ Shape read_out(Reader& reader, const std::string& path, Location at) {
   for (const auto& t : data.triangles) mesh.indices.insert(mesh.indices.end(), {double(t[0]), double(t[1]), double(t[2])});
   for (const Normal3& n : data.normals) mesh.normals.insert(mesh.normals.end(), {double(n.x), double(n.y), double(n.z)});
   for (const Point2& t : data.uvs) mesh.uvs.insert(mesh.uvs.end(), {double(t.x), double(t.y)});
-  return object_of(reader, std::move(mesh), at);
+  return mesh;
+}
+
+/// Whether a triangle's corners run clockwise around its normals.
+bool against_normals(const MeshData& data) {
+  if (data.normals.empty()) return false;
+  return std::ranges::any_of(data.triangles, [&](const auto& t) {
+    const Vector3 face = cross(data.positions[t[1]] - data.positions[t[0]], data.positions[t[2]] - data.positions[t[0]]);
+    float along = 0;
+    for (const auto v : t) along += face.x * data.normals[v].x + face.y * data.normals[v].y + face.z * data.normals[v].z;
+    return along < 0;
+  });
+}
+
+/// Whether it matters which side of a shape is its front.
+bool front_matters(const Reader& reader) {
+  const State& state = reader.state;
+  if (state.light || state.reversed || state.inside != state.outside) return true;
+  const auto named = reader.named_materials.find(state.named_material);
+  return has_front(reader, reader.materials[named == reader.named_materials.end() ? state.material : named->second]);
 }
 
 Shape ply_mesh(Reader& reader, const Parameters& p) {
@@ -111,16 +128,28 @@ Shape ply_mesh(Reader& reader, const Parameters& p) {
     set_member(*moved, "edge_length", p.number("edgelength", 1), p.at);
     return {moved, {}, reader.state.reversed};
   }
-  if (reader.state.light || reader.state.reversed) {
+  size_t triangles = 1;
+  if (front_matters(reader)) {
     try {
-      return read_out(reader, path, p.at);
+      const MeshData data = read_mesh(path);
+      if (reader.state.reversed || against_normals(data)) return object_of(reader, written_out(data), p.at);
+      triangles = data.triangles.size();
     } catch (const Error& e) {
       throw Error(e.what(), p.place("filename"));
     }
   }
   const Ref<Component> object = reader.make("TriangleMesh", p.at);
   set_member(*object, "file", FilePath{path, {}}, p.place("filename"));
-  return {object, {}};
+  return {object, {}, false, triangles};
+}
+
+/// Whether the coordinates of each patch are those that a patch without any has.
+bool corners_of_square(const std::vector<double>& uvs, const std::vector<double>& indices) {
+  for (size_t i = 0; i < indices.size(); ++i) {
+    const size_t v = 2 * size_t(indices[i]);
+    if (uvs[v] != double(i % 2) || uvs[v + 1] != double(i / 2 % 2)) return false;
+  }
+  return true;
 }
 
 Shape bilinear_mesh(Reader& reader, Parameters& p) {
@@ -132,7 +161,9 @@ Shape bilinear_mesh(Reader& reader, Parameters& p) {
     throw Error(fmt::format("{} has {} indices, but each patch takes 4", p.of, indices.size()), p.place("indices"));
   check_indices(p, indices, vertices);
   if (p.has("N")) reader.importing.inexact("normals of vertices of bilinear patches are left out", p.place("N"));
-  if (p.has("uv")) reader.importing.inexact("each bilinear patch has its own surface coordinates from 0 to 1", p.place("uv"));
+  const std::vector<double>& uvs = p.numbers("uv", 2);
+  if (uvs.size() / 2 == vertices && !corners_of_square(uvs, indices))
+    reader.importing.inexact("each bilinear patch has its own surface coordinates from 0 to 1", p.place("uv"));
   const size_t patches = indices.size() / 4;
   const size_t a = size_t(indices[0]), b = size_t(indices[1]), c = size_t(indices[2]), d = size_t(indices[3]);
   const Vertex u = difference(points, b, a), v = difference(points, c, a), top = difference(points, d, c);
@@ -194,73 +225,7 @@ Shape height_field(Reader& reader, Parameters& p) {
   return object_of(reader, std::move(mesh), p.at);
 }
 
-/// A curve in the plane turned around the z axis, with what its tangents say of the surface's normals.
-struct Profile {
-  double radius, z, normal_radius, normal_z;  ///< the normal points outwards
-};
-
-Profile sphere_at(double radius, double low, double high, double v) {
-  const double theta = (1 - v) * std::acos(low / radius) + v * std::acos(high / radius);
-  return {radius * std::sin(theta), radius * std::cos(theta), std::sin(theta), std::cos(theta)};
-}
-
 }  // namespace
-
-Shape make_revolved(Reader& reader, const std::string& type, const Parameters& p) {
-  const double turn = std::clamp(p.number("phimax", 360), 1e-3, 360.0) * 3.14159265358979323846 / 180;
-  constexpr size_t steps_u = 128, steps_v = 64;
-  double radius = p.number("radius", 1), low = 0, high = 1;
-  if (!(radius > 0)) throw Error("'radius' must be more than 0", p.place("radius"));
-  std::array<double, 3> p1{}, p2{};
-  if (type == "sphere") {
-    low = std::clamp(p.number("zmin", -radius), -radius, radius);
-    high = std::clamp(p.number("zmax", radius), -radius, radius);
-    if (low > high) std::swap(low, high);
-  } else if (type == "paraboloid") {
-    low = p.number("zmin", 0), high = p.number("zmax", 1);
-    if (!(low >= 0 && high > low)) throw Error("a paraboloid needs 0 <= zmin < zmax", p.place("zmin"));
-  } else {
-    const DoublePoint3 a = p.point("p1", {0, 0, 0}), b = p.point("p2", {1, 1, 1});
-    p1 = {a.x, a.y, a.z}, p2 = {b.x, b.y, b.z};
-  }
-  reader.importing.inexact(fmt::format("a {} that is not whole is made of small triangles", type), p.at);
-  Mesh mesh;
-  for (size_t j = 0; j <= steps_v; ++j)
-    for (size_t i = 0; i <= steps_u; ++i) {
-      const double u = double(i) / steps_u, v = double(j) / steps_v, phi = u * turn, c = std::cos(phi), s = std::sin(phi);
-      double x = 0, y = 0, z = 0, nx = 0, ny = 0, nz = 0;
-      if (type == "hyperboloid") {
-        const double qx = (1 - v) * p1[0] + v * p2[0], qy = (1 - v) * p1[1] + v * p2[1];
-        x = qx * c - qy * s, y = qx * s + qy * c, z = (1 - v) * p1[2] + v * p2[2];
-        // dp/du x dp/dv, with dp/du = (-y, x, 0).
-        const double dx = p2[0] - p1[0], dy = p2[1] - p1[1], tx = dx * c - dy * s, ty = dx * s + dy * c, tz = p2[2] - p1[2];
-        nx = x * tz, ny = y * tz, nz = -y * ty - x * tx;
-      } else {
-        Profile at{};
-        if (type == "sphere") {
-          at = sphere_at(radius, low, high, v);
-        } else {
-          const double height = low + v * (high - low), r = radius * std::sqrt(height / high);
-          at = {r, height, 2 * r * high / (radius * radius), -1};
-        }
-        x = at.radius * c, y = at.radius * s, z = at.z;
-        nx = at.normal_radius * c, ny = at.normal_radius * s, nz = at.normal_z;
-      }
-      const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
-      mesh.positions.insert(mesh.positions.end(), {x, y, z});
-      for (const double n : {nx, ny, nz}) mesh.normals.push_back(length > 0 ? n / length : 0);
-      mesh.uvs.insert(mesh.uvs.end(), {u, v});
-    }
-  for (size_t j = 0; j < steps_v; ++j)
-    for (size_t i = 0; i < steps_u; ++i) {
-      const double a = double(j * (steps_u + 1) + i), b = a + 1, c = a + double(steps_u) + 1, d = c + 1;
-      mesh.indices.insert(mesh.indices.end(), {a, b, d, a, d, c});
-    }
-  Shape shape = object_of(reader, std::move(mesh), p.at);
-  shape.turned = false;
-  shape.pieces = 1;
-  return shape;
-}
 
 Shape make_mesh(Reader& reader, const std::string& type, Parameters& p) {
   if (type == "trianglemesh") return triangle_mesh(reader, p);

@@ -90,10 +90,14 @@ Parameters Parameters::read(Lexer& lexer, std::string of, Location at) {
       read_value(lexer, p, holds);
     }
     constexpr size_t most = 1000;  // of which the largest have some 30
-    if (all.own.size() >= most) throw Error(fmt::format("{} has more than {} parameters", all.of, most), p.at);
-    for (const Parameter& other : all.own)
-      if (other.name == p.name) throw Error(fmt::format("the parameter '{}' is given twice", p.name), p.at);
-    all.own.push_back(std::move(p));
+    if (all.own.size() + all.overridden.size() >= most)
+      throw Error(fmt::format("{} has more than {} parameters", all.of, most), p.at);
+    if (const auto earlier = std::ranges::find(all.own, p.name, &Parameter::name); earlier != all.own.end()) {
+      all.overridden.emplace_back(p.name, earlier->at);
+      *earlier = std::move(p);
+    } else {
+      all.own.push_back(std::move(p));
+    }
   }
   return all;
 }
@@ -196,6 +200,8 @@ Location Parameters::place(std::string_view name) const {
 }
 
 void Parameters::tell_unused(Importing& importing) const {
+  for (const auto& [name, place] : overridden)
+    importing.inexact(fmt::format("the parameter '{}' of {} is given again: the last one counts, as in pbrt", name, of), place);
   for (const Parameter& p : own)
     if (!p.used)
       importing.inexact(fmt::format("the parameter '{}' of {} is not used{}", p.name, of, suggestion(p.name, asked_)), p.at);

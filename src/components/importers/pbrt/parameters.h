@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "etendue/describe/color.h"
@@ -35,7 +36,8 @@ class Parameters {
   std::string folder;               ///< of the file it stands in
   const RgbSpace* space = nullptr;  ///< of its "rgb" numbers
   std::vector<Parameter> own;
-  std::shared_ptr<const std::vector<Parameter>> defaults;  ///< from v4's Attribute directive
+  std::vector<std::pair<std::string, Location>> overridden;  ///< which were given again, with another value
+  std::shared_ptr<const std::vector<Parameter>> defaults;    ///< from v4's Attribute directive
 
   /// By name; it counts as used then. Null: there is none.
   const Parameter* find(std::string_view name) const;

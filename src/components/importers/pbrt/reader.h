@@ -48,7 +48,7 @@ inline constexpr std::array<std::string_view, 5> attribute_targets = {"shape", "
 struct Material {
   std::string type, name;
   Parameters parameters;
-  Ref<Component> shader;
+  std::array<Ref<Component>, 2> shaders;  ///< for shapes whose front is pbrt's, and for those of which it is the back
   bool making = false;
 };
 
@@ -58,6 +58,7 @@ struct Waiting {
   size_t material;
   std::string named_material;
   Value alpha;  ///< opacity: a map or a number; none: opaque
+  bool turned;  ///< its front is the back of pbrt's
   bool no_uvs;  ///< it is a mesh without surface coordinates, of which pbrt has others than are here
   Location at;
 };
@@ -102,6 +103,7 @@ class Reader {
   std::map<const Component*, int> texture_depths;       ///< 1: it names no other
   int named_depth = 0;                                  ///< of the deepest texture that was looked up for the one being made
   int mixing = 0;                                       ///< materials being made, each for the one before
+  bool turned = false;                                  ///< whether they are for a shape whose front is the back of pbrt's
   std::map<std::string, Transform, std::less<>> grids;  ///< of media in space: from their coordinates to the world
   std::map<std::string, Transform, std::less<>> boxes;  ///< of those that lie in a known box: from the unit cube to the world
 
@@ -119,6 +121,8 @@ class Reader {
   void instance(const std::string& name, Location at);
   bool in_object() const { return into_ != &objects_; }
   void add(const Ref<Component>& object);
+  /// Lights stand in the world, also where an object is defined.
+  void add_light(const Ref<Component>& object);
   /// All that was read, with its shaders.
   Ref<Job> finish();
 
@@ -165,8 +169,19 @@ void set_map(Component&, std::string_view member, Value, Location at);
 /// The image file of a parameter, as a member expects it; none and a note: it is missing.
 std::optional<FilePath> image_file(Reader&, const Parameters&, std::string_view name);
 
+// image_textures.cpp
+/// The texture "imagemap", as it lies on the unit square.
+Ref<Component> image_texture(Reader&, const Parameters&, bool spectrum);
+/// Whether an image has other colours than greys; one that cannot be read is told elsewhere.
+bool colored(const FilePath&);
+
 // materials.cpp, materials_v4.cpp, materials_v3.cpp
 Ref<Component> shader_of(Reader&, size_t material, Location used_at);
+/// v3's textures may have other ones of their names later.
+void make_with_present_textures(Reader&, size_t material);
+bool has_front(const Reader&, const Material&, int depth = 0);
+/// A dielectric's index against the other side.
+void set_index(const Reader&, Component& dielectric, const Value& eta, Location at);
 Ref<Component> shader_named(Reader&, const std::string& name, Location used_at);
 /// Null: it is none of v4's, or none of v3's materials.
 Ref<Component> make_v4_shader(Reader&, const Material&);

@@ -53,6 +53,9 @@ Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
   if (mapping == "spherical" || mapping == "cylindrical") {
     // pbrt's s and t are (1 - v, u) of a SphericalMap, and (u + 1/2, v) of a CylindricalMap.
     const bool sphere = mapping == "spherical";
+    if (!sphere && reader.version == 3)
+      reader.importing.inexact("t of a cylindrical mapping is the height, where v3 has the cosine of the angle to the axis",
+                               p.at);
     const Ref<Component> turned = within("UvTransformMap");
     if (sphere) set_member(*turned, "angle", 90, p.at);
     set_member(*turned, "shift", Numbers{{sphere ? 1 : 0.5, 0}, 1, Dimension::none}, p.at);
@@ -62,38 +65,6 @@ Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
   throw Error(
       fmt::format("there is no mapping '{}'{}", mapping, suggestion(mapping, {"uv", "planar", "spherical", "cylindrical"})),
       p.place("mapping"));
-}
-
-Ref<Component> image(Reader& reader, const Parameters& p) {
-  const Location at = p.at;
-  const auto file = image_file(reader, p, "filename");
-  if (!file) {
-    const Ref<Component> grey = reader.make("ConstantMap", at);
-    set_member(*grey, "value", 0.5, at);
-    return grey;
-  }
-  const Ref<Component> map = reader.make("ImageMap", at);
-  set_member(*map, "file", *file, p.place("filename"));
-  const std::string filter = p.text("filter", reader.version == 4 ? "bilinear" : "trilinear");
-  if (filter == "point") set_member(*map, "interpolation", "nearest", at);
-  p.ignore({"maxanisotropy", "trilinear", "noiseaware"});  // how it is averaged over a pixel
-  const std::string wrap = p.text("wrap", "repeat");
-  if (wrap == "black" || wrap == "clamp" || wrap == "repeat")
-    set_member(*map, "wrap", wrap, at);
-  else
-    reader.importing.inexact(fmt::format("wrap '{}' is not known: the image repeats", wrap), p.place("wrap"));
-  const std::string encoding = p.text("encoding", "");
-  if (encoding == "linear" || !p.boolean("gamma", true))
-    set_member(*map, "transfer", "linear", at);
-  else if (encoding == "gamma 2.2")
-    set_member(*map, "transfer", "gamma2.2", at);
-  else if (!encoding.empty() && encoding != "sRGB")
-    reader.importing.inexact(fmt::format("the encoding '{}' is taken for sRGB", encoding), p.place("encoding"));
-  Ref<Component> result = map;
-  if (const double scale = p.number("scale", 1); scale != 1)
-    result = formula(reader, at, fmt::format("{} * image", scale), {{"image", Value(result)}});
-  if (p.boolean("invert", false)) result = formula(reader, at, "max(0, 1 - image)", {{"image", Value(result)}});
-  return mapped(reader, p, result);
 }
 
 Ref<Component> checkerboard(Reader& reader, const Parameters& p, const auto& value) {
@@ -166,6 +137,35 @@ Ref<Component> noise(Reader& reader, const Parameters& p, const std::string& typ
   return outer;
 }
 
+/// How nearly the surface's normal runs along "dir" of the directive's coordinates, either way: its cosine.
+Ref<Component> along_direction(Reader& reader, const Parameters& p) {
+  const DoublePoint3 given = p.point("dir", {0, 1, 0});
+  const auto& m = reader.state.ctm[0].exact();
+  const auto along = [&](size_t r) { return m[4 * r] * given.x + m[4 * r + 1] * given.y + m[4 * r + 2] * given.z; };
+  const DoubleVector3 d{along(0), along(1), along(2)};
+  const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+  if (!(length > 0)) throw Error("'dir' must be a direction", p.place("dir"));
+  const Ref<Component> cosine =
+      formula(reader, p.at, fmt::format("abs({} * nx + {} * ny + {} * nz)", d.x / length, d.y / length, d.z / length), {});
+  set_member(*cosine, "space", "world", p.at);
+  return cosine;
+}
+
+/// 1 within dots: in every other unit square, by chance, is one of radius 0.35, moved a little.
+Ref<Component> dots(Reader& reader, const Parameters& p) {
+  reader.importing.inexact("the texture 'dots' has the same character as pbrt's: its dots are in other squares", p.at);
+  const auto chance = [](double a, double b) {
+    return fmt::format("fract(sin(floor(u + 0.5) * {} + floor(v + 0.5) * {}) * 43758.5453)", a, b);
+  };
+  const auto off = [&](const char* axis, double a, double b) {
+    return fmt::format("pow(abs({0} - floor({0} + 0.5) - 0.15 * (2 * {1} - 1)), 2)", axis, chance(a, b));
+  };
+  return formula(reader, p.at,
+                 fmt::format("step(0.5, {}) * (1 - step(0.1225, {} + {}))", chance(12.9898, 78.233), off("u", 39.346, 11.135),
+                             off("v", 73.156, 52.235)),
+                 {});
+}
+
 Ref<Component> make_map(Reader& reader, const std::string& type, bool spectrum, const Parameters& p) {
   const Location at = p.at;
   const auto value = [&](std::initializer_list<std::string_view> names, double otherwise) {
@@ -182,33 +182,30 @@ Ref<Component> make_map(Reader& reader, const std::string& type, bool spectrum, 
     set_map(*map, "value", value({"value"}, 1), at);
     return map;
   }
-  if (type == "imagemap") return image(reader, p);
+  if (type == "imagemap") return mapped(reader, p, image_texture(reader, p, spectrum));
   if (type == "checkerboard") return checkerboard(reader, p, value);
   if (type == "bilerp") return bilerp(reader, p, value);
   // v4 multiplies "tex" by the number or texture "scale", v3 "tex1" by "tex2".
   if (type == "scale")
     return combine("MultiplyMap", value({"tex", "tex1"}, 1),
                    p.has("tex2") ? value({"tex2"}, 1) : number_map(reader, p, {"scale"}, 1));
-  if (type == "mix" || type == "directionmix") {
+  if (type == "mix") {
     const Ref<Component> map = combine("MixMap", value({"tex1"}, 0), value({"tex2"}, 1));
-    if (type == "mix")
-      set_map(*map, "amount", number_map(reader, p, {"amount"}, 0.5), at);
-    else
-      reader.importing.inexact("a mixture by the normal's direction is half of each here", at);
-    p.ignore({"dir"});
+    set_map(*map, "amount", number_map(reader, p, {"amount"}, 0.5), at);
+    return map;
+  }
+  if (type == "directionmix") {
+    const Ref<Component> map = combine("MixMap", value({"tex2"}, 1), value({"tex1"}, 0));
+    set_map(*map, "amount", Value(along_direction(reader, p)), at);
     return map;
   }
   if (type == "fbm" || type == "wrinkled" || type == "windy" || type == "marble") return noise(reader, p, type, spectrum);
   if (type == "dots") {
-    reader.importing.inexact("the texture 'dots' is not known here: there are none, and what is outside of them everywhere",
-                             at);
-    const Value outside = value({"outside"}, 0);
-    p.ignore({"inside"});
-    if (const auto* part = outside.as<Ref<Component>>()) return *part;
-    const Ref<Component> map = reader.make("ConstantMap", at);
-    set_map(*map, "value", outside, at);
-    return map;
+    const Ref<Component> map = combine("MixMap", value({"outside"}, 0), value({"inside"}, 1));
+    set_map(*map, "amount", Value(dots(reader, p)), at);
+    return mapped(reader, p, map);
   }
+  if (type == "uv" && spectrum) return mapped(reader, p, reader.make("UvMap", at));
   if (type == "ptex") {
     reader.importing.inexact("a Ptex texture cannot be read: it is 0.5 everywhere", at);
     p.forget();
@@ -216,7 +213,7 @@ Ref<Component> make_map(Reader& reader, const std::string& type, bool spectrum, 
   }
   throw Error(fmt::format("there is no texture '{}'{}", type,
                           suggestion(type, {"constant", "imagemap", "checkerboard", "bilerp", "scale", "mix", "directionmix",
-                                            "fbm", "wrinkled", "windy", "marble", "dots", "ptex"})),
+                                            "fbm", "wrinkled", "windy", "marble", "dots", "uv", "ptex"})),
               at);
 }
 

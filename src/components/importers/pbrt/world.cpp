@@ -14,9 +14,39 @@ AnimatedTransform Reader::to_world(const Transform& inner) const {
 
 void Reader::add(const Ref<Component>& object) { into_->push_back(ref_cast<SceneObject>(object)); }
 
+void Reader::add_light(const Ref<Component>& object) { objects_.push_back(ref_cast<SceneObject>(object)); }
+
+namespace {
+
+/// How much of a shape is there: v3 leaves out nothing but what its alpha is 0 of.
+Value opacity_of(Reader& reader, const Parameters& p) {
+  if (!p.has("alpha")) return {};
+  Value alpha = number_map(reader, p, {"alpha"}, 1);
+  if (reader.version != 3) return alpha;
+  if (const Number* n = alpha.as<Number>()) return Value(Number{n->value == 0 ? 0.0 : 1.0}, p.at);
+  return Value(formula(reader, p.at, "step(0.00001, alpha)", {{"alpha", alpha}}), p.at);
+}
+
+/// The light of a shape with holes: none comes out of them. A number of 0 alone means light that is not seen.
+Ref<Component> with_holes(Reader& reader, const Ref<Component>& emission, const Value& alpha, Location at) {
+  if (alpha.none()) return emission;
+  if (const Number* n = alpha.as<Number>(); n && (n->value == 0 || n->value >= 1)) {
+    if (n->value == 0)
+      reader.importing.inexact("a light whose alpha is 0 is seen here, where pbrt shows nothing of it but what it lights", at);
+    return emission;
+  }
+  const Ref<Component> own = copy(*emission), product = reader.make("MultiplyMap", at);
+  set_map(*product, "first", get(*emission, "radiance"), at);
+  set_map(*product, "second", alpha, at);
+  set_member(*own, "radiance", product, at);
+  return own;
+}
+
+}  // namespace
+
 void Reader::shape(const std::string& type, Parameters&& p) {
   const Location at = p.at;
-  const Value alpha = p.has("alpha") ? number_map(*this, p, {"alpha"}, 1) : Value();
+  const Value alpha = opacity_of(*this, p);
   const Shape made = make_shape(*this, type, p);
   if (p.has("shadowalpha"))
     importing.inexact("'shadowalpha' is left out: shadows are those of 'alpha'", p.place("shadowalpha"));
@@ -31,15 +61,16 @@ void Reader::shape(const std::string& type, Parameters&& p) {
   if (state.light && in_object())
     importing.inexact("objects that are instanced do not emit in pbrt, nor here", at);
   else if (state.light)
-    set_emission(object, area_emission(*this, *state.light, made.turned, made.pieces), at);
-  if (!state.inside.empty())
-    if (const Ref<Component> inside = medium_for(*this, state.inside, transform, at))
-      set_member(object, "interior", inside, at);
-  sides_.push_back({made.object, state.inside, state.outside, in_object(), at});
+    set_emission(object, with_holes(*this, area_emission(*this, *state.light, made.turned, made.pieces), alpha, at), at);
+  // What is inside is where the normal does not point.
+  const std::string &inside = made.turned ? state.outside : state.inside, &outside = made.turned ? state.inside : state.outside;
+  if (!inside.empty())
+    if (const Ref<Component> medium = medium_for(*this, inside, transform, at)) set_member(object, "interior", medium, at);
+  sides_.push_back({made.object, inside, outside, in_object(), at});
   bool no_uvs = type == "trianglemesh";
   for (const Parameter& parameter : p.own)
     if (parameter.name == "uv" || parameter.name == "st" || parameter.name == "UV") no_uvs = false;
-  waiting_.push_back({made.object, state.material, state.named_material, alpha, no_uvs, at});
+  waiting_.push_back({made.object, state.material, state.named_material, alpha, made.turned, no_uvs, at});
   add(made.object);
 }
 
@@ -82,6 +113,8 @@ void Reader::instance(const std::string& name, Location at) {
 }
 
 Ref<Component> Reader::shader_for(const Waiting& w) {
+  const auto named = named_materials.find(w.named_material);
+  turned = w.turned && has_front(*this, materials[named == named_materials.end() ? w.material : named->second]);
   Ref<Component> shader =
       w.named_material.empty() ? shader_of(*this, w.material, w.at) : shader_named(*this, w.named_material, w.at);
   if (w.alpha.none()) return shader;
@@ -118,9 +151,10 @@ void Reader::finish_materials() {
       if (errors.size() == 20) break;
     }
   if (!errors.empty()) throw Errors(std::move(errors));
+  turned = false;
   // What nothing has may still be wrong, which is worth a note and no more.
   for (size_t i = 0; i < materials.size(); ++i) try {
-      shader_of(*this, i, materials[i].parameters.at);
+      if (!materials[i].shaders[1]) shader_of(*this, i, materials[i].parameters.at);
     } catch (const Error& e) {
       importing.inexact(e.what(), e.location);
     }

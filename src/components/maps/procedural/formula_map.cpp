@@ -19,11 +19,14 @@ class FormulaMap final : public ObjectMap {
         .member<&FormulaMap::formula>(
             "formula", "",
             "of numbers, names, + - * / ( ) and functions (abs sqrt exp log sin cos tan atan2 floor fract mod pow min max step "
-            "clamp mix smoothstep, and mean over wavelengths; angles in radians). Names are those below, u, v, x, y, z and pi. "
+            "clamp mix smoothstep, and mean over wavelengths; angles in radians). Names are those below, u, v, x, y, z, nx, ny "
+            "and "
+            "nz (the direction of the true surface's normal) and pi. "
             "What is no finite number, such as 1 / 0, is 0. A colour is kept from being negative, and a reflectance below 1")
         .member<&FormulaMap::names>("names", "", "what the maps are called in the formula")
         .member<&FormulaMap::maps>("maps", "1", "a map for each name")
-        .member<&FormulaMap::space>("space", "", "whether x, y and z are the object's own or those of the whole scene",
+        .member<&FormulaMap::space>("space", "",
+                                    "whether x, y, z and the normal are the object's own or those of the whole scene",
                                     choices("object", "world"));
   }
 
@@ -64,8 +67,8 @@ class FormulaMap final : public ObjectMap {
   Space space = Space::object;
 
  private:
-  static constexpr size_t most_maps = 16;
-  static std::vector<std::string> coordinates() { return {"u", "v", "x", "y", "z"}; }
+  static constexpr size_t most_maps = 16, coordinate_count = 8;
+  static std::vector<std::string> coordinates() { return {"u", "v", "x", "y", "z", "nx", "ny", "nz"}; }
 
   static bool valid_name(const std::string& s) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
@@ -76,9 +79,10 @@ class FormulaMap final : public ObjectMap {
   template <class Value>
   Spectrum compute(const SurfacePoint& p, Value value) const {
     const Point3 at = space == Space::object ? p.object_position : Point3(world_position(p));
-    Spectrum values[5 + most_maps] = {p.uv.x, p.uv.y, at.x, at.y, at.z};
+    const Normal3& n = space == Space::object ? p.object_normal : p.normal;
+    Spectrum values[coordinate_count + most_maps] = {p.uv.x, p.uv.y, at.x, at.y, at.z, n.x, n.y, n.z};
     for (size_t i = 0; i < maps.size(); ++i)
-      if (program_.used()[5 + i]) values[5 + i] = value(*maps[i]);
+      if (program_.used()[coordinate_count + i]) values[coordinate_count + i] = value(*maps[i]);
     return program_.run(values);
   }
 

@@ -1,0 +1,128 @@
+// Which side of a shape is pbrt's front: what is inside of a body, where light goes, and what holes do to it.
+
+#include "pbrt_support.h"
+#include "support/image_file.h"
+
+namespace etendue::pbrt_test {
+namespace {
+
+const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+
+// A bubble: where the orientation is reversed glass is outside. Its index against the other side is the inverse.
+TEST(PbrtFront, ReversedQuadricsHaveTheirIndexOutside) {
+  const auto shader = [](const std::string& world) -> const Component& {
+    static Imported i;
+    i = import_text(v4(world));
+    EXPECT_EQ(i.told(), "");
+    return part(object(i, 0), "shader");
+  };
+  const std::string glass = "Material \"dielectric\" \"float eta\" 1.7\n";
+  const Component& plain = shader(glass + "Shape \"sphere\"");
+  EXPECT_EQ(number(plain, "exterior"), 1);
+  EXPECT_NEAR(number(plain, "ior"), 1.7, 1e-6);
+  const Component& turned = shader(glass + "ReverseOrientation Shape \"cylinder\"");
+  EXPECT_EQ(number(turned, "ior"), 1);
+  EXPECT_NEAR(number(turned, "exterior"), 1.7, 1e-6);
+  // Both of one material, one within a mixture.
+  const Imported both = import_text(
+      v4("MakeNamedMaterial \"g\" \"string type\" \"dielectric\"\nMakeNamedMaterial \"m\" \"string type\" \"mix\" \"string "
+         "materials\" [\"g\" \"g\"]\nNamedMaterial \"m\" Shape \"sphere\" ReverseOrientation Shape \"sphere\"\n"));
+  ASSERT_TRUE(both.job) << both.told();
+  EXPECT_NEAR(number(part(part(object(both, 0), "shader"), "first"), "ior"), 1.5, 1e-6);
+  EXPECT_NEAR(number(part(part(object(both, 1), "shader"), "first"), "exterior"), 1.5, 1e-6);
+}
+
+// The boundary of glass and water within a glass: its index is the quotient, which it stays.
+TEST(PbrtFront, IndicesAreAgainstTheOtherSide) {
+  // Light straight through three boundaries of 1.5, 1.2 and 1 / (1.5 * 1.2) and back again: nearly nothing is lost at each but
+  // (n - 1)^2 / (n + 1)^2.
+  const auto disk = [](double z, double eta, const char* more = "") {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "AttributeBegin Material \"dielectric\" \"float eta\" %g Translate 0 0 %g %s Shape \"disk\" \"float radius\" "
+                  "90 AttributeEnd\n",
+                  eta, z, more);
+    return std::string(text);
+  };
+  const auto passes = [](double n) { return 1 - std::pow((n - 1) / (n + 1), 2); };
+  // The camera looks along +z; disks turned so that their front is towards it.
+  const char* facing = "Rotate 180 0 1 0";
+  const std::string lamp =
+      "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true Translate 0 0 90 Shape \"disk\" \"float radius\" "
+      "50";
+  const Imported i =
+      import_text("Integrator \"volpath\" \"integer maxdepth\" 2\n" + v4(disk(1, 1.5, facing) + disk(2, 1.2, facing) + lamp));
+  // No path that is reflected within is as short as that, so what passes is the product, by n^2 of the last medium.
+  EXPECT_NEAR(seen(i, 16384).y, passes(1.5) * passes(1.2) / std::pow(1.5 * 1.2, 2), 0.01);
+}
+
+TEST(PbrtFront, ReversedQuadricsExchangeTheirMedia) {
+  const std::string media =
+      "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0]\n"
+      "MakeNamedMedium \"b\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.25 .25 .25] \"rgb sigma_s\" [0 0 0]\n";
+  const auto through = [&](const std::string& interface) {
+    return seen(import_text(v4(sky + media + "Material \"interface\" MediumInterface " + interface +
+                               " Translate 0 0 5 Shape \"sphere\"")),
+                65536)
+        .y;
+  };
+  EXPECT_NEAR(through("\"a\" \"\""), std::exp(-1.0), 0.01);
+  EXPECT_NEAR(through("\"\" \"a\" ReverseOrientation"), std::exp(-1.0), 0.01);
+}
+
+TEST(PbrtFront, ReversedBumpsAreHollows) {
+  const std::string texture = "Texture \"h\" \"float\" \"constant\" \"float value\" 0.25\n";
+  const std::string bumped = "Material \"diffuse\" \"texture displacement\" \"h\"\n";
+  const Imported i = import_text(v4(texture + bumped + "Shape \"sphere\" ReverseOrientation Shape \"sphere\""));
+  ASSERT_TRUE(i.job) << i.told();
+  EXPECT_EQ(number(part(object(i, 0), "shader"), "height"), 0.25);
+  EXPECT_EQ(part(part(object(i, 1), "shader"), "height").class_info().name, "FormulaMap");
+}
+
+/// A light of 1 before the camera.
+double lamp(const TemporaryFolder& folder, bool v4_file, const std::string& before, const std::string& more,
+            Imported* told = {}) {
+  const std::string world = before +
+                            "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\nMaterial \"none\" Shape \"trianglemesh\" "
+                            "\"point P\" [-9 9 5 9 9 5 0 -19 5] " +
+                            more;
+  std::string as_v4 = world;
+  as_v4.replace(as_v4.find("\"point P\""), 9, "\"point3 P\"").replace(as_v4.find("\"none\""), 6, "\"interface\"");
+  const Imported i = import_text(folder, v4_file ? v4(as_v4) : v3(world));
+  if (told) *told = i;
+  return seen(i, 1024).y;
+}
+
+TEST(PbrtAlpha, HolesOfLightsAreDark) {
+  const TemporaryFolder folder;
+  EXPECT_NEAR(lamp(folder, true, "", ""), 1, 0.01);
+  EXPECT_NEAR(lamp(folder, true, "", "\"float alpha\" 0.25"), 0.25, 0.01);
+  const std::string texture = "Texture \"a\" \"float\" \"constant\" \"float value\" 0.5\n";
+  EXPECT_NEAR(lamp(folder, true, texture, "\"texture alpha\" \"a\""), 0.5, 0.01);
+  // A light of 0 lights what is around it, and is not seen in pbrt.
+  Imported i;
+  EXPECT_NEAR(lamp(folder, true, "", "\"float alpha\" 0", &i), 1, 0.01);
+  EXPECT_NE(i.told().find("a light whose alpha is 0 is seen here"), std::string::npos) << i.told();
+}
+
+TEST(PbrtAlpha, Version3HasHolesWhereItIsZeroAlone) {
+  const auto opacity = [](const std::string& alpha) {
+    return number(
+        part(object(import_text(v3("Shape \"trianglemesh\" \"point P\" [-9 9 5 9 9 5 0 -19 5] " + alpha)), 0), "shader"),
+        "opacity");
+  };
+  EXPECT_EQ(opacity("\"float alpha\" 0.25"), 1);
+  EXPECT_EQ(opacity("\"float alpha\" 0"), 0);
+}
+
+TEST(PbrtObjects, LightsInDefinitionsStandInTheWorld) {
+  const Imported i =
+      import_text(v4("ObjectBegin \"o\" Translate 1 2 3 LightSource \"point\" Shape \"sphere\" ObjectEnd ObjectInstance \"o\" "
+                     "ObjectInstance \"o\""));
+  EXPECT_EQ(i.told(), "");
+  ASSERT_EQ(i.job->scene->objects.size(), 3u);
+  EXPECT_EQ(object(i, 0).class_info().name, "Point");
+}
+
+}  // namespace
+}  // namespace etendue::pbrt_test

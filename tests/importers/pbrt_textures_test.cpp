@@ -1,0 +1,111 @@
+// What textures of pbrt are as numbers and as colours.
+
+#include "pbrt_support.h"
+#include "support/image_file.h"
+
+namespace etendue::pbrt_test {
+namespace {
+
+const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+const std::string wall =
+    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 5 1 -1 5 1 1 5 -1 1 5] \"integer indices\" [0 1 2 0 2 3] \"point2 uv\" [0 0 1 "
+    "0 "
+    "1 1 0 1]\n";
+
+/// What a matt wall shows whose reflectance is 0.8 times a texture of numbers.
+double as_number(const TemporaryFolder& folder, const std::string& image) {
+  return seen(import_text(folder, v4(sky + "Texture \"n\" \"float\" \"imagemap\" " + image +
+                                     "\nTexture \"t\" \"spectrum\" \"scale\" \"rgb tex\" [.8 .8 .8] \"texture scale\" "
+                                     "\"n\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n" +
+                                     wall)),
+              4096)
+             .y /
+         0.8;
+}
+
+TEST(PbrtTexture, NumbersOfImages) {
+  const TemporaryFolder folder;
+  test::write_image(folder / "rgb.exr", {1, 1, 3, NumberType::single}, {.1f, .2f, .6f});
+  test::write_image(folder / "leaf.exr", {1, 2, 4, NumberType::single}, {.1f, .2f, .6f, .7f, .1f, .2f, .6f, .7f});
+  test::write_image(folder / "solid.exr", {1, 1, 4, NumberType::single}, {.1f, .2f, .6f, 1});
+  EXPECT_NEAR(as_number(folder, "\"string filename\" \"rgb.exr\""), 0.3, 0.005);
+  EXPECT_NEAR(as_number(folder, "\"string filename\" \"leaf.exr\""), 0.7, 0.005);  // its alpha
+  EXPECT_NEAR(as_number(folder, "\"string filename\" \"solid.exr\""), 0.3, 0.005);
+  EXPECT_NEAR(as_number(folder, "\"string filename\" \"leaf.exr\" \"string filter\" \"point\""), 0.1, 0.005);
+  EXPECT_NEAR(as_number(folder, "\"string filename\" \"leaf.exr\" \"float scale\" .5 \"bool invert\" true"), 0.65, 0.005);
+}
+
+TEST(PbrtTexture, ImagesOfVersion3AreLuminances) {
+  const TemporaryFolder folder;
+  test::write_image(folder / "red.png", {1, 1, 3, NumberType::uint8}, {1, 0, 0});
+  // y of what the file holds, decoded then: 0.212671 is 0.0371 linearly.
+  const Imported i = import_text(
+      folder, v3("Texture \"n\" \"float\" \"imagemap\" \"string filename\" \"red.png\"\nTexture \"t\" \"color\" \"mix\" \"rgb "
+                 "tex1\" [0 0 0] \"rgb tex2\" [1 1 1] \"texture amount\" \"n\"\n" +
+                 sky +
+                 "Material \"matte\" \"texture Kd\" \"t\"\nShape \"trianglemesh\" \"point P\" [-9 -9 5 9 -9 5 0 9 5] \"integer "
+                 "indices\" [0 1 2] \"float uv\" [0 0 1 0 1 1]\n"));
+  EXPECT_NEAR(seen(i, 4096).y, std::pow((0.212671 + 0.055) / 1.055, 2.4), 0.002);
+}
+
+// pbrt multiplies red, green and blue and cuts them at 1 before they become a spectrum.
+TEST(PbrtTexture, ScaledColours) {
+  const TemporaryFolder folder;
+  test::write_image(folder / "rgb.exr", {1, 1, 3, NumberType::single}, {.5f, .25f, .1f});
+  const auto shown = [&](const std::string& more) {
+    return seen(import_text(folder, v4(sky + "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"rgb.exr\" " + more +
+                                       "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n" + wall)),
+                8192);
+  };
+  const Xyz twice = shown("\"float scale\" 3"), inverse = shown("\"bool invert\" true");
+  // Of linear sRGB (1, 0.75, 0.3) and (0.5, 0.75, 0.9).
+  EXPECT_NEAR(twice.y, 0.212671 + 0.71516 * 0.75 + 0.072169 * 0.3, 0.01);
+  EXPECT_NEAR(inverse.y, 0.212671 * 0.5 + 0.71516 * 0.75 + 0.072169 * 0.9, 0.01);
+}
+
+// |n . d| of the first and the rest of the second; d is in the directive's coordinates.
+TEST(PbrtTexture, MixturesByDirection) {
+  const auto shown = [](const std::string& dir) {
+    return seen(
+               import_text(v4(sky +
+                              "AttributeBegin Rotate 90 0 0 1\nTexture \"t\" \"spectrum\" \"directionmix\" \"rgb tex1\" [.8 .8 "
+                              ".8] \"rgb tex2\" [.2 .2 .2] " +
+                              dir + "\nAttributeEnd Material \"diffuse\" \"texture reflectance\" \"t\"\n" + wall)),
+               4096)
+        .y;
+  };
+  EXPECT_NEAR(shown("\"vector3 dir\" [0 0 -3]"), 0.8, 0.01);
+  EXPECT_NEAR(shown(""), 0.2, 0.01);
+  EXPECT_NEAR(shown("\"vector3 dir\" [0.8 0 0.6]"), 0.6 * 0.8 + 0.4 * 0.2, 0.01);
+}
+
+// Half of the squares hold a dot of radius 0.35.
+TEST(PbrtTexture, Dots) {
+  const Imported i = import_text(v4(sky +
+                                    "Texture \"t\" \"spectrum\" \"dots\" \"rgb inside\" [.9 .9 .9] \"rgb outside\" [.1 .1 .1] "
+                                    "\"float uscale\" 1000 \"float vscale\" 1000\nMaterial \"diffuse\" \"texture reflectance\" "
+                                    "\"t\"\n" +
+                                    wall));
+  EXPECT_NE(i.told().find("same character"), std::string::npos) << i.told();
+  EXPECT_NEAR(seen(i, 16384).y, 0.1 + 0.8 * M_PI * 0.35 * 0.35 / 2, 0.03);
+}
+
+TEST(PbrtTexture, CoordinatesOfVersion3) {
+  const Imported i =
+      import_text(v3("Texture \"t\" \"spectrum\" \"uv\"\nMaterial \"matte\" \"texture Kd\" \"t\"\nShape \"sphere\""));
+  EXPECT_EQ(i.told(), "");
+}
+
+// v3's textures are those of their names where the material is given.
+TEST(PbrtTexture, Version3MayGiveANameAgain) {
+  const auto texture = [](const char* value) {
+    return std::string("Texture \"t\" \"color\" \"constant\" \"rgb value\" ") + value + "\n";
+  };
+  const Imported i = import_text(
+      v3(texture("[.2 .2 .2]") + "Material \"matte\" \"texture Kd\" \"t\"\n" + texture("[.7 .7 .7]") + "Shape \"sphere\"\n"));
+  ASSERT_TRUE(i.job) << i.told();
+  EXPECT_NEAR(number(part(object(i, 0), "shader"), "color"), 0.2, 0.01);
+}
+
+}  // namespace
+}  // namespace etendue::pbrt_test
