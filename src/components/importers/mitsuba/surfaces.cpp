@@ -207,11 +207,9 @@ Converter::Surface Converter::tilted(const Element& e, Uv uv, const std::string&
     set_member(*shader, "green", "across", e.at);
   }
   set_member(*shader, "shader", inner.shader, e.at);
-  if (!e.old && e.boolean("use_shadowing_function", true))
-    inexact(e, fmt::format("'{}' here is without the shadowing function by which Mitsuba darkens where a tilted normal leaves "
-                           "the surface's own",
-                           e.type));
-  e.ignore({"flip_invalid_normals"});
+  // Both are Mitsuba's since 3.7.1.
+  if (!e.old && e.boolean("use_shadowing_function", true)) set_member(*shader, "shadowing", true, e.at);
+  if (!e.old && e.boolean("flip_invalid_normals", true)) set_member(*shader, "opposite_slopes", true, e.at);
   return {shader, inner.both_sides};
 }
 
