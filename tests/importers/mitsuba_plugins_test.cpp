@@ -1,0 +1,71 @@
+// Plugins of Mitsuba that are less common: what they do here, with numbers of Mitsuba 3.9.1 where they do not follow from the
+// scene.
+
+#include <cmath>
+
+#include "mitsuba_support.h"
+
+namespace etendue::mitsuba_test {
+namespace {
+
+const std::string sky = "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"1\"/></emitter>";
+const std::string volumetric = sensor() + integrator(-1, "volpath");
+
+std::string ball(const std::string& inside) {  // two units thick
+  return "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"0\" z=\"5\"/><bsdf type=\"null\"/>" + inside + "</shape>";
+}
+std::string before_sky(const std::string& bsdf) {
+  return sky + "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"10\"/><translate z=\"5\"/></transform>" +
+         bsdf + "</shape>";
+}
+/// The mean Y of a picture of which something was told.
+double brightness(const Imported& imported, const std::string& word) {
+  EXPECT_NE(imported.told().find(word), std::string::npos) << imported.told();
+  if (!imported.job) return -1;
+  imported.job->outputs.clear();
+  return test::measure(imported.job).mean.y;
+}
+
+TEST(MitsubaMedium, AnEvenHeterogeneousOneEndsWithTheBoxOfItsVolume) {
+  const auto seen_through = [](const std::string& sigma_t) {
+    return seen(import_text(scene(volumetric + sky +
+                                  ball("<medium type=\"heterogeneous\" name=\"interior\"><float name=\"albedo\" value=\"0\"/>" +
+                                       sigma_t + "</medium>"))),
+                16384)
+        .y;
+  };
+  const std::string here = "<transform name=\"to_world\"><translate x=\"-0.5\" y=\"-0.5\" z=\"4.5\"/></transform>";
+  const auto volume = [](const std::string& more) {
+    return "<volume type=\"constvolume\" name=\"sigma_t\"><float name=\"value\" value=\"1\"/>" + more + "</volume>";
+  };
+  EXPECT_NEAR(seen_through(volume(here)), std::exp(-1.), 0.012);
+  EXPECT_NEAR(seen_through(volume("")), 1, 1e-3);  // the unit cube at the origin
+  EXPECT_NEAR(seen_through("<float name=\"sigma_t\" value=\"1\"/>"), 1, 1e-3);
+}
+
+TEST(MitsubaMedium, AVolumelightIsWhatItsMediumAddsPerDistance) {
+  const auto shining = [](const std::string& medium) {
+    return seen(import_text(
+                    scene(volumetric + ball(medium + "<emitter type=\"volumelight\"><rgb name=\"radiance\" value=\"0.3\"/>"
+                                                     "</emitter>"))),
+                16384)
+        .y;
+  };
+  const std::string albedo = "<float name=\"albedo\" value=\"0\"/>";
+  EXPECT_NEAR(shining("<medium type=\"homogeneous\" name=\"interior\"><float name=\"sigma_t\" value=\"0\"/></medium>"), 0.6,
+              0.01);
+  EXPECT_NEAR(
+      shining("<medium type=\"homogeneous\" name=\"interior\"><float name=\"sigma_t\" value=\"0.5\"/>" + albedo + "</medium>"),
+      0.3 * (1 - std::exp(-1.)) / 0.5, 0.01);
+  // One that ends with its box shines there alone.
+  EXPECT_NEAR(shining("<medium type=\"heterogeneous\" name=\"interior\">" + albedo +
+                      "<float name=\"scale\" value=\"3\"/><volume type=\"constvolume\" name=\"sigma_t\"><float name=\"value\" "
+                      "value=\"0\"/><transform name=\"to_world\"><scale value=\"8\"/><translate x=\"-4\" y=\"-4\" z=\"-3\"/>"
+                      "</transform></volume></medium>"),
+              0.3, 0.01);
+  const Imported none = import_text(scene(volumetric + sky + ball("<emitter type=\"volumelight\"/>")));
+  EXPECT_NE(none.told().find("its shape has none"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace etendue::mitsuba_test
