@@ -26,6 +26,26 @@ double brightness(const Imported& imported, const std::string& word) {
   return test::measure(imported.job).mean.y;
 }
 
+TEST(MitsubaMotion, InstancesFollowTheirAnimationInWhateverOrder) {
+  const auto key = [](const char* time, const char* x) {
+    return std::string("<transform time=\"") + time + "\"><translate x=\"" + x + "\"/></transform>";
+  };
+  const auto instance = [&](const std::string& keys) {
+    return import_text(scene(sensor() + integrator() + sky +
+                             "<shape type=\"shapegroup\" id=\"g\"><shape type=\"sphere\"/></shape><shape type=\"instance\">"
+                             "<ref id=\"g\"/><animation name=\"animation\">" +
+                             keys + "</animation></shape>"));
+  };
+  const Imported read = instance(key("1", "4") + key("0", "0") + key("0.5", "1"));
+  ASSERT_EQ(read.told(), "");
+  const Value transform = get(read.object(1), "transform");
+  const auto* moves = transform.as<AnimatedTransform>();
+  ASSERT_TRUE(moves);
+  for (const auto& [time, x] : {std::pair(0.f, 0.), {0.25f, 0.5}, {0.75f, 2.5}, {1.f, 4.}})
+    EXPECT_NEAR(moves->written(time)(DoublePoint3{0, 0, 0}).x, x, 1e-6);
+  EXPECT_NE(instance(key("1", "4") + key("1", "0")).told().find("same time"), std::string::npos);
+}
+
 TEST(MitsubaMedium, AnEvenHeterogeneousOneEndsWithTheBoxOfItsVolume) {
   const auto seen_through = [](const std::string& sigma_t) {
     return seen(import_text(scene(volumetric + sky +
