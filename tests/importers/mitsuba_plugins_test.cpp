@@ -87,5 +87,60 @@ TEST(MitsubaMedium, AVolumelightIsWhatItsMediumAddsPerDistance) {
   EXPECT_NE(none.told().find("its shape has none"), std::string::npos);
 }
 
+TEST(MitsubaLight, AProjectorOfOneColourIsASquareOfItsFieldOfView) {
+  const auto lit = [](const std::string& projector, const char* x) {
+    const std::string look = std::string("<transform name=\"to_world\"><lookat origin=\"0, 0, 0\" target=\"") + x +
+                             ", 0, 5\" up=\"0, 1, 0\"/></transform>";
+    return seen(import_text(
+                    scene(sensor("<float name=\"fov\" value=\"0.5\"/>" + look) + integrator() + "<emitter type=\"projector\">" +
+                          projector +
+                          "</emitter><shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"10\"/><rotate "
+                          "y=\"1\" angle=\"180\"/><translate z=\"5\"/></transform></shape>")),
+                64)
+        .y;
+  };
+  const std::string red = "<rgb name=\"irradiance\" value=\"2\"/>", narrow = "<float name=\"fov\" value=\"45\"/>";
+  const double middle = lit(red + narrow, "0");
+  EXPECT_NEAR(middle, 2 * 0.5 / 25, 2e-3);
+  EXPECT_NEAR(lit(red + narrow, "2.0"), middle, 2e-3);  // the edge is at 5 tan(22.5 deg) = 2.07
+  EXPECT_EQ(lit(red + narrow, "2.15"), 0);
+  // 50 mm: half the diagonal is 5 * 43.267 / 100 = 2.163, half the width of a square 1.530.
+  EXPECT_GT(lit(red, "1.5"), 0.03);
+  EXPECT_EQ(lit(red, "1.56"), 0);
+  EXPECT_EQ(lit(red + "<string name=\"focal_length\" value=\"100mm\"/>", "0.8"), 0);
+}
+
+TEST(MitsubaLight, TheSunStandsWhereItDoesAtAPlaceAndTime) {
+  struct Row {
+    const char* more;
+    double x, y, z;
+  };
+  const Row rows[] = {
+      {"", 0.0513854, 0.691748, 0.720308},
+      {"<float name=\"hour\" value=\"9\"/>", 0.0956952, -0.614786, 0.782867},
+      {"<float name=\"hour\" value=\"12\"/><float name=\"latitude\" value=\"48\"/><float name=\"longitude\" "
+       "value=\"11\"/><float "
+       "name=\"timezone\" value=\"1\"/><integer name=\"year\" value=\"2024\"/><integer name=\"month\" value=\"3\"/><integer "
+       "name=\"day\" value=\"20\"/>",
+       0.737596, -0.10154, 0.667564}};
+  for (const Row& row : rows) {
+    const Imported read =
+        import_text(scene(sensor() + integrator() + "<emitter type=\"sunsky\">" + std::string(row.more) + "</emitter>"));
+    ASSERT_TRUE(read.job) << read.told();
+    const Value sun = get(part(read.object(0), "emission"), "sun_direction");
+    ASSERT_TRUE(sun.as<Numbers>());
+    const std::vector<double>& v = sun.as<Numbers>()->values;  // here y is up
+    EXPECT_NEAR(v[0], row.x, 1e-3);
+    EXPECT_NEAR(v[1], row.z, 1e-3);
+    EXPECT_NEAR(v[2], -row.y, 1e-3);
+  }
+  const Imported sky_alone = import_text(scene(
+      sensor() + integrator() +
+      "<emitter type=\"sunsky\"><float name=\"sun_scale\" value=\"0\"/><float name=\"sky_scale\" value=\"3\"/></emitter>"));
+  const Component& emission = part(sky_alone.object(0), "emission");
+  EXPECT_EQ(*get(emission, "sun").as<bool>(), false);
+  EXPECT_EQ(number(emission, "scale"), 3);
+}
+
 }  // namespace
 }  // namespace etendue::mitsuba_test
