@@ -46,6 +46,17 @@ TEST(MitsubaMotion, InstancesFollowTheirAnimationInWhateverOrder) {
   EXPECT_NE(instance(key("1", "4") + key("1", "0")).told().find("same time"), std::string::npos);
 }
 
+TEST(MitsubaSensor, WithoutAnUpItHasMitsubasOwn) {
+  const Imported read =
+      import_text(scene(sensor("<transform name=\"to_world\"><look_at origin=\"0, 0, 0\" target=\"2, -1, 2\"/></transform>") +
+                        integrator() + sky));
+  const Value up = get(*read.job->camera, "up");
+  ASSERT_TRUE(up.as<Numbers>());
+  // Of n = (2, -1, 2) / 3: 1 - n.x^2 / (1 + n.z), - n.x n.y / (1 + n.z), -n.x.
+  const double expected[] = {1 - 4. / 9 / (5. / 3), 2. / 9 / (5. / 3), -2. / 3};
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(up.as<Numbers>()->values[i], expected[i], 1e-6);
+}
+
 TEST(MitsubaMedium, AnEvenHeterogeneousOneEndsWithTheBoxOfItsVolume) {
   const auto seen_through = [](const std::string& sigma_t) {
     return seen(import_text(scene(volumetric + sky +
@@ -110,6 +121,7 @@ TEST(MitsubaLight, AProjectorOfOneColourIsASquareOfItsFieldOfView) {
   EXPECT_EQ(lit(red + "<string name=\"focal_length\" value=\"100mm\"/>", "0.8"), 0);
 }
 
+// Mitsuba 3.9.1's own numbers: its x is south, its y west.
 TEST(MitsubaLight, TheSunStandsWhereItDoesAtAPlaceAndTime) {
   struct Row {
     const char* more;
@@ -140,6 +152,48 @@ TEST(MitsubaLight, TheSunStandsWhereItDoesAtAPlaceAndTime) {
   const Component& emission = part(sky_alone.object(0), "emission");
   EXPECT_EQ(*get(emission, "sun").as<bool>(), false);
   EXPECT_EQ(number(emission, "scale"), 3);
+}
+
+TEST(MitsubaSurface, WhatFiltersPolarizationLetsHalfThrough) {
+  for (const auto& [bsdf, expected] : {std::pair("<bsdf type=\"polarizer\"><float name=\"theta\" value=\"30\"/></bsdf>", 0.5),
+                                       {"<bsdf type=\"circular\"><float name=\"transmittance\" value=\"0.6\"/></bsdf>", 0.3},
+                                       {"<bsdf type=\"retarder\"/>", 1.0}})
+    EXPECT_NEAR(brightness(import_text(scene(sensor() + integrator(4) + before_sky(bsdf))), "polarization"), expected, 0.02)
+        << bsdf;
+}
+
+TEST(MitsubaSurface, OwnTablesOfMetalsAreExact) {
+  const auto told = [](const std::string& metal) {
+    return import_text(scene(sensor() + integrator() +
+                             before_sky("<bsdf type=\"conductor\"><string name=\"material\" value=\"" + metal + "\"/></bsdf>")))
+        .told();
+  };
+  EXPECT_EQ(told("Au"), "");
+  EXPECT_NE(told("Cu_palik").find("another source"), std::string::npos);
+}
+
+TEST(MitsubaTexture, AVolumeOfOneColourIsThatColour) {
+  const std::string bsdf =
+      "<bsdf type=\"twosided\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"volume\"><volume name=\"volume\" "
+      "type=\"constvolume\"><float name=\"value\" value=\"0.25\"/></volume></texture></bsdf></bsdf>";
+  EXPECT_NEAR(seen(import_text(scene(sensor() + integrator() + before_sky(bsdf)))).y, 0.25, 0.01);
+}
+
+TEST(MitsubaSensor, ABatchIsItsFirstSensor) {
+  std::string batch = sensor();
+  batch = "<sensor type=\"batch\"><sensor type=\"perspective\"><float name=\"fov\" value=\"33\"/></sensor>" +
+          batch.substr(batch.find("<film"));
+  const Imported read = import_text(scene(batch + integrator() + sky));
+  EXPECT_NE(read.told().find("batch"), std::string::npos);
+  ASSERT_TRUE(read.job) << read.told();
+  EXPECT_NEAR(number(*read.job->camera, "fov"), 33 * M_PI / 180, 1e-6);
+}
+
+// Where file names do not tell capitals apart, such files work there.
+TEST(MitsubaNames, TypesMayHaveCapitals) {
+  const Imported read = import_text(scene(sensor() + integrator() + sky + "<shape type=\"Rectangle\"/>"));
+  EXPECT_EQ(read.told(), "");
+  EXPECT_EQ(read.object(1).class_info().name, "Rectangle");
 }
 
 }  // namespace
