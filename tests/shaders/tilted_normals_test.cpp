@@ -158,14 +158,18 @@ TEST_P(TiltedNormals, CarryTheSameFromBothEnds) {
 // The picture of a lamp's light on tilted normals, by paths from both ends: importance is the adjoint of what is seen.
 TEST(TiltedNormals, LookTheSameToAllRenderers) {
   const std::string lamp = "Sphere { centre: [0.5, 3, 2.5], radius: 0.7, emission: DiffuseEmission { radiance: 20 } }";
-  for (const std::string normals : {"folded", "clipped"})
+  struct Way {
+    const char *normals, *slopes;
+  };
+  for (const auto& [normals, slopes] :
+       {Way{"folded", ""}, {"clipped", ""}, {"clipped", ", shadowing: true, opposite_slopes: true"}})
     for (const White& white : {whites[0], whites[3], whites[5]}) {
-      const std::string mode = ", shading_normals: " + normals;
+      const std::string mode = std::string(", shading_normals: ") + normals;
       const std::string shader = white.text;
       const std::string objects =
           smooth_ball(3, "transform: translate(-1.1, 0, 0), shader: " + shader + mode) +
           "\nSphere { centre: [1.1, 0, 0], shader: BumpShader { shader: " + shader +
-          ", height: NoiseMap { size: 0.3 m }, scale: 0.3 }" + mode +
+          ", height: NoiseMap { size: 0.3 m }, scale: 0.3" + slopes + " }" + mode +
           " }\nDisc { radius: 3, transform: translate(0, -1, 0) * rotate(-90, \"x\"), shader: Lambertian { color: 0.6 } }\n" +
           lamp;
       const auto rendered = [&](const std::string& renderer) {
@@ -177,8 +181,8 @@ TEST(TiltedNormals, LookTheSameToAllRenderers) {
            {"BidirectionalPathTracer { max_depth: 6, samples: 256 }", "LightTracer { max_depth: 6, samples: 1024 }"}) {
         const Measured m = rendered(other);
         EXPECT_NEAR(m.mean.y / path.mean.y, 1, 4.5 * std::hypot(m.error, path.error) / path.mean.y)
-            << white.name << ", " << normals << ", " << other << ": " << m.mean.y << " +- " << m.error << ", " << path.mean.y
-            << " +- " << path.error;
+            << white.name << ", " << normals << slopes << ", " << other << ": " << m.mean.y << " +- " << m.error << ", "
+            << path.mean.y << " +- " << path.error;
         EXPECT_LT(m.error / path.mean.y, 0.05) << white.name << other;
       }
     }

@@ -42,6 +42,7 @@ class Converter {
   void place(Component& camera, const Element& sensor);
   Ref<Component> camera(const Element& sensor);
   std::string axis_of(const Element& e);
+  static double focal_length(const Element& e);
   bool front_by_world(const Element& shape);
   void set_view(Component& camera, const Element& sensor);
   void set_clip(Component& camera, const Element& sensor);
@@ -89,6 +90,7 @@ class Converter {
   Surface coating(const Element&, Uv, const std::string& name);
   Surface mixture(const Element&, Uv, const std::string& name);
   Surface mask(const Element&, Uv, const std::string& name);
+  Surface filter_of_polarization(const Element&, Uv, const std::string& name);
   Surface tilted(const Element&, Uv, const std::string& name);
   Surface classic(const Element&, Uv, const std::string& name);
   Surface principled(const Element&, Uv, const std::string& name);
@@ -124,11 +126,18 @@ class Converter {
   Ref<Component> diffuse_emission(const Element&, const char* light_name);
 
   // media
-  /// What fills an object, whose transform is set: grids lie in the object's own coordinates.
-  Ref<Component> medium(const Element&, const Component& object);
+  /// What fills an object, whose transform is set: grids lie in the object's own coordinates. `glow`: the object's volumelight.
+  Ref<Component> medium(const Element&, const Component& object, const Element* glow = nullptr);
   Ref<Component> homogeneous(const Element&);
-  Ref<Component> heterogeneous(const Element&, const Component& object);
-  Ref<Component> grid(const Element& medium, const Element& volume, const Component& object);
+  Ref<Component> heterogeneous(const Element&, const Component& object, const Element* glow);
+  bool same_place(const Element& grid, const Element& other);
+  Ref<Component> box_of(const Element& medium, const Element* volume, const Component& object);
+  void place_box(Component& box, const Element& medium, const Element* grid, const Component& object);
+  void set_albedo(Component& medium, const Element&, const Element* volume, const Component& object);
+  /// From the unit cube to the box that a heterogeneous medium fills whose extinction is the same everywhere.
+  static Transform box_of_constant(const Element& medium);
+  static Transform to_world_of(const Component& object);
+  void shine(Component& medium, const Element& glow, const Component& object);
   void set_grid(Component& grid, const Element& volume, const Component& object);
   void set_phase(Component& volume, const Element& medium);
   Ref<Component> phase_function(const Element&);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/emission/sun_position.h"
 #include "converter.h"
 #include "etendue/describe/color.h"
 #include "etendue/film/image_tools.h"
@@ -16,6 +17,8 @@ namespace {
 const std::vector<std::string> known_emitters = {"area",     "point",      "spot",        "directional", "directionalarea",
                                                  "constant", "envmap",     "projector",   "sky",         "sun",
                                                  "sunsky",   "collimated", "volumelight", "timed_sunsky"};
+
+constexpr double degrees_a_radian = 180 / std::numbers::pi;
 
 Numbers three(const DoubleVector3& v) { return {{v.x, v.y, v.z}, 1, Dimension::none}; }
 
@@ -123,22 +126,30 @@ Ref<Component> Converter::spot(const Element& e) {
 
 Ref<Component> Converter::projector(const Element& e) {
   Ref<Component> emission = make("ProjectorEmission", e, "");
-  const Element* const picture = e.nested("irradiance");
-  if (!picture) throw Error("a projector needs a texture called 'irradiance'", e.at);
-  set(*emission, "picture", light_of(*picture, Uv::from_top));
-  set_member(*emission, "fov", e.number("fov", 46.79), e.location_of("fov"));
+  const Element* const picture = e.nested("irradiance");  // null: the same everywhere, over a square
+  set(*emission, "picture", light(e, "irradiance", Uv::from_top));
   set_member(*emission, "scale", e.number("scale", 1) * std::numbers::pi, e.at);
-  const std::string axis = axis_of(e);
-  if (axis == "diagonal")
-    importing_.inexact("a projector's angle is measured across its picture's width, not its diagonal",
-                       e.location_of("fov_axis"));
-  set_member(*emission, "fov_axis", axis == "diagonal" ? "width" : axis, e.location_of("fov_axis"));
-  if (picture->type == "bitmap")
+  double aspect = 1;
+  if (picture && picture->type == "bitmap")
     if (const auto file =
             importing_.optional_file(picture->string("filename", ""), picture->location_of("filename"), picture->folder)) {
       const Image image = read_image(*file);  // once more, for its size alone
-      set_member(*emission, "aspect", double(image.width) / double(image.height), picture->at);
+      aspect = double(image.width) / double(image.height);
+      set_member(*emission, "aspect", aspect, picture->at);
     }
+  std::string axis = axis_of(e);
+  double fov = e.number("fov", 0);
+  const Location at = e.location_of(e.has("fov") ? "fov" : "focal_length");
+  if (!e.has("fov")) {  // of a film whose diagonal is that of 36 x 24 mm
+    fov = 2 * std::atan(std::hypot(36, 24) / (2 * focal_length(e))) * degrees_a_radian;
+    axis = "diagonal";
+  }
+  if (axis == "diagonal") {
+    fov = 2 * std::atan(std::tan(fov / 2 / degrees_a_radian) / std::sqrt(1 + 1 / (aspect * aspect))) * degrees_a_radian;
+    axis = "width";
+  }
+  set_member(*emission, "fov", fov, at);
+  set_member(*emission, "fov_axis", axis, e.location_of("fov_axis"));
   Ref<Component> object = make("Point", e);
   set_member(*object, "emission", emission, e.at);
   set_transform(*object, e.transform(), e.location_of("to_world"));
@@ -170,25 +181,53 @@ Ref<Component> Converter::environment(const Element& e) {
   return object;
 }
 
+namespace {
+
+/// Towards the sun by place and time, in the coordinates of Mitsuba 3's sky: x south, y west, z up. Its defaults are those
+/// there.
+DoubleVector3 sun_by_time(const Element& e) {
+  const auto whole = [&](const char* name, std::int64_t otherwise) { return e.integer(name, otherwise); };
+  const double hours = e.number("hour", 15) + e.number("minute", 0) / 60 + e.number("second", 0) / 3600;
+  const std::string day = fmt::format("{:04}-{:02}-{:02}T00:00:00Z", whole("year", 2010), whole("month", 7), whole("day", 10));
+  try {
+    UniversalTime time = parse_time(day);
+    time.days += (hours - e.number("timezone", 9)) / 24;
+    const Vector3 sun = sun_direction(time, e.number("latitude", 35.6894), e.number("longitude", 139.6917));
+    return {double(sun.z), -double(sun.x), double(sun.y)};
+  } catch (const Error& error) {
+    throw Error(error.what(), e.at);
+  }
+}
+
+}  // namespace
+
 // The sky's own up is y in Mitsuba 0.x, as here, and z in version 3; the sun's direction is the world's in both.
 Ref<Component> Converter::sky(const Element& e) {
   const Transform y_to_z(Transform::DoubleMatrix{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0});
   TransformValue stands = e.transform();
   if (!e.old) stands.transform = stands.transform * AnimatedTransform(y_to_z);
   Ref<Component> emission = make("SkyEmission", e, "");
-  set_member(*emission, "sun", e.type != "sky", e.at);
+  const double sun_scale = e.number("sun_scale", 1), sky_scale = e.number("sky_scale", 1);
+  const bool sun = e.type != "sky" && sun_scale > 0;
+  set_member(*emission, "sun", sun, e.at);
   if (e.has("turbidity")) set_member(*emission, "turbidity", e.number("turbidity", 3), e.location_of("turbidity"));
   if (e.has("albedo")) set_member(*emission, "ground_albedo", spectrum_of(e, "albedo", 0.3), e.location_of("albedo"));
   if (e.has("sun_direction")) {
-    const DoubleVector3 sun = e.vector("sun_direction", {0, 1, 0});
+    const DoubleVector3 to_sun = e.vector("sun_direction", {0, 1, 0});
     const Transform& world = stands.transform.still();
-    const DoublePoint3 end = world.back(DoublePoint3{sun.x, sun.y, sun.z}), begin = world.back(DoublePoint3{0, 0, 0});
+    const DoublePoint3 end = world.back(DoublePoint3{to_sun.x, to_sun.y, to_sun.z}), begin = world.back(DoublePoint3{0, 0, 0});
     set_member(*emission, "sun_direction", three({end.x - begin.x, end.y - begin.y, end.z - begin.z}),
                e.location_of("sun_direction"));
-  } else {
+  } else if (e.old || e.type == "timed_sunsky") {
     inexact(e, "the sun's place by date and time is not read: it stands in the direction (1, 1, 1)");
+  } else {
+    const DoubleVector3 to_sun = sun_by_time(e);
+    set_member(*emission, "sun_direction", three({to_sun.x, to_sun.z, -to_sun.y}), e.at);
   }
-  if (e.has("scale")) set_member(*emission, "scale", e.number("scale", 1), e.location_of("scale"));
+  set_member(*emission, "scale", e.number("scale", 1) * sky_scale, e.location_of(e.has("sky_scale") ? "sky_scale" : "scale"));
+  if (sun && sun_scale != sky_scale)
+    importing_.inexact("the sun is brightened with its sky: 'sun_scale' is taken to be 'sky_scale'",
+                       e.location_of("sun_scale"));
   inexact(e, fmt::format("'{}' is a model of measured skies whose brightness differs from Mitsuba's", e.type));
   Ref<Component> object = make("Environment", e);
   set_member(*object, "emission", emission, e.at);

@@ -27,15 +27,40 @@ void set_lobe(Component& part, const Element& hg) { set_member(part, "anisotropy
 
 }  // namespace
 
-Ref<Component> Converter::medium(const Element& e, const Component& object) {
+Ref<Component> Converter::medium(const Element& e, const Component& object, const Element* glow) {
   if (e.tag != "medium") throw Error(fmt::format("a medium is expected, not a {}", e.tag), e.at);
-  if (const auto known = media_.find(&e); known != media_.end()) return known->second;
+  if (const auto known = media_.find(&e); known != media_.end() && !glow) return known->second;
   const Reading reading(e);
-  if (e.type == "heterogeneous") return heterogeneous(e, object);
+  std::optional<Reading> of_glow;
+  if (glow) of_glow.emplace(*glow);
+  if (e.type == "heterogeneous") return heterogeneous(e, object, glow);
   if (e.type != "homogeneous") fail_unknown(e, known_media);
   Ref<Component> made = homogeneous(e);
-  media_.emplace(&e, made);
+  if (glow)
+    shine(*made, *glow, object);
+  else
+    media_.emplace(&e, made);
   return made;
+}
+
+// The emitter 'volumelight' of a shape: its "radiance" is what the medium inside adds per distance, whatever it absorbs.
+void Converter::shine(Component& medium, const Element& glow, const Component& object) {
+  glow.ignore({"sampling_weight"});
+  const Element* const volume = glow.nested("radiance");
+  if (!volume || volume->type != "gridvolume") {
+    set(medium, "emission", light(glow, "radiance", Uv::as_is));
+    return;
+  }
+  if (medium.class_info().name != "MapVolume")
+    throw Error("a grid of light is read in a medium alone whose 'sigma_t' is a grid too", volume->at);
+  const Reading reading(*volume);
+  const Ref<Component> grid = make("GridMap", *volume), read = make("ReadAsMap", *volume, "");
+  set_grid(*grid, *volume, object);
+  set_member(*grid, "outside", wrap_mode(*volume), volume->at);
+  set_member(*read, "map", grid, volume->at);
+  set_member(*read, "as", "coefficient", volume->at);  // a grid as light is not multiplied by a white there
+  set_member(medium, "emission", read, volume->at);
+  volume->ignore({"raw", "accel"});
 }
 
 void Converter::set_phase(Component& volume, const Element& e) {
@@ -48,7 +73,7 @@ void Converter::set_phase(Component& volume, const Element& e) {
     }
   }
   e.ignore({"sample_emitters", "has_spectral_extinction", "majorant_resolution_factor", "control_density", "method", "strategy",
-            "medium_sampling_weight"});
+            "medium_sampling_weight", "medium_sampling_mode", "sigma_n"});
 }
 
 Ref<Component> Converter::phase_function(const Element& e) {
@@ -129,83 +154,113 @@ Ref<Component> Converter::homogeneous(const Element& e) {
   return volume;
 }
 
-Ref<Component> Converter::heterogeneous(const Element& e, const Component& object) {
+Ref<Component> Converter::heterogeneous(const Element& e, const Component& object, const Element* glow) {
   const char* const name = e.has("sigma_t") ? "sigma_t" : "density";  // the latter in 0.5
-  const Element* const volume = e.nested(name);
-  if (!volume) {
-    if (!e.has(name)) throw Error("a heterogeneous medium needs a volume called 'sigma_t'", e.at);
-    return homogeneous(e);
-  }
-  const Reading reading(*volume);
-  if (volume->type == "constvolume") {
-    Ref<Component> same = make("HomogeneousVolume", e);
-    set_phase(*same, e);
-    set_member(*same, "extinction", scaled_spectrum(e.number("scale", 1), spectrum_of(*volume, "value", 1)), volume->at);
-    set_member(*same, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
-    return same;
-  }
-  if (volume->type != "gridvolume") {
+  const Element *const volume = e.nested(name), *albedo = e.nested("albedo");
+  if (albedo && albedo->tag != "volume") albedo = nullptr;
+  std::optional<Reading> of_volume, of_albedo;
+  if (volume) of_volume.emplace(*volume);
+  if (albedo && albedo != volume) of_albedo.emplace(*albedo);
+  const bool even = !volume || volume->type == "constvolume", albedos = albedo && albedo->type == "gridvolume";
+  if (!even && volume->type != "gridvolume") {
     inexact(*volume, fmt::format("volume '{}' is not known here: the medium is left out", volume->type));
     return nullptr;
   }
-  return grid(e, *volume, object);
-}
-
-// Density on a grid, and an albedo that is a colour or a grid too. Where both grids lie in one place they are a GridVolume.
-Ref<Component> Converter::grid(const Element& e, const Element& volume, const Component& object) {
-  const Element* albedo = e.nested("albedo");
-  if (albedo && albedo->tag != "volume") albedo = nullptr;
-  std::optional<Reading> reading;
-  if (albedo) reading.emplace(*albedo);
-  const bool albedos = albedo && albedo->type == "gridvolume";
-  const auto same_place = [&] {
-    // Boxes that two files name may differ.
-    if (albedo->boolean("use_grid_bbox", false) && file(*albedo).resolved() != file(volume).resolved()) return false;
-    return albedo->transform().transform.still().exact() == volume.transform().transform.still().exact() &&
-           albedo->boolean("use_grid_bbox", false) == volume.boolean("use_grid_bbox", false) &&
-           albedo->string("filter_type", "trilinear") == volume.string("filter_type", "trilinear");
-  };
-  const bool apart = albedos && !same_place();
-  Ref<Component> medium;
-  if (apart) {
-    medium = make("MapVolume", e);
-    const Ref<Component> density = make("GridMap", volume), part = make("GridMap", *albedo);
-    set_grid(*density, volume, object);
-    set_grid(*part, *albedo, object);
-    set_member(*density, "outside", "cut", volume.at);
-    set_member(*part, "outside", wrap_mode(*albedo), albedo->at);
-    set_member(*medium, "extinction", density, volume.at);
-    set_member(*medium, "albedo", part, albedo->at);
-  } else {
-    medium = make("GridVolume", e);
-    set_grid(*medium, volume, object);
-    wrap_mode(volume);
-    set_member(*medium, "outside", "cut", volume.at);  // the medium ends with the box of its densities, whatever is around it
-    if (albedos) {
-      set_member(*medium, "albedo", 1, albedo->at);
-      set_member(*medium, "albedo_file", file(*albedo), albedo->location_of("filename"));
-      albedo->ignore({"wrap_mode"});
-    } else if (albedo) {
-      set_member(*medium, "albedo", spectrum_of(*albedo, "value", 0.75), albedo->at);
-    } else {
-      set_member(*medium, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
+  const double scale = e.number("scale", 1);
+  const Color all_of_it = even ? scaled_spectrum(scale, volume ? spectrum_of(*volume, "value", 1) : spectrum_of(e, name, 1))
+                               : flat_spectrum(float(scale));
+  const bool of_maps = glow || (albedos && (even || !same_place(*albedo, *volume)));
+  const Location at = e.location_of(name);
+  Ref<Component> medium = make(of_maps ? "MapVolume" : "GridVolume", e);
+  if (of_maps) {
+    // What shines ends with the box, too, which is therefore the density; a file's box is known to the grid alone.
+    if (even || !volume->boolean("use_grid_bbox", false)) set_member(*medium, "density", box_of(e, volume, object), at);
+    Ref<Component> extinction;
+    if (!even) {
+      const Ref<Component> grid = make("GridMap", *volume);
+      set_grid(*grid, *volume, object);
+      set_member(*grid, "outside", "cut", at);
+      extinction = make("MultiplyMap", e, "");
+      set_member(*extinction, "first", grid, at);
+      set_member(*extinction, "second", all_of_it, e.location_of("scale"));
     }
+    set(*medium, "extinction", even ? Value(all_of_it, at) : Value(extinction, at));
+  } else {
+    set_member(*medium, "extinction", all_of_it, e.location_of("scale"));
+    if (even)
+      place_box(*medium, e, nullptr, object);
+    else
+      set_grid(*medium, *volume, object);
+    set_member(*medium, "outside", "cut", at);  // the medium ends with the box, whatever is around it
   }
+  if (!even) wrap_mode(*volume);
+  set_albedo(*medium, e, albedo, object);
   set_phase(*medium, e);
-  set_member(*medium, apart ? "density" : "extinction", e.number("scale", 1), e.location_of("scale"));
-  for (const Element* grid : {&volume, albedo})
+  if (glow) shine(*medium, *glow, object);
+  for (const Element* grid : {volume, albedo})
     if (grid) grid->ignore({"raw", "accel"});
   return medium;
+}
+
+/// 1 in the box of a heterogeneous medium, and 0 outside. `volume`: its 'sigma_t', if that is one.
+Ref<Component> Converter::box_of(const Element& e, const Element* volume, const Component& object) {
+  Ref<Component> box = make("GridMap", e, "");
+  place_box(*box, e, volume && volume->type == "gridvolume" ? volume : nullptr, object);
+  set_member(*box, "outside", "cut", e.at);
+  return box;
+}
+
+void Converter::place_box(Component& box, const Element& e, const Element* grid, const Component& object) {
+  const Transform to_world = grid ? grid->transform().transform.still() : box_of_constant(e);
+  const Transform placement = to_world_of(object).inverse() * to_world;
+  if (!placement.identity()) set_member(box, "placement", placement, e.at);
+}
+
+/// Whether two grids lie in one place and are read alike.
+bool Converter::same_place(const Element& a, const Element& b) {
+  // Boxes that two files name may differ.
+  if (a.boolean("use_grid_bbox", false) && file(a).resolved() != file(b).resolved()) return false;
+  return a.transform().transform.still().exact() == b.transform().transform.still().exact() &&
+         a.boolean("use_grid_bbox", false) == b.boolean("use_grid_bbox", false) &&
+         a.string("filter_type", "trilinear") == b.string("filter_type", "trilinear");
+}
+
+/// `volume`: the volume that says it; null: the medium itself says it.
+void Converter::set_albedo(Component& medium, const Element& e, const Element* volume, const Component& object) {
+  if (!volume || volume->type != "gridvolume") {
+    const Color same = volume ? spectrum_of(*volume, "value", 0.75) : spectrum_of(e, "albedo", 0.75);
+    set_member(medium, "albedo", same, e.location_of("albedo"));
+  } else if (medium.class_info().name == "MapVolume") {
+    const Ref<Component> grid = make("GridMap", *volume);
+    set_grid(*grid, *volume, object);
+    set_member(*grid, "outside", wrap_mode(*volume), volume->at);
+    set_member(medium, "albedo", grid, volume->at);
+  } else {
+    set_member(medium, "albedo", 1, volume->at);
+    set_member(medium, "albedo_file", file(*volume), volume->location_of("filename"));
+    volume->ignore({"wrap_mode"});
+  }
+}
+
+// A heterogeneous medium ends there with the box, along the axes of the world, of its 'sigma_t', be that the same everywhere.
+Transform Converter::box_of_constant(const Element& medium) {
+  const Element* const volume = medium.nested("sigma_t");
+  const Bounds3 box = (volume ? volume->transform().transform.still() : Transform())(Bounds3{Point3{0, 0, 0}, Point3{1, 1, 1}});
+  const Vector3 size = box.high - box.low;
+  return Transform::translate({box.low.x, box.low.y, box.low.z}) * Transform::scale({size.x, size.y, size.z});
+}
+
+Transform Converter::to_world_of(const Component& object) {
+  const Value transform = get(object, "transform");
+  const auto* placed = transform.as<AnimatedTransform>();
+  const auto* still = transform.as<Transform>();
+  return placed ? placed->still() : (still ? *still : Transform());
 }
 
 /// The file of a grid and its place.
 void Converter::set_grid(Component& grid, const Element& volume, const Component& object) {
   set_member(grid, "file", file(volume), volume.location_of("filename"));
-  const Value transform = get(object, "transform");
-  const auto* placed = transform.as<AnimatedTransform>();
-  const auto* still = transform.as<Transform>();
-  const Transform to_world = placed ? placed->still() : (still ? *still : Transform());
-  const Transform placement = to_world.inverse() * volume.transform().transform.still();
+  const Transform placement = to_world_of(object).inverse() * volume.transform().transform.still();
   if (!placement.identity()) set_member(grid, "placement", placement, volume.location_of("to_world"));
   set_member(grid, "file_box", volume.boolean("use_grid_bbox", false), volume.at);
   set_member(grid, "filter", volume.string("filter_type", "trilinear"), volume.location_of("filter_type"));

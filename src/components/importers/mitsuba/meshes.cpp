@@ -175,7 +175,8 @@ Ref<Component> Converter::instance(const Element& e) {
     const Reading reading(of);
     set_member(*instance, "scene", group(of), e.at);
   }
-  set_transform(*instance, e.transform(), e.location_of("to_world"));
+  const char* const placement = e.has("animation") ? "animation" : "to_world";  // the former counts alone
+  set_transform(*instance, e.transform(placement), e.location_of(placement));
   return instance;
 }
 

@@ -149,9 +149,10 @@ Converter::Surface Converter::conductor(const Element& e, Uv uv, const std::stri
     const std::string element = material.substr(0, material.find('_'));
     try {
       set_member(*shader, "ior", metal_index(element), e.location_of("material"));
-      importing_.inexact(
-          fmt::format("the optical constants of '{}' are those of metal(\"{}\"), from another source", material, element),
-          e.location_of("material"));
+      if (element != material)  // those without a suffix are Mitsuba's own tables
+        importing_.inexact(
+            fmt::format("the optical constants of '{}' are those of metal(\"{}\"), from another source", material, element),
+            e.location_of("material"));
     } catch (const Error&) {
       set_member(*shader, "ior", metal_index("Cr"), e.location_of("material"));
       importing_.inexact(
@@ -173,7 +174,8 @@ Converter::Surface Converter::plastic(const Element& e, Uv uv, const std::string
   if (e.has("specular_reflectance")) set(*shader, "reflection_tint", color(e, "specular_reflectance", 1, uv));
   set_member(*shader, "ior", index(e, "int_ior", "polypropylene") / index(e, "ext_ior", "air"), e.at);
   set_member(*shader, "nonlinear", e.boolean("nonlinear", false), e.at);
-  if (e.type == "roughplastic") {
+  if (e.type == "pplastic") inexact(e, "'pplastic' is taken for 'roughplastic': light has no polarization here");
+  if (e.type != "plastic") {
     const std::string distribution = e.string("distribution", "beckmann");
     if (distribution != "ggx" && distribution != "beckmann")
       importing_.inexact(fmt::format("the microfacet distribution '{}' is taken for 'beckmann'", distribution),

@@ -24,7 +24,9 @@ std::string modern_tag(const std::string& tag) {
   return tag;
 }
 
-std::string modern_type(const std::string& tag, const std::string& type) {
+std::string modern_type(const std::string& tag, const std::string& written) {
+  std::string type = written;  // "Rectangle" is found where file names do not tell capitals apart
+  for (char& c : type) c = char(std::tolower(static_cast<unsigned char>(c)));
   static constexpr std::pair<const char*, const char*> bsdfs[] = {
       {"lambertian", "diffuse"},        {"microfacet", "roughplastic"}, {"roughglass", "roughdielectric"},
       {"roughmetal", "roughconductor"}, {"composite", "mixturebsdf"},   {"bump", "bumpmap"},

@@ -196,9 +196,10 @@ void SceneReader::read_animation(const pugi::xml_node& node, Element& into) {
     const Text time = required(child, "time");
     keys.push_back({float(parse_number(time)), parse_transform(child, attributes(), places()).transform.still()});
     if (!keys.back().transform.valid()) throw Error("this transform cannot be inverted: it makes things flat", at(child));
-    if (keys.size() > 1 && !(keys[keys.size() - 2].time < keys.back().time))
-      throw Error("the times of transforms must increase", time.at);
   }
+  constexpr auto when = &AnimatedTransform::Key::time;
+  std::ranges::sort(keys, {}, when);  // they may stand in any order
+  if (std::ranges::adjacent_find(keys, {}, when) != keys.end()) throw Error("two transforms have the same time", at(node));
   if (keys.empty()) throw Error("<animation> needs transforms", at(node));
   add(into, {modern_name(required(node, "name").text), at(node), TransformValue{AnimatedTransform(std::move(keys)), {}}});
 }

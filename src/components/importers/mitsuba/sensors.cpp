@@ -49,30 +49,34 @@ void Converter::place(Component& camera, const Element& e) {
 Ref<Component> Converter::camera(const Element& e) {
   if (std::ranges::find(known_sensors, e.type) == known_sensors.end()) fail_unknown(e, known_sensors);
   const Reading reading(e);
-  Ref<Component> camera;
+  if (const std::vector<const Element*> inner = e.all("sensor"); e.type == "batch" && !inner.empty()) {
+    inexact(e, "of the sensors of a 'batch' the first takes the whole picture");
+    return camera(*inner.front());
+  }
+  Ref<Component> made;
   if (e.type == "orthographic" || e.type == "telecentric") {
-    camera = make("OrthographicCamera", e);
+    made = make("OrthographicCamera", e);
     const Transform::DoubleMatrix m = e.transform().transform.still().exact();
     const double x = length(column(m, 0)), y = length(column(m, 1));
-    set_member(*camera, "width", 2 * x, e.location_of("to_world"));
+    set_member(*made, "width", 2 * x, e.location_of("to_world"));
     if (std::abs(x - y) > 1e-4 * x)
       importing_.inexact("the picture of an orthographic sensor is not stretched upwards", e.location_of("to_world"));
     if (e.type == "telecentric") inexact(e, "a telecentric lens is taken for a pinhole: all is sharp");
   } else {
     if (e.type != "perspective" && e.type != "thinlens")
       inexact(e, fmt::format("sensor '{}' has no counterpart here: a perspective camera stands for it", e.type));
-    camera = make("PerspectiveCamera", e);
-    set_view(*camera, e);
+    made = make("PerspectiveCamera", e);
+    set_view(*made, e);
     if (e.type == "thinlens") {
-      set_member(*camera, "lens_radius", e.number("aperture_radius", 0), e.location_of("aperture_radius"));
-      set_member(*camera, "focus_distance", e.number("focus_distance", 0), e.location_of("focus_distance"));
+      set_member(*made, "lens_radius", e.number("aperture_radius", 0), e.location_of("aperture_radius"));
+      set_member(*made, "focus_distance", e.number("focus_distance", 0), e.location_of("focus_distance"));
     }
   }
-  place(*camera, e);
-  set_shutter(*camera, e);
-  set_clip(*camera, e);
+  place(*made, e);
+  set_shutter(*made, e);
+  set_clip(*made, e);
   e.ignore({"focus_distance", "srf"});
-  return camera;
+  return made;
 }
 
 /// The side that an angle of view is measured across, as it is called here.
@@ -84,22 +88,25 @@ std::string Converter::axis_of(const Element& e) {
   return axis == "x" ? "width" : axis == "y" ? "height" : axis;
 }
 
+/// [mm]
+double Converter::focal_length(const Element& e) {
+  const Property* p = e.find("focal_length");
+  if (!p) return 50;
+  std::string text = std::holds_alternative<std::string>(p->value) ? e.string("focal_length", "") : "";
+  if (text.ends_with("mm")) text.resize(text.size() - 2);
+  const double length = text.empty() ? e.number("focal_length", 50) : parse_number({text, p->at});
+  if (!(length > 0)) throw Error("a focal length must be more than 0 mm", p->at);
+  return length;
+}
+
 void Converter::set_view(Component& camera, const Element& e) {
   std::string axis = axis_of(e);
   const double fov = e.number("fov", 0);
   Location at = e.location_of("fov");
   const bool by_length = !e.has("fov");
   if (by_length) {
-    const Property* p = e.find("focal_length");
-    double focal_length = 50;  // [mm]
-    if (p) {
-      std::string text = std::holds_alternative<std::string>(p->value) ? e.string("focal_length", "") : "";
-      if (text.ends_with("mm")) text.resize(text.size() - 2);
-      focal_length = text.empty() ? e.number("focal_length", focal_length) : parse_number({text, p->at});
-      at = p->at;
-    }
-    if (!(focal_length > 0)) throw Error("a focal length must be more than 0 mm", at);
-    set_member(camera, "focal_length", focal_length / 1000, at);  // of a film whose diagonal is that of 36 x 24 mm, as there
+    at = e.location_of("focal_length");
+    set_member(camera, "focal_length", focal_length(e) / 1000, at);  // of a film whose diagonal is that of 36 x 24 mm, as there
     axis = "diagonal";
   }
   if (!by_length) set_member(camera, "fov", fov, at);

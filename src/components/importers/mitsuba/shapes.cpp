@@ -89,10 +89,7 @@ Ref<Component> Converter::cylinder(const Element& e) {
   const double height = length(way);
   if (!(height > 0)) throw Error("the ends of the cylinder, p0 and p1, are the same", e.at);
   if (!(radius > 0)) throw Error("the radius of a cylinder must be more than 0", e.location_of("radius"));
-  // The frame of Duff et al. 2017, "Building an orthonormal basis, revisited", as there: u begins where it points.
-  const DoubleVector3 n{way.x / height, way.y / height, way.z / height};
-  const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-  const DoubleVector3 s{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, t{b, sign + n.y * n.y * a, -n.y};
+  const auto [s, t, n] = frame_about(way);  // u begins where it points
   const Transform frame(Transform::DoubleMatrix{s.x, t.x, n.x, from.x, s.y, t.y, n.y, from.y, s.z, t.z, n.z, from.z});
   Ref<Component> cylinder = make("Cylinder", e);
   set_member(*cylinder, "radius", radius, e.at);
@@ -166,7 +163,14 @@ bool Converter::front_by_world(const Element& e) {
 void Converter::set_surface(Component& object, const Element& e, Uv uv) {
   bool flipped = e.boolean("flip_normals", false);
   if (mirrors(e.transform()) && front_by_world(e)) flipped = !flipped;
-  const std::vector<const Element*> bsdfs = e.all("bsdf"), emitters = e.all("emitter");
+  const std::vector<const Element*> bsdfs = e.all("bsdf");
+  std::vector<const Element*> emitters = e.all("emitter");
+  const Element* glow = nullptr;
+  std::erase_if(emitters, [&](const Element* emitter) {
+    const bool inside = emitter->type == "volumelight";
+    if (inside) glow = emitter;
+    return inside;
+  });
   if (bsdfs.size() > 1) importing_.inexact("a shape has one bsdf: the first counts", bsdfs[1]->at);
   if (!e.all("subsurface").empty()) inexact(e, "subsurface scattering of Mitsuba 0.5 is left out: the bsdf alone counts");
   if (!e.all("sensor").empty()) inexact(e, "a sensor on a shape is left out");
@@ -194,8 +198,9 @@ void Converter::set_surface(Component& object, const Element& e, Uv uv) {
     set_member(object, "emission", emission, e.at);
   }
   if (interior)
-    if (const Ref<Component> inside = medium(*interior, object))
+    if (const Ref<Component> inside = medium(*interior, object, glow))
       set_member(object, "interior", inside, e.location_of("interior"));
+  if (glow && !interior) inexact(*glow, "a 'volumelight' shines inside a medium, and its shape has none: it is left out");
   sides_.push_back({Ref<SceneObject>(dynamic_cast<SceneObject*>(&object)), interior, e.nested("exterior"), groups_read_ > 0,
                     e.location_of("exterior")});
   e.ignore({"silhouette_sampling_weight"});

@@ -59,7 +59,7 @@ Converter::Surface Converter::make_surface(const Element& e, Uv uv, const std::s
   if (type == "diffuse" || type == "roughdiffuse" || type == "difftrans") return matte(e, uv, name);
   if (type == "dielectric" || type == "roughdielectric" || type == "thindielectric") return dielectric(e, uv, name);
   if (type == "conductor" || type == "roughconductor") return conductor(e, uv, name);
-  if (type == "plastic" || type == "roughplastic") return plastic(e, uv, name);
+  if (type == "plastic" || type == "roughplastic" || type == "pplastic") return plastic(e, uv, name);
   if (type == "coating" || type == "roughcoating") return coating(e, uv, name);
   if (type == "blendbsdf" || type == "mixturebsdf") return mixture(e, uv, name);
   if (type == "mask") return mask(e, uv, name);
@@ -67,6 +67,7 @@ Converter::Surface Converter::make_surface(const Element& e, Uv uv, const std::s
   if (type == "phong" || type == "ward") return classic(e, uv, name);
   if (type == "principled" || type == "principledthin") return principled(e, uv, name);
   if (type == "hair") return fibre(e, name);
+  if (type == "polarizer" || type == "circular" || type == "retarder") return filter_of_polarization(e, uv, name);
   if (type == "null") return {make("PassThrough", e, name), true};
   if (type == "measured") {
     Ref<Component> shader = make("RglShader", e, name);
@@ -91,6 +92,24 @@ Converter::Surface Converter::make_surface(const Element& e, Uv uv, const std::s
   if (std::ranges::find(known_bsdfs, type) == known_bsdfs.end()) fail_unknown(e, known_bsdfs);
   inexact(e, fmt::format("bsdf '{}' has no counterpart here: a matt grey stands for it", type));
   return {make("Lambertian", e, name), false};
+}
+
+// Of light without polarization they let half through, or all, straight on, as Mitsuba's unpolarized variants do.
+Converter::Surface Converter::filter_of_polarization(const Element& e, Uv uv, const std::string& name) {
+  inexact(e,
+          fmt::format("'{}' lets through what it lets through of light without polarization: there is no other here", e.type));
+  e.ignore({"theta", "delta", "left_handed", "polarizing"});
+  const double share = e.type == "retarder" ? 1 : 0.5;
+  const Value through = scalar(e, "transmittance", 1, uv);
+  const auto* number = through.as<Number>();
+  if (!number) importing_.inexact("the transmittance is one number: 1 stands for the texture", e.location_of("transmittance"));
+  const double open = share * (number ? number->value : 1);
+  if (open >= 1) return {make("PassThrough", e, name), true};
+  Ref<Component> black = make("Lambertian", e, ""), shader = make("MaskShader", e, name);
+  set_member(*black, "color", 0.0, e.at);
+  set_member(*shader, "shader", black, e.at);
+  set_member(*shader, "opacity", 1 - open, e.at);
+  return {shader, true};
 }
 
 Converter::Surface Converter::inner_surface(const Element& e, Uv uv, size_t number) {
@@ -207,11 +226,9 @@ Converter::Surface Converter::tilted(const Element& e, Uv uv, const std::string&
     set_member(*shader, "green", "across", e.at);
   }
   set_member(*shader, "shader", inner.shader, e.at);
-  if (!e.old && e.boolean("use_shadowing_function", true))
-    inexact(e, fmt::format("'{}' here is without the shadowing function by which Mitsuba darkens where a tilted normal leaves "
-                           "the surface's own",
-                           e.type));
-  e.ignore({"flip_invalid_normals"});
+  // Both are Mitsuba's since 3.7.1.
+  if (!e.old && e.boolean("use_shadowing_function", true)) set_member(*shader, "shadowing", true, e.at);
+  if (!e.old && e.boolean("flip_invalid_normals", true)) set_member(*shader, "opposite_slopes", true, e.at);
   return {shader, inner.both_sides};
 }
 

@@ -19,7 +19,7 @@ std::string called(const Element& medium) {
 }
 
 /// The unit cube, or the box that the file names, of a grid of densities.
-std::optional<Transform> box_of(const Element& medium, const std::string& file) {
+std::optional<Transform> grid_box(const Element& medium, const std::string& file) {
   const Element* const volume = medium.nested(medium.has("sigma_t") ? "sigma_t" : "density");
   if (medium.type != "heterogeneous" || !volume || volume->type != "gridvolume") return std::nullopt;
   const Transform placed = volume->transform().transform.still();
@@ -60,9 +60,10 @@ Ref<SceneObject> Converter::settle_media(const Element* sensor, bool seen, const
   camera.medium = medium(*around, *cube);
   if (!camera.medium) return nullptr;
   if (camera.medium->class_info().find("file_box")) {
-    const Element& volume = *around->nested(around->has("sigma_t") ? "sigma_t" : "density");
-    const bool file_box = volume.boolean("use_grid_bbox", false);
-    camera.box = box_of(*around, file_box ? file(volume).resolved() : "");
+    const Element* const volume = around->nested(around->has("sigma_t") ? "sigma_t" : "density");
+    const bool file_box = volume && volume->boolean("use_grid_bbox", false);
+    camera.box = grid_box(*around, file_box ? file(*volume).resolved() : "");
+    if (!camera.box) camera.box = box_of_constant(*around);
     set_member(*cube, "transform", *camera.box, around->at);
     camera.medium = medium(*around, *cube);
   }

@@ -87,6 +87,8 @@ Value Converter::texture(const Element& e, Uv uv) {
       throw Error(error.what(), e.at);
     }
   }
+  if (e.type == "volume")
+    if (const Element* inner = e.nested("volume"); inner && inner->type == "constvolume") return texture(*inner, uv);
   if (e.type == "scale") {
     const std::vector<const Element*> inner = e.all("texture");
     if (inner.empty()) throw Error("texture 'scale' needs a texture", e.at);

@@ -145,6 +145,13 @@ ColorValue file_spectrum_value(const std::string& path, Location at) {
   }
 }
 
+FrameAbout frame_about(const DoubleVector3& way) {
+  const double l = length(way);
+  const DoubleVector3 n{way.x / l, way.y / l, way.z / l};
+  const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+}
+
 DoubleVector3 parse_vector(const pugi::xml_node& node, const Attributes& attribute, const PlaceOf& place, double otherwise) {
   if (const auto text = attribute(node, "value")) {
     const std::vector<double> n = parse_numbers(*text);
@@ -186,10 +193,9 @@ TransformValue::LookAt look_at_of(const pugi::xml_node& node, const Attributes& 
   const auto from = three("origin"), to = three("target");
   if (!from || !to) throw Error("<lookat> needs an origin and a target", place(node));
   const DoubleVector3 way{to->x - from->x, to->y - from->y, to->z - from->z};
-  DoubleVector3 up = three("up").value_or(DoubleVector3{0, 0, 0});
-  if (length(up) == 0)
-    up = std::abs(way.x) + std::abs(way.z) > std::abs(way.y) * 1e-3 ? DoubleVector3{0, 1, 0} : DoubleVector3{0, 0, 1};
   if (!(length(way) > 0)) throw Error("the target of <lookat> is its origin", place(node));
+  DoubleVector3 up = three("up").value_or(DoubleVector3{0, 0, 0});
+  if (length(up) == 0) up = frame_about(way).u;
   if (!(length(cross(way, up)) > 1e-9 * length(way) * length(up)))
     throw Error("'up' of <lookat> points along the line of sight", place(node));
   return {{from->x, from->y, from->z}, {to->x, to->y, to->z}, up};
@@ -219,7 +225,7 @@ TransformValue parse_transform(const pugi::xml_node& node, const Attributes& att
       const auto value = attribute(child, "value");
       if (!value) throw Error("<matrix> needs a value", place(child));
       step = matrix_of(*value);
-    } else if (tag == "lookat" || tag == "lookAt") {
+    } else if (tag == "lookat" || tag == "lookAt" || tag == "look_at") {
       look_at = look_at_of(child, attribute, place);
       step = Transform::look_at(look_at->from, look_at->to, look_at->up);
     } else {

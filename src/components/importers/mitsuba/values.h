@@ -34,6 +34,11 @@ ColorValue constant_spectrum(double value);
 /// Of two columns, wavelength [nm] and value, as in an SPD file.
 ColorValue file_spectrum_value(const std::string& path, Location at);
 
+/// Mitsuba's frame about a direction: Duff et al. 2017, "Building an orthonormal basis, revisited".
+struct FrameAbout {
+  DoubleVector3 u, v, n;
+};
+FrameAbout frame_about(const DoubleVector3& way);
 /// `<transform>`: its operations, the first of them first.
 TransformValue parse_transform(const pugi::xml_node&, const Attributes&, const PlaceOf&);
 /// x, y and z, or a value of one or three numbers.

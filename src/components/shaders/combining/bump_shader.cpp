@@ -29,6 +29,7 @@ class BumpShader final : public PerturbedNormalShader {
                                      "how high the surface is raised; only slopes show: one that rises in steps is flat",
                                      Meaning::number, soft(0.0001, 0.1), logarithmic)
         .member<&BumpShader::scale>("scale", "1", "multiplies the height", soft(-10, 10));
+    describe_slopes(d);
   }
 
   void prepare() override {

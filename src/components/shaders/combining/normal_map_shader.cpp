@@ -48,6 +48,7 @@ class NormalMapShader final : public PerturbedNormalShader {
             "pbrt have it. They differ where coordinates run mirrored over the surface",
             choices("v", "across"))
         .member<&NormalMapShader::flip_y>("flip_y", "", "whether green tilts the other way, as in images made for DirectX");
+    describe_slopes(d);
   }
 
   void prepare() override {

@@ -10,13 +10,11 @@ namespace etendue {
 /// knows its own normal.
 class PerturbedNormalShader : public Shader {
  public:
-  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
-    return shader->bind(perturbed(p), w, arena);
-  }
+  const Scatter* bind(const SurfacePoint&, const Wavelengths&, Arena&) const override;
   Lobes possible_lobes() const override { return shader->possible_lobes(); }
   Spectrum interior_index(const Wavelengths& w) const override { return shader->interior_index(w); }
   bool transmits() const override { return shader->transmits(); }
-  bool lossless() const override { return shader->lossless(); }
+  bool lossless() const override { return shader->lossless() && !shadowing; }
   // Light that leaves elsewhere leaves by the normal of the surface there.
   /// By its own, turned, cosines it is, not by those of what it is part of.
   bool reciprocal() const override { return false; }
@@ -28,8 +26,23 @@ class PerturbedNormalShader : public Shader {
   }
 
   Ref<Shader> shader;
+  bool shadowing = false, opposite_slopes = false;
 
  protected:
+  template <class T>
+  static void describe_slopes(Description<T>& d) {
+    d.group("Slopes")
+        .template member<&T::shadowing>(
+            "shadowing", "",
+            "whether light that comes at a slant is dimmed, the more the farther the normal is tilted, as slopes that shade "
+            "one "
+            "another would: shadows on tilted normals then begin softly. It loses light (Conty Estevez, Lecocq & Stein 2019, A "
+            "microfacet-based shadowing function to solve the bump terminator problem)")
+        .template member<&T::opposite_slopes>(
+            "opposite_slopes", "",
+            "whether who looks at a slope from behind sees instead the one tilted the other way (Schuessler et al. 2017, "
+            "Microfacet-based normal mapping for robust Monte Carlo path tracing); else he sees an image of himself");
+  }
   /// A vector along the new normal, of any length; `p` has its tangents. What is no direction leaves the normal as it is.
   virtual Vector3 tilted(const SurfacePoint& p) const = 0;
 

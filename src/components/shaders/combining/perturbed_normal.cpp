@@ -1,0 +1,101 @@
+#include "perturbed_normal.h"
+
+#include <algorithm>
+
+#include "components/shaders/part_choice.h"
+
+namespace etendue {
+namespace {
+
+// Shadowing. Tilted normals are taken for the slopes of a rough surface, of which the farthest tilted there may be is this one.
+// Such a surface, in GGX's distribution of roughness alpha, lets through to its slopes, of the light at the angle theta to the
+// normal,
+//     2 / (1 + sqrt(1 + alpha^2 tan^2 theta)),   alpha^2 = min(tan^2(tilt) / 8, 1)
+// (Conty Estevez, Lecocq & Stein 2019, equations 1 to 3), a function of where light comes from alone.
+//
+// Opposite slopes. Who looks from where the tilted normal faces away sees the slope tilted as far the other way (Schuessler et
+// al. 2017, section 3). Viewers are at `out` on paths from the camera, and at `in` on those from lights: there the slope is
+// known only when the direction is. So one of the two, drawn with probability 1/2, gives the direction, the density is
+// the mean of both, and the value is that of the slope which the direction sees. Both are so for importance the adjoint of
+// what they are for radiance.
+class TiltedScatter final : public ScatterCombination {
+ public:
+  /// `opposite`: null, the tilt is seen from everywhere.
+  TiltedScatter(const SurfacePoint& p, const Scatter* own, const Scatter* opposite, float alpha2)
+      : ScatterCombination(p, Lobes(own->lobes() | (opposite ? opposite->lobes() : no_lobes))),
+        own_(own),
+        opposite_(opposite),
+        untilted_(p.shading_normal),
+        alpha2_(alpha2) {
+    frame_ = own->frame();
+  }
+
+  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+    const bool radiance = transport == Transport::radiance;
+    ScatterValue v = seen_from(radiance ? out : in).value_and_density(out, in, transport, which);
+    if (!radiance && opposite_)
+      v.density = (own_->density(out, in, transport, which) + opposite_->density(out, in, transport, which)) / 2;
+    v.value *= let_through(radiance ? in : out);
+    return v;
+  }
+
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
+                                            Lobes which) const override {
+    const bool radiance = transport == Transport::radiance;
+    if (radiance || !opposite_ || which == pass_through) {
+      const Scatter& part = radiance ? seen_from(out) : *own_;
+      std::optional<ScatterSample> s = part.sample(out, choice, u, transport, which);
+      if (s && s->lobe != pass_through) s->weight *= let_through(radiance ? s->direction : out);
+      return s;
+    }
+    const Scatter& part = choice < 0.5f ? *own_ : *opposite_;
+    std::optional<ScatterSample> s = part.sample(out, left_of_choice(choice, 0.5f), u, transport, which);
+    if (!s || s->lobe == pass_through) return s;
+    if (s->specular()) {
+      if (&seen_from(s->direction) != &part) return std::nullopt;
+      s->weight *= 2 * let_through(out);
+      s->density /= 2;
+      return s;
+    }
+    const ScatterValue v = world_value_and_density(out, s->direction, transport, which);
+    if (!(v.density > 0)) return std::nullopt;
+    s->weight = v.value / v.density;
+    s->density = v.density;
+    return s;
+  }
+
+  Spectrum world_albedo(const Vector3& out, Lobes which) const override { return seen_from(out).albedo(out, which); }
+
+ private:
+  const Scatter& seen_from(const Vector3& v) const {
+    return opposite_ && dot(v, untilted_) * dot(v, own_->frame().n) <= 0 ? *opposite_ : *own_;
+  }
+  float let_through(const Vector3& v) const {
+    if (alpha2_ == 0) return 1;
+    const float c2 = dot(v, untilted_) * dot(v, untilted_);
+    return c2 > 0 ? 2 / (1 + std::sqrt(1 + alpha2_ * std::max(1 - c2, 0.0f) / c2)) : 0;
+  }
+
+  const Scatter *own_, *opposite_;
+  Normal3 untilted_;
+  float alpha2_;
+};
+
+}  // namespace
+
+const Scatter* PerturbedNormalShader::bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {
+  SurfacePoint tilted = perturbed(p);
+  const Scatter* own = shader->bind(tilted, w, arena);
+  const Normal3 n = tilted.shading_normal;
+  if (!own || !(shadowing || opposite_slopes) || n == p.shading_normal) return own;
+  const float cosine = dot(n, p.shading_normal), c2 = cosine * cosine;
+  const float alpha2 = !shadowing ? 0 : c2 > 0 ? std::min(std::max(1 - c2, 0.0f) / (8 * c2), 1.0f) : 1;
+  const Scatter* opposite = nullptr;
+  if (opposite_slopes) {
+    tilted.shading_normal = Normal3(2 * cosine * Vector3(p.shading_normal) - Vector3(n));
+    opposite = shader->bind(tilted, w, arena);
+  }
+  return arena.make<TiltedScatter>(p, own, opposite, alpha2);
+}
+
+}  // namespace etendue
