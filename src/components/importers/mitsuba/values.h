@@ -34,8 +34,8 @@ ColorValue constant_spectrum(double value);
 /// Of two columns, wavelength [nm] and value, as in an SPD file.
 ColorValue file_spectrum_value(const std::string& path, Location at);
 
-/// `<transform>`: its operations, the first of them first.
-TransformValue parse_transform(const pugi::xml_node&, const Attributes&, const PlaceOf&);
+/// `<transform>`: its operations, the first of them first. `old`: written for a Mitsuba before 2.
+TransformValue parse_transform(const pugi::xml_node&, const Attributes&, const PlaceOf&, bool old);
 /// x, y and z, or a value of one or three numbers.
 DoubleVector3 parse_vector(const pugi::xml_node&, const Attributes&, const PlaceOf&, double otherwise);
 
