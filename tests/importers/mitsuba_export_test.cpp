@@ -39,6 +39,11 @@ std::string job(const std::string& objects) {
 
 TEST(MitsubaExport, MakesTheSamePictureWhenReadBack) {
   const char* const scenes[] = {
+      // Checkers as colours and as numbers.
+      "Rectangle { shader: MixShader { first: Lambertian { color: CheckerMap { first: 0.9, second: 0.1, repeat: [2, 1, 1] } }, "
+      "second: "
+      "Lambertian { color: 0.1 }, amount: CheckerMap { first: 0.2, second: 0.9 } }, corner: [-1, 0, 0] m },"
+      "Environment { emission: DiffuseEmission {} }",
       // Lights by amounts, on surfaces and points; shapes under transforms; sides.
       "Sphere { shader: Lambertian { color: rgb(0.2, 0.5, 0.8) }, transform: translate(1, 0, 0) * scale(1, 0.5, 1) },"
       "Rectangle { transform: translate(0, 3, 0) * rotate(90 deg, \"x\"), emission: DiffuseEmission { radiance: blackbody(3000 "

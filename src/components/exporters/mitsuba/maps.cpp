@@ -60,9 +60,9 @@ void Writer::texture(Node parent, const char* name, const Component& m, ColorUse
     const std::vector<double> repeat = numbers_of(m, "repeat");
     transform(n, "to_uv", turn_over * Transform::scale({repeat[0], repeat[1], 1}) * own);
   } else if (type == "CheckerMap" && word_of(m, "space") == "uv") {
-    Node n = node("checkerboard");
-    map(n, "color0", m, "first", use, uv);
-    map(n, "color1", m, "second", use, uv);
+    Node n = node("checkerboard");  // whose two values are exchanged in Mitsuba where they are numbers
+    map(n, number_ ? "color1" : "color0", m, "first", use, uv);
+    map(n, number_ ? "color0" : "color1", m, "second", use, uv);
     const std::vector<double> repeat = numbers_of(m, "repeat");
     transform(n, "to_uv", Transform::scale({repeat[0] / 2, repeat[1] / 2, 1}) * own);
   } else if (type == "AttributeMap") {
@@ -85,10 +85,13 @@ double Writer::scalar(const Component& of, const char* member) {
 
 void Writer::scalar_map(Node parent, const char* name, const Component& of, const char* member, Uv uv) {
   const Ref<Component> m = part_of(of, member);
-  if (m && class_of(*m) != "ConstantMap")
+  if (m && class_of(*m) != "ConstantMap") {
+    number_ = true;
     texture(parent, name, *m, ColorUse::reflectance, {}, uv);
-  else
+    number_ = false;
+  } else {
     number(parent, name, scalar(of, member));
+  }
 }
 
 }  // namespace etendue::mitsuba_export

@@ -80,6 +80,7 @@ class Writer {
   pugi::xml_document document_;
   Node scene_;
   Ref<Component> around_;                             // the medium around everything
+  bool number_ = false;                               // whether the texture that is written stands for a number
   std::map<const Component*, Ref<Component>> baked_;  // by products of images and colours
   std::map<const Component*, std::string> groups_;
   std::map<std::tuple<const Component*, bool, Uv>, std::string> bsdfs_;

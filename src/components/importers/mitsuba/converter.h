@@ -105,7 +105,7 @@ class Converter {
   Value scalar(const Element&, const std::string& name, double otherwise, Uv);
   Value texture(const Element&, Uv);
   Value bitmap(const Element&, Uv);
-  Value checkerboard(const Element&, Uv);
+  Value checkerboard(const Element&, Uv, bool as_number);
   Value attribute_map(const Element&);
   Value light(const Element&, const std::string& name, Uv);
   Value light_of(const Element& spectrum, Uv);

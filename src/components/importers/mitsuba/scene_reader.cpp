@@ -117,7 +117,7 @@ void SceneReader::read_child(const pugi::xml_node& node, Element& into) {
   else if (tag == "rgb" || tag == "srgb")
     set(parse_rgb(required(node, "value"), tag == "srgb"));
   else if (tag == "transform")
-    set(parse_transform(node, attributes(), places()));
+    set(parse_transform(node, attributes(), places(), old_));
   else
     set(read_spectrum(node, into));
   if (tag != "transform") {
@@ -194,7 +194,7 @@ void SceneReader::read_animation(const pugi::xml_node& node, Element& into) {
     if (child.type() != pugi::node_element) continue;
     if (std::string_view(child.name()) != "transform") throw Error("<animation> holds transforms alone", at(child));
     const Text time = required(child, "time");
-    keys.push_back({float(parse_number(time)), parse_transform(child, attributes(), places()).transform.still()});
+    keys.push_back({float(parse_number(time)), parse_transform(child, attributes(), places(), old_).transform.still()});
     if (!keys.back().transform.valid()) throw Error("this transform cannot be inverted: it makes things flat", at(child));
   }
   constexpr auto when = &AnimatedTransform::Key::time;

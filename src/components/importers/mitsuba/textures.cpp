@@ -43,6 +43,12 @@ Value Converter::color(const Element& e, const std::string& name, double otherwi
 }
 
 Value Converter::scalar(const Element& e, const std::string& name, double otherwise, Uv uv) {
+  const Property* const p = e.find(name);
+  if (p && std::holds_alternative<Nested>(p->value))
+    if (const Element& inner = *e.nested(name); inner.type == "checkerboard") {
+      const Reading reading(inner);
+      return checkerboard(inner, uv, true);
+    }
   Value v = color(e, name, otherwise, uv);
   if (const auto* c = e.find(name) ? std::get_if<ColorValue>(&e.find(name)->value) : nullptr) {
     // A colour stands for a number by its luminance.
@@ -57,7 +63,7 @@ Value Converter::texture(const Element& e, Uv uv) {
   if (e.tag == "volume" && e.type == "constvolume") return color(e, "value", 1, uv);
   if (e.tag != "texture" && e.tag != "spectrum") throw Error(fmt::format("a texture is expected, not a {}", e.tag), e.at);
   if (e.type == "bitmap") return bitmap(e, uv);
-  if (e.type == "checkerboard") return checkerboard(e, uv);
+  if (e.type == "checkerboard") return checkerboard(e, uv, false);
   if (e.type == "mesh_attribute" || e.type == "vertexcolors") return attribute_map(e);
   if (e.type == "srgb") return color(e, "color", 0.5, uv);
   if (e.type == "uniform" || e.type == "rawconstant") return color(e, "value", 1, uv);
@@ -140,10 +146,12 @@ Value Converter::bitmap(const Element& e, Uv uv) {
   return placed(image, e, uv, true);
 }
 
-Value Converter::checkerboard(const Element& e, Uv uv) {
+// Where a number is asked for and not a colour, Mitsuba 2 and 3 exchange the two.
+Value Converter::checkerboard(const Element& e, Uv uv, bool as_number) {
+  const bool exchanged = as_number && !e.old;
   Ref<Component> map = make("CheckerMap", e);
-  set(*map, "first", color(e, "color0", 0.4, uv));
-  set(*map, "second", color(e, "color1", 0.2, uv));
+  set(*map, exchanged ? "second" : "first", color(e, "color0", 0.4, uv));
+  set(*map, exchanged ? "first" : "second", color(e, "color1", 0.2, uv));
   set_member(*map, "repeat", Numbers{{2, 2, 2}, 1, Dimension::none}, e.at);
   return placed(map, e, uv, false);
 }

@@ -182,6 +182,16 @@ Transform matrix_of(const Text& text) {
   return Transform(rows);
 }
 
+/// Rodrigues' formula with the axis as it is given. Mitsuba 2 and 3 do not bring it to length 1, as those before did: with
+/// another length this is no rotation, and stretches.
+Transform rotation_as_there(double radians, const DoubleVector3& a) {
+  if (std::abs(length(a) - 1) < 1e-6) return Transform::rotate(radians, a);
+  const double s = std::sin(radians), c = std::cos(radians), d = 1 - c;
+  return Transform(Transform::DoubleMatrix{c + d * a.x * a.x, d * a.x * a.y - s * a.z, d * a.x * a.z + s * a.y, 0,
+                                           d * a.x * a.y + s * a.z, c + d * a.y * a.y, d * a.y * a.z - s * a.x, 0,
+                                           d * a.x * a.z - s * a.y, d * a.y * a.z + s * a.x, c + d * a.z * a.z, 0});
+}
+
 TransformValue::LookAt look_at_of(const pugi::xml_node& node, const Attributes& attribute, const PlaceOf& place) {
   const auto three = [&](const char* name) -> std::optional<DoubleVector3> {
     const auto text = attribute(node, name);
@@ -203,7 +213,7 @@ TransformValue::LookAt look_at_of(const pugi::xml_node& node, const Attributes& 
 
 }  // namespace
 
-TransformValue parse_transform(const pugi::xml_node& node, const Attributes& attribute, const PlaceOf& place) {
+TransformValue parse_transform(const pugi::xml_node& node, const Attributes& attribute, const PlaceOf& place, bool old) {
   Transform all;
   std::optional<TransformValue::LookAt> look_at;
   int count = 0;
@@ -220,7 +230,8 @@ TransformValue parse_transform(const pugi::xml_node& node, const Attributes& att
       if (!angle) throw Error("<rotate> needs an angle", place(child));
       const DoubleVector3 axis = parse_vector(child, attribute, place, 0);
       if (!(length(axis) > 0)) throw Error("<rotate> needs an axis other than zero", place(child));
-      step = Transform::rotate(parse_number(*angle) * std::numbers::pi / 180, axis);
+      const double radians = parse_number(*angle) * std::numbers::pi / 180;
+      step = old ? Transform::rotate(radians, axis) : rotation_as_there(radians, axis);
     } else if (tag == "matrix") {
       const auto value = attribute(child, "value");
       if (!value) throw Error("<matrix> needs a value", place(child));

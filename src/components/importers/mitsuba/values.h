@@ -39,8 +39,8 @@ struct FrameAbout {
   DoubleVector3 u, v, n;
 };
 FrameAbout frame_about(const DoubleVector3& way);
-/// `<transform>`: its operations, the first of them first.
-TransformValue parse_transform(const pugi::xml_node&, const Attributes&, const PlaceOf&);
+/// `<transform>`: its operations, the first of them first. `old`: written for a Mitsuba before 2.
+TransformValue parse_transform(const pugi::xml_node&, const Attributes&, const PlaceOf&, bool old);
 /// x, y and z, or a value of one or three numbers.
 DoubleVector3 parse_vector(const pugi::xml_node&, const Attributes&, const PlaceOf&, double otherwise);
 
