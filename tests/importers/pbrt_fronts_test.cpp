@@ -70,6 +70,39 @@ TEST(PbrtFront, ReversedQuadricsExchangeTheirMedia) {
   EXPECT_NEAR(through("\"\" \"a\" ReverseOrientation"), std::exp(-1.0), 0.01);
 }
 
+// A file whose triangles run against its normals: the front of glass is where these point.
+TEST(PbrtFront, NormalsOfFilesSayWhereGlassIs) {
+  const TemporaryFolder folder;
+  folder.write("a.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+               "nx\nproperty float ny\nproperty float nz\nelement face 1\nproperty list uchar int vertex_indices\n"
+               "end_header\n0 0 0 0 0 -1\n1 0 0 0 0 -1\n0 1 0 0 0 -1\n3 0 1 2\n");
+  const auto triangles = [&](const char* material) {
+    const Imported i =
+        import_text(folder, v4(std::string("Material \"") + material + "\" Shape \"plymesh\" \"string filename\" \"a.ply\"\n"));
+    EXPECT_EQ(i.told(), "");
+    const Value list = get(object(i, 0), "triangles");
+    return write_value(list);
+  };
+  EXPECT_NE(triangles("dielectric").find("0, 2, 1"), std::string::npos) << triangles("dielectric");
+  EXPECT_EQ(triangles("diffuse").find("0, 2, 1"), std::string::npos);
+}
+
+TEST(PbrtFront, MirroredQuadricsAreTold) {
+  const std::string mirrored = "Scale -1 1 1 Shape \"sphere\"\n";
+  EXPECT_NE(import_text(v4("Material \"dielectric\" " + mirrored)).told().find("a mirroring transform leaves the front"),
+            std::string::npos);
+  EXPECT_EQ(import_text(v4(mirrored)).told(), "");
+}
+
+TEST(PbrtNotes, WhatPbrtWarnsOf) {
+  EXPECT_NE(import_text(v4("CoordSysTransform \"lamp\" Shape \"sphere\"")).told().find("no coordinate system 'lamp'"),
+            std::string::npos);
+  const Imported open = import_text(v3("AttributeBegin Shape \"sphere\""));
+  EXPECT_TRUE(open.job) << open.told();
+  EXPECT_NE(open.told().find("this AttributeBegin has no end"), std::string::npos) << open.told();
+}
+
 TEST(PbrtFront, ReversedBumpsAreHollows) {
   const std::string texture = "Texture \"h\" \"float\" \"constant\" \"float value\" 0.25\n";
   const std::string bumped = "Material \"diffuse\" \"texture displacement\" \"h\"\n";

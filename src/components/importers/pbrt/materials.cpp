@@ -135,7 +135,6 @@ std::vector<std::string> material_names() {
   return all;
 }
 
-/// Whether the material is another one when its front is its back.
 bool has_front(const Reader& reader, const Material& m, int depth) {
   for (const char* relief : {"displacement", "bumpmap", "normalmap"})
     if (std::ranges::count(m.parameters.own, relief, &Parameter::name)) return true;

@@ -107,14 +107,6 @@ bool against_normals(const MeshData& data) {
   });
 }
 
-/// Whether it matters which side of a shape is its front.
-bool front_matters(const Reader& reader) {
-  const State& state = reader.state;
-  if (state.light || state.reversed || state.inside != state.outside) return true;
-  const auto named = reader.named_materials.find(state.named_material);
-  return has_front(reader, reader.materials[named == reader.named_materials.end() ? state.material : named->second]);
-}
-
 Shape ply_mesh(Reader& reader, const Parameters& p) {
   const std::string named = p.text("filename");
   if (named.empty()) throw Error(fmt::format("{} needs 'filename'", p.of), p.at);

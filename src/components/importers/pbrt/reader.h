@@ -179,6 +179,9 @@ bool colored(const FilePath&);
 Ref<Component> shader_of(Reader&, size_t material, Location used_at);
 /// v3's textures may have other ones of their names later.
 void make_with_present_textures(Reader&, size_t material);
+/// Whether it matters which side of a shape that follows is its front.
+bool front_matters(const Reader&);
+/// Whether a material is another one when its front is its back.
 bool has_front(const Reader&, const Material&, int depth = 0);
 /// A dielectric's index against the other side.
 void set_index(const Reader&, Component& dielectric, const Value& eta, Location at);

@@ -16,7 +16,24 @@ void Reader::add(const Ref<Component>& object) { into_->push_back(ref_cast<Scene
 
 void Reader::add_light(const Ref<Component>& object) { objects_.push_back(ref_cast<SceneObject>(object)); }
 
+bool front_matters(const Reader& reader) {
+  const State& state = reader.state;
+  if (state.light || state.reversed || state.inside != state.outside) return true;
+  const auto named = reader.named_materials.find(state.named_material);
+  return has_front(reader, reader.materials[named == reader.named_materials.end() ? state.material : named->second]);
+}
+
 namespace {
+
+/// pbrt turns the normal of a quadric over where its transform mirrors, when a ray meets it but not when its light is sampled.
+void tell_mirrored(Reader& reader, const std::string& type, Location at) {
+  for (const char* turned : {"sphere", "cylinder", "disk", "cone", "curve"})
+    if (type == turned && reader.state.ctm[0].flips() && reader.state.ctm[0] == reader.state.ctm[1] && front_matters(reader))
+      reader.importing.inexact(
+          fmt::format("a mirroring transform leaves the front of a {} where it is; pbrt exchanges its inside and outside",
+                      type),
+          at);
+}
 
 /// How much of a shape is there: v3 leaves out nothing but what its alpha is 0 of.
 Value opacity_of(Reader& reader, const Parameters& p) {
@@ -54,6 +71,7 @@ void Reader::shape(const std::string& type, Parameters&& p) {
   if (p.has("faceIndices")) importing.inexact("numbers of faces are left out", p.place("faceIndices"));
   p.tell_unused(importing);
   if (!made.object) return;
+  tell_mirrored(*this, type, at);
   Component& object = *made.object;
   const AnimatedTransform transform = to_world(made.inner);
   if (!transform.valid()) throw Error(fmt::format("{} cannot be placed: its transform cannot be inverted", p.of), at);
