@@ -80,7 +80,9 @@ class Objects {
   }
   /// Of a scene whose objects alone are rendered.
   void of_whole(const Scene& scene, const std::string& why) {
-    without_effect(scene, {"transform", "shader", "emission", "interior", "sides", "priority", "shading_normals"}, why);
+    without_effect(scene,
+                   {"transform", "shader", "emission", "interior", "sides", "priority", "shading_normals", "visible_to_camera"},
+                   why);
   }
 
  private:
@@ -120,6 +122,7 @@ class Objects {
         add("dark luminaire", fmt::format("{} has no emission: it does nothing", label(object)), object.location_of());
       without_effect(object, {"shader", "interior", "sides", "priority", "shading_normals"},
                      "no ray meets its surface, it has only its emission");
+      if (object.delta()) without_effect(object, {"visible_to_camera"}, "it has no extent, so nobody sees it anyway");
       if (object.emission && object.delta() && written(*object.emission, "sides"))
         add("without effect", fmt::format("{}: 'sides' of its emission has no effect: it has no surface", label(object)),
             object.emission->location_of("sides"));

@@ -22,7 +22,9 @@ Ray camera_ray(const Job& job, int x, int y) {
   const Camera& camera = *job.camera;
   const float part = (float(x + side * y) + 0.5f) / (side * side);
   const Point2 film{float(job.image->width) * (float(x) + 0.5f) / side, float(job.image->height) * (float(y) + 0.5f) / side};
-  return camera.ray(film, {0.5f, 0.5f}, camera.shutter_open + part * (camera.shutter_close - camera.shutter_open));
+  Ray ray = camera.ray(film, {0.5f, 0.5f}, camera.shutter_open + part * (camera.shutter_close - camera.shutter_open));
+  ray.of_camera = true;
+  return ray;
 }
 
 /// Whether a ray comes near a box: within `slack` radians of the sphere around it.
@@ -41,7 +43,7 @@ void sees_nothing(const Job& job, std::vector<SceneWarning>& list) {
   bool any = false;
   Bounds3 all;
   for (const Ref<SceneObject>& object : scene.objects) {
-    if (object->infinite()) continue;
+    if (object->infinite() || !object->visible_to_camera) continue;
     const Bounds3 box = object->bounds();
     if (box.empty()) continue;
     any = true;

@@ -1,5 +1,7 @@
 #include "etendue/transport/boundaries.h"
 
+#include "unprepared.h"
+
 namespace etendue {
 namespace {
 
@@ -32,6 +34,18 @@ bool same_thing(const Hit& a, const Hit& b) {
 }
 
 }  // namespace
+
+bool enterable_once_prepared(const SceneObject& object) {
+  if (!object.shader) return false;
+  try {
+    const Ref<SceneObject> twin = ref_cast<SceneObject>(copy(object));
+    prepare_tree(*twin);
+    return enterable(*twin);
+  } catch (const Error&) {  // whoever prepares the object itself says why
+  } catch (const Errors&) {
+  }
+  return false;
+}
 
 void coincident_hits(const Scene& scene, const Ray& ray, const Hit& hit, const SurfacePoint& point, Ray& probe, HitList& list) {
   // Each of two surfaces in one place is found within its error, which may be nothing (in a plane z = 0, say): then within a

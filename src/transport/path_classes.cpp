@@ -36,9 +36,9 @@ std::string caustics(const Names& luminaires, const SceneTraits& t) {
 
 constexpr std::array<PathClassInfo, 15> classes{{
     {seen_luminaires, "seen_luminaires", "luminaires that the camera sees directly",
-     [](const SceneTraits& t) { return told("", t.areas, " where the camera sees it directly"); }},
+     [](const SceneTraits& t) { return told("", t.seen_areas, " where the camera sees it directly"); }},
     {seen_environments, "seen_environments", "environments behind the scene",
-     [](const SceneTraits& t) { return told("", t.environments, " where the camera sees it directly"); }},
+     [](const SceneTraits& t) { return told("", t.seen_environments, " where the camera sees it directly"); }},
     {specular_views, "specular_views", "what the camera sees in mirrors or through glass",
      [](const SceneTraits& t) { return told("what the camera sees in or through ", t.specular); }},
     {area_light, "area_light", "light of luminaires with an extent on surfaces",

@@ -58,6 +58,7 @@ class Look {
         note(object.infinite() ? t.distant : t.points);
       else
         note(object.infinite() ? t.environments : t.areas);
+      if (!object.delta() && object.visible_to_camera) note(object.infinite() ? t.seen_environments : t.seen_areas);
     }
   }
 

@@ -61,6 +61,23 @@ TEST(MitsubaIntegrator, HiddenEmittersLightAndAreNotSeen) {
   EXPECT_EQ(seen_of(disc + wall(matt("0.5")), false), 0);  // its back
 }
 
+// Nothing is prepared while a file is imported or exported: meshes do not know yet whether they are closed.
+TEST(MitsubaIntegrator, HiddenEmittersMayBeMeshesOfGlass) {
+  const TemporaryFolder folder;
+  folder.write("tetrahedron.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const auto imported = [&](const std::string& bsdf) {
+    return import_text(folder, scene("<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>" +
+                                     sensor() + "<shape type=\"obj\"><string name=\"filename\" value=\"tetrahedron.obj\"/>" +
+                                     bsdf + "<emitter type=\"area\"/></shape>"));
+  };
+  const Imported matt_one = imported(matt("0.5"));
+  EXPECT_EQ(matt_one.told(), "");
+  EXPECT_FALSE(*get(matt_one.object(0), "visible_to_camera").as<bool>());
+  const Imported glass = imported("<bsdf type=\"dielectric\"/>");
+  EXPECT_NE(glass.told().find("an emitter that light goes into is seen"), std::string::npos) << glass.told();
+  EXPECT_TRUE(*get(glass.object(0), "visible_to_camera").as<bool>());
+}
+
 // The wall stands at z = 5. What a file does not state is not clipped.
 TEST(MitsubaCamera, ClipsWhereTheFileSaysSo) {
   const auto bright = [](const std::string& clip) {
@@ -390,6 +407,57 @@ TEST(MitsubaLight, AProjectorsPictureKeepsItsShape) {
         target + "\" up=\"0 1 0.01\"/></transform>";
     EXPECT_NEAR(seen(import_text(folder, scene(sensor(view) + integrator() + wall(matt("0.5")) + light)), 64).y, expected, 2e-4)
         << target;
+  }
+}
+
+// Seen from its back, or with its normals turned round, a surface of two sides shows the other one: in blends and masks as
+// well, and in meshes that are mirrored.
+TEST(MitsubaSurface, NormalsThatAreTurnedRoundExchangeTheSides) {
+  const auto both = "<bsdf type=\"twosided\">" + matt("0.8") + matt("0.2") + "</bsdf>";
+  const std::string flip = "<boolean name=\"flip_normals\" value=\"true\"/>";
+  const auto shown = [&](const std::string& inside) {
+    return seen(import_text(
+                    seen_scene(wall(inside) + "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"1\"/></emitter>")),
+                4096)
+        .y;
+  };
+  EXPECT_NEAR(shown(both), 0.8, 0.01);
+  EXPECT_NEAR(shown(both + flip), 0.2, 0.005);
+  EXPECT_NEAR(shown("<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.5\"/>" + both + "<bsdf type=\"twosided\">" +
+                    matt("0.4") + "</bsdf></bsdf>" + flip),
+              0.3, 0.006);
+  EXPECT_NEAR(shown("<bsdf type=\"mask\"><float name=\"opacity\" value=\"1\"/>" + both + "</bsdf>" + flip), 0.2, 0.005);
+  const Imported glass =
+      import_text(scene("<shape type=\"sphere\"><bsdf type=\"dielectric\"><float name=\"int_ior\" "
+                        "value=\"1.5\"/><float name=\"ext_ior\" value=\"1\"/></bsdf>" +
+                        flip + "</shape><shape type=\"sphere\"/>"));
+  EXPECT_EQ(get(part(glass.object(0), "shader"), "ior").as<Number>()
+                ? get(part(glass.object(0), "shader"), "ior").as<Number>()->value
+                : 0,
+            1);
+}
+
+// Rough metal seen 8 degrees above its plane, under even light: what Mitsuba 3.9.1 shows, with an error of 0.1 %. With
+// correlated heights of facets it would be 8 % brighter.
+TEST(MitsubaSurface, RoughMetalAtASlant) {
+  const std::string camera =
+      "<sensor type=\"orthographic\"><transform name=\"to_world\"><scale x=\"0.01\" y=\"0.01\"/><lookat origin=\"0, 1, 7\" "
+      "target=\"0, 0, 0\" up=\"0, 1, 0\"/></transform><film type=\"hdrfilm\"><integer name=\"width\" value=\"1\"/><integer "
+      "name=\"height\" value=\"1\"/><rfilter type=\"box\"/></film></sensor>";
+  for (const auto& [distribution, expected] : {std::pair("ggx", 0.4746), {"beckmann", 0.5718}}) {
+    const std::string metal = std::string(
+                                  "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.45\"/><string "
+                                  "name=\"distribution\" value=\"") +
+                              distribution +
+                              "\"/><spectrum name=\"eta\" value=\"1.3\"/><spectrum name=\"k\" value=\"2.8\"/></bsdf>";
+    const Xyz found = seen(import_text(scene(camera + integrator(2) +
+                                             "<shape type=\"rectangle\"><transform name=\"to_world\"><rotate x=\"1\" "
+                                             "angle=\"-90\"/><scale value=\"50\"/></transform>" +
+                                             metal +
+                                             "</shape><emitter type=\"constant\"><spectrum name=\"radiance\" "
+                                             "value=\"1\"/></emitter>")),
+                           1 << 15);
+    EXPECT_NEAR(found.y, expected, 0.006 * expected) << distribution;
   }
 }
 

@@ -57,7 +57,7 @@ TEST(MitsubaExport, MakesTheSamePictureWhenReadBack) {
       "Box { size: [1, 2, 1] m, centre: [1.5, 0, 0] m, shader: LossyPlastic { color: 0.5, roughness: 0.2 } },"
       "Cylinder { caps: false, height: 2 m, radius: 0.5 m, transform: rotate(40 deg, \"x\"), shader: MaskShader { opacity: "
       "0.4, shader: "
-      "Conductor { ior: metal(\"Au\"), roughness: 0.3, multiple_scattering: false } } },"
+      "Conductor { ior: metal(\"Au\"), roughness: 0.3, multiple_scattering: false, heights: independent } } },"
       "Disc { transform: translate(-1.5, 0, 0), shader: MixShader { first: Lambertian {}, second: PerfectSpecular {}, amount: "
       "0.25 } },"
       "TriangleMesh { positions: [[-3, -1, -2], [3, -1, -2], [0, 3, -2]], triangles: [0, 1, 2], shader: Lambertian { color: "

@@ -148,6 +148,22 @@ TEST(PbrtAlpha, Version3HasHolesWhereItIsZeroAlone) {
   EXPECT_EQ(opacity("\"float alpha\" 0"), 0);
 }
 
+// Looking for glass in mixtures takes no longer than there are materials, and ends in those of themselves.
+TEST(PbrtFront, MixturesOfOneAnother) {
+  const std::string turned = "ReverseOrientation Shape \"sphere\"";
+  const Imported itself =
+      import_text(v4("MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"] "
+                     "NamedMaterial \"a\" " +
+                     turned));
+  EXPECT_NE(itself.told().find("is a mixture of itself"), std::string::npos) << itself.told();
+  std::string many = "MakeNamedMaterial \"m0\" \"string type\" \"diffuse\" ";
+  for (int i = 1; i <= 60; ++i)
+    many += "MakeNamedMaterial \"m" + std::to_string(i) + "\" \"string type\" \"mix\" \"string materials\" [\"m" +
+            std::to_string(i - 1) + "\" \"m" + std::to_string(i - 1) + "\"] ";
+  const Imported deep = import_text(v4(many + "NamedMaterial \"m60\" " + turned));
+  EXPECT_TRUE(deep.job) << deep.told();
+}
+
 TEST(PbrtObjects, LightsInDefinitionsStandInTheWorld) {
   const Imported i =
       import_text(v4("ObjectBegin \"o\" Translate 1 2 3 LightSource \"point\" Shape \"sphere\" ObjectEnd ObjectInstance \"o\" "

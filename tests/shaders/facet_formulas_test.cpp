@@ -24,9 +24,13 @@ struct Facets {
     const double a = 1 / std::sqrt(t2);
     return (std::exp(-a * a) / (a * std::sqrt(M_PI)) - std::erfc(a)) / 2;
   }
-  double reflection(const V& out, const V& in) const {  // f / F
+  double hidden(const V& out, const V& in, bool independent) const {  // 1 / G2
+    const double a = lambda(out), b = lambda(in);
+    return independent ? (1 + a) * (1 + b) : 1 + a + b;
+  }
+  double reflection(const V& out, const V& in, bool independent = false) const {  // f / F
     const V m = unit(sum(out, in));
-    return D(m) / (1 + lambda(out) + lambda(in)) / (4 * out.z * in.z);
+    return D(m) / hidden(out, in, independent) / (4 * out.z * in.z);
   }
 };
 
@@ -55,6 +59,13 @@ TEST(ShaderFormulas, RoughConductor) {
     set(*once, "multiple_scattering", Value(false));
     once->prepare();
     expect_formula("once", once, 0.1, f);
+    for (const char* heights : {"independent", "correlated"}) {
+      set(*once, "heights", Value(std::string(heights)));
+      once->prepare();
+      expect_formula(heights, once, 0.1, [&](const V& out, const V& in, double l) {
+        return f(out, in, l) / facets.reflection(out, in) * facets.reflection(out, in, heights == std::string("independent"));
+      });
+    }
 
     // Light scattered more than once has a lobe of its own (Kulla & Conty 2017), whose colour is a series of the mean.
     const MultipleReflection more({ggx ? MicrofacetDistribution::ggx : MicrofacetDistribution::beckmann, 0.45f, 0.2f});
@@ -73,13 +84,18 @@ TEST(ShaderFormulas, RoughConductor) {
 
 TEST(ShaderFormulas, RoughDielectric) {
   const Slope n{1.7, 1.4};
-  for (const bool ggx : {true, false}) {
+  for (const auto& [ggx, heights] :
+       {std::pair(true, "by_side"), {false, "by_side"}, {true, "independent"}, {false, "correlated"}}) {
     const Facets facets{ggx, 0.5, 0.25};
+    const bool apart_above = heights == std::string("independent"), apart_through = heights != std::string("correlated");
     const Ref<Shader> shader = create<Shader>("Dielectric", {{"ior", n.color()},
+                                                             {"heights", heights},
                                                              {"roughness", 0.5},
                                                              {"roughness_v", 0.25},
                                                              {"rotation", 0.3},
                                                              {"distribution", ggx ? "ggx" : "beckmann"}});
+    set(*shader, "multiple_scattering", Value(false));
+    shader->prepare();
     const Wavelengths w = test::wavelengths(500);
     Arena arena;
     const Scatter& s = *shader->bind(flat_point(), w, arena);
@@ -99,15 +115,14 @@ TEST(ShaderFormulas, RoughDielectric) {
           const V m = scaled(unit(sum(o, t)), out.z > 0 ? 1 : -1);
           const V a{o.x, o.y, std::abs(o.z)}, b{t.x, t.y, std::abs(t.z)};
           const double eta = out.z > 0 ? below : 1 / below;
-          expected =
-              fresnel(std::abs(dot(o, m)), eta) * facets.D(m) / (1 + facets.lambda(a) + facets.lambda(b)) / (4 * a.z * b.z);
+          expected = fresnel(std::abs(dot(o, m)), eta) * facets.D(m) / facets.hidden(a, b, apart_above) / (4 * a.z * b.z);
         } else {  // Walter et al. 2007, eq. 21, with h = -(n_o o + n_i i)
           V m = unit(scaled(sum(scaled(o, no), t, ni), -1));
           if (m.z < 0) m = scaled(m, -1);
           const double om = dot(o, m), im = dot(t, m);
           if (om * o.z > 0 && im * t.z > 0)
             expected = std::abs(om * im / (o.z * t.z)) * ni * ni * (1 - fresnel(std::abs(om), ni / no)) * facets.D(m) /
-                       ((1 + facets.lambda(o)) * (1 + facets.lambda(t))) / pow2(no * om + ni * im);
+                       facets.hidden(o, t, apart_through) / pow2(no * om + ni * im);
         }
         // That is what a beam's power does. Radiance grows by the square of the index on the side it leaves on.
         const double tolerance = 1e-3 * expected + 2e-6;

@@ -12,21 +12,22 @@ namespace etendue {
 
 struct SceneTraits {
   /// Each list names objects, as the user did, each once wherever its scene stands; empty: there are none of the kind.
-  std::vector<std::string> specular;        ///< surfaces with mirror-like lobes, pass-through aside
-  std::vector<std::string> refracting;      ///< those of them that transmit
-  std::vector<std::string> smooth;          ///< surfaces with diffuse or glossy lobes
-  std::vector<std::string> diffuse;         ///< surfaces with diffuse lobes
-  std::vector<std::string> glossy;          ///< surfaces with glossy lobes
-  std::vector<std::string> points;          ///< luminaires without extent at a finite place
-  std::vector<std::string> distant;         ///< luminaires that are a single direction
-  std::vector<std::string> areas;           ///< luminaires with an area
-  std::vector<std::string> environments;    ///< luminaires at infinity that rays can meet
-  std::vector<std::string> media;           ///< objects with a scattering or absorbing volume
-  std::vector<std::string> emissive_media;  ///< objects with a volume that emits
-  std::vector<std::string> uneven_media;    ///< objects with a volume that differs from place to place
-  std::vector<std::string> moved_exits;     ///< surfaces that light which enters leaves elsewhere (subsurface scattering)
-  std::vector<std::string> pass_through;    ///< surfaces that let light pass straight on
-  bool pinhole = true;                      ///< the camera's lens is a point (or its rays parallel): no path meets it
+  std::vector<std::string> specular;                       ///< surfaces with mirror-like lobes, pass-through aside
+  std::vector<std::string> refracting;                     ///< those of them that transmit
+  std::vector<std::string> smooth;                         ///< surfaces with diffuse or glossy lobes
+  std::vector<std::string> diffuse;                        ///< surfaces with diffuse lobes
+  std::vector<std::string> glossy;                         ///< surfaces with glossy lobes
+  std::vector<std::string> points;                         ///< luminaires without extent at a finite place
+  std::vector<std::string> distant;                        ///< luminaires that are a single direction
+  std::vector<std::string> areas;                          ///< luminaires with an area
+  std::vector<std::string> environments;                   ///< luminaires at infinity that rays can meet
+  std::vector<std::string> seen_areas, seen_environments;  ///< of both, those that the camera sees
+  std::vector<std::string> media;                          ///< objects with a scattering or absorbing volume
+  std::vector<std::string> emissive_media;                 ///< objects with a volume that emits
+  std::vector<std::string> uneven_media;                   ///< objects with a volume that differs from place to place
+  std::vector<std::string> moved_exits;   ///< surfaces that light which enters leaves elsewhere (subsurface scattering)
+  std::vector<std::string> pass_through;  ///< surfaces that let light pass straight on
+  bool pinhole = true;                    ///< the camera's lens is a point (or its rays parallel): no path meets it
 
   bool delta_luminaires() const { return !points.empty() || !distant.empty(); }
 };

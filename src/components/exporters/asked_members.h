@@ -12,7 +12,8 @@
 namespace etendue {
 
 /// As long as it lives, the functions of members.h note what they are asked for on this thread. What an exporter never asks for
-/// it cannot have written, so whatever is said there is told to be left out: no exporter can forget to say it.
+/// it cannot have written, so whatever is said there is told to be left out. What it asks for and does not write it must tell
+/// itself.
 class AskedMembers {
  public:
   AskedMembers();

@@ -15,10 +15,9 @@
 namespace etendue {
 
 // Members of a part by name, which it must have. Exporters ask for them here and nowhere else, so that it is known what they
-// asked for (asked_members.h).
+// asked for (asked_members.h). What is of another kind is 0, false, "" or null. Numbers that floats hold are as they would be
+// written (0.3, not 0.30000001192092896), angles are in degrees, files are paths that can be opened.
 Value value_of(const Component&, std::string_view member);
-// What is of another kind is 0, false, "" or null. Numbers that floats hold are
-// as they would be written (0.3, not 0.30000001192092896), angles are in degrees, files are paths that can be opened.
 double number_of(const Component&, std::string_view member);
 bool truth_of(const Component&, std::string_view member);
 std::string word_of(const Component&, std::string_view member);

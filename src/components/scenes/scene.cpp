@@ -182,10 +182,11 @@ void Scene::note_interior(const SceneObject& object) {
 bool Scene::note_unseen(const SceneObject& object) {
   const Scene* inner = scene_within(object);
   if (inner && !object.visible_to_camera)
-    object.fail("visible_to_camera", "the camera sees each object in a scene or does not: say it of those, not of the scene");
+    object.fail("visible_to_camera",
+                "it is said of each object in a scene, and of a scene as a whole nothing; what an Import holds is seen");
   if (inner) {
-    if (inner->has_unseen_ && inner != &object && object.shader && object.shader->transmits())
-      object.fail("shader", "the camera is not to see some object in the scene, which light cannot be let into, then");
+    if (inner->has_unseen_ && inner != &object && object.shader && (object.shader->transmits() || is_sheet(*object.shader)))
+      object.fail("shader", "light cannot be let into a scene with objects that the camera does not see");
     has_unseen_ |= inner->has_unseen_;
     return false;
   }
@@ -193,6 +194,7 @@ bool Scene::note_unseen(const SceneObject& object) {
   if (object.surrounds() || enterable(object))
     object.fail("visible_to_camera",
                 "light goes into this object, so the camera would see what fills it: it cannot be left out");
+  if (object.delta()) return false;  // nobody sees it
   has_unseen_ = true;
   return !object.infinite();
 }

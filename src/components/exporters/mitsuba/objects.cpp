@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "etendue/transport/medium_stack.h"
+#include "transport/unprepared.h"
 #include "writer.h"
 
 namespace etendue::mitsuba_export {
@@ -41,10 +41,13 @@ void Writer::object(Node parent, const SceneObject& o, const Transform& outer) {
   surface(n, shader.get(), sides == "both", uv);
   if (light) emission(n, o, *light, uv);
   if (inside) medium(n, *inside, "interior");
-  if (around_ && enterable(o)) medium(n, *around_, "exterior");
+  if (around_ && enterable_once_prepared(o)) medium(n, *around_, "exterior");
   if (sides == "back") truth(n, "flip_normals", true);
-  if (light && (word_of(*light, "sides") == "back") != (sides == "back") && word_of(*light, "sides") != "front")
-    exporting.inexact("emission from the back, or from both sides, comes from the front in Mitsuba", &o);
+  // Its emitters shine from the front, which `flip_normals` makes the back.
+  if (const std::string shines = light ? word_of(*light, "sides") : ""; light && shines != (sides == "back" ? "back" : "front"))
+    exporting.inexact(fmt::format("light from {} comes from the {} alone in Mitsuba",
+                                  shines == "both" ? "both sides" : "the " + shines, sides == "back" ? "back" : "front"),
+                      &o);
 }
 
 Node Writer::shape(Node parent, const SceneObject& o, const Transform& placed, Uv& uv) {

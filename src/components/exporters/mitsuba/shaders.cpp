@@ -58,8 +58,11 @@ void Writer::roughness(Node n, const Component& s, Uv uv) {
   } else {
     scalar_map(n, "alpha", s, "roughness", uv);
   }
+  const bool independent = word_of(s, "heights") == "independent";
   if (truth_of(s, "multiple_scattering"))
     exporting.inexact("light that meets more than one facet of a rough surface is lost in Mitsuba", &s);
+  else if (!independent)
+    exporting.inexact("rough surfaces are a little darker at a slant in Mitsuba, where heights of facets are independent", &s);
 }
 
 void Writer::dielectric(Node parent, const Component& s, Uv uv) {
@@ -146,6 +149,8 @@ void Writer::bsdf(Node parent, const Component& s, bool both_sides, Uv uv) {
     Node n = plugin(parent, "bumpmap");
     map(n, "arbitrary", s, "height", ColorUse::coefficient, uv);
     number(n, "scale", number_of(s, "scale"));
+    truth(n, "use_shadowing_function", truth_of(s, "shadowing"));
+    truth(n, "flip_invalid_normals", truth_of(s, "opposite_slopes"));
     inner(n, "shader");
   } else if (type == "DisneyPrincipled" || type == "DisneyThin") {
     const bool thin = type == "DisneyThin";

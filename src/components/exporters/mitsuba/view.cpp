@@ -59,7 +59,7 @@ void Writer::camera(Node n) {
   transform(n, "to_world", placed);
   for (const Ref<SceneObject>& object : job.scene->objects) {
     if (!object->surrounds()) continue;
-    if (object->shader) exporting.inexact("the index of surroundings is left out", object.get());
+    if (part_of(*object, "shader")) exporting.inexact("the index of surroundings is left out", object.get());
     around_ = part_of(*object, "interior");
     if (around_) medium(n, *around_, "medium");
     if (around_ && number_of(*object, "reach") > 0) exporting.inexact("surroundings go on for ever in Mitsuba", object.get());
@@ -107,7 +107,7 @@ void Writer::hide_emitters(Node integrator) {
     for (const Ref<SceneObject>& o : scene.objects)
       if (const Scene* inner = scene_within(*o))
         again(*inner, again);
-      else if (!truth_of(*o, "visible_to_camera"))
+      else if (!truth_of(*o, "visible_to_camera") && !o->delta())
         unseen.push_back(o.get());
       else if (o->luminaire() && !o->delta())
         seen.push_back(o.get());

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "components/exporters/triangles/facets.h"
-#include "etendue/transport/medium_stack.h"
+#include "transport/unprepared.h"
 #include "writer.h"
 
 namespace etendue::pbrt_export {
@@ -156,7 +156,7 @@ void Writer::object(const SceneObject& object, bool instanced) {
     if (const std::string inside = medium_of(*interior); !inside.empty())
       medium = fmt::format("MediumInterface \"{}\" \"{}\"\n", inside, around_);
   // What has no inside has the same medium on both sides: beyond a wall, light that comes back from it goes on in that.
-  if (medium.empty() && !around_.empty() && !enterable(object))
+  if (medium.empty() && !around_.empty() && !enterable_once_prepared(object))
     medium = fmt::format("MediumInterface \"{0}\" \"{0}\"\n", around_);
   if (word_of(object, "sides") != "both") exporting.inexact("surfaces scatter light on both sides in pbrt", &object);
   const std::string directive = shape(object, surface.alpha, placed);

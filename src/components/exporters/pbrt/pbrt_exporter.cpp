@@ -11,9 +11,10 @@ namespace pbrt_export {
 void Writer::surroundings() {
   for (const Ref<SceneObject>& object : job.scene->objects) {
     if (!object->surrounds()) continue;
-    if (object->shader) exporting.inexact("the index of surroundings is left out", object.get());
-    if (!object->interior) continue;
-    around_ = medium_of(*object->interior);
+    const Ref<Component> shader = part_of(*object, "shader"), interior = part_of(*object, "interior");
+    if (shader) exporting.inexact("the index of surroundings is left out", object.get());
+    if (!interior) continue;
+    around_ = medium_of(*interior);
     if (around_.empty()) continue;
     out_ += fmt::format("MediumInterface \"\" \"{}\"\n", around_);
     if (number_of(*object, "reach") > 0) exporting.inexact("surroundings go on for ever in pbrt", object.get());

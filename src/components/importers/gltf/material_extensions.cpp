@@ -68,7 +68,7 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
   if ((s.specular_color.texture || least < 0.95 * most) && (s.metalness.value < 1 || s.metalness.texture))
     importing_.inexact("coloured reflections are as coloured at grazing angles, where KHR_materials_specular has them white",
                        at());
-  if (!s.thin && s.transmission.value > 0 && s.ior != refracting)
+  if (!s.thin && s.transmission.value > 0 && s.metalness.value < 1 && s.ior != refracting)
     importing_.inexact("light is refracted by the index that its reflection has, which KHR_materials_specular raises", at());
 }
 
@@ -98,7 +98,7 @@ void Materials::read_specular(const Json& e, Surface& s) {
 void Materials::reflect(const SurfaceColor& reflected, Surface& s) {
   const double strongest = std::ranges::max(reflected.value);
   const double diffuse = std::ranges::max(s.base_color.value) * (1 - strongest);  // what is not reflected gets to the body
-  if (strongest > 0.25 && !(s.metalness.value > 0) && !s.base_color.texture && diffuse < 0.1) {
+  if (strongest > 0.25 && !(s.metalness.value > 0) && !(s.transmission.value > 0) && !s.base_color.texture && diffuse < 0.1) {
     s.metalness = 1;
     s.base_color = reflected;
     s.specular_color = 1.0;

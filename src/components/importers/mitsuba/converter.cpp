@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "etendue/transport/medium_stack.h"
+#include "transport/unprepared.h"
 
 namespace etendue::mitsuba {
 
@@ -113,7 +113,7 @@ void Converter::hide_emitters(const std::vector<Ref<SceneObject>>& objects) {
       hide_emitters(inner->objects);
     else if (!object->luminaire() || object->delta())
       continue;
-    else if (enterable(*object))
+    else if (enterable_once_prepared(*object))
       importing_.inexact("an emitter that light goes into is seen: it cannot be hidden from the camera", hides_emitters_);
     else
       set_member(*object, "visible_to_camera", false, hides_emitters_);

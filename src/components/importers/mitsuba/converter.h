@@ -72,6 +72,7 @@ class Converter {
   Ref<Component> instance(const Element&);
   Ref<Component> group(const Element&);
   void set_surface(Component& object, const Element& shape, Uv);
+  Ref<Component> turned_round(const Ref<Component>& shader, Location at);
   bool textured(const Element&);
   bool tilts(const Element&);  ///< whether bumps or an image of normals are among the bsdfs it is made of
 
@@ -136,6 +137,7 @@ class Converter {
   void set_albedo(Component& medium, const Element&, const Element* volume, const Component& object);
   /// From the unit cube to the box that a heterogeneous medium fills whose extinction is the same everywhere.
   static Transform box_of_constant(const Element& medium);
+  Ref<Component> even_everywhere(const Element& medium, const Color& extinction, const Element* albedo);
   static Transform to_world_of(const Component& object);
   void shine(Component& medium, const Element& glow, const Component& object);
   void set_grid(Component& grid, const Element& volume, const Component& object);
@@ -174,6 +176,7 @@ class Converter {
   std::map<std::pair<const Element*, Uv>, Surface> surfaces_;
   std::map<const Element*, Ref<Component>> media_, groups_;
   std::map<const Element*, bool> textured_, tilts_;
+  std::map<const Component*, Ref<Component>> turned_;  // shaders, by those that are not
 };
 
 }  // namespace etendue::mitsuba

@@ -224,8 +224,12 @@ Ref<Component> Converter::sky(const Element& e) {
     const DoubleVector3 to_sun = sun_by_time(e);
     set_member(*emission, "sun_direction", three({to_sun.x, to_sun.z, -to_sun.y}), e.at);
   }
-  set_member(*emission, "scale", e.number("scale", 1) * sky_scale, e.location_of(e.has("sky_scale") ? "sky_scale" : "scale"));
-  if (sun && sun_scale != sky_scale)
+  const bool alone = sun && sky_scale <= 0;
+  set_member(*emission, "scale", e.number("scale", 1) * (alone ? sun_scale : sky_scale),
+             e.location_of(e.has("sky_scale") ? "sky_scale" : "scale"));
+  if (alone)
+    importing_.inexact("the sky shines with its sun, although 'sky_scale' is 0", e.location_of("sky_scale"));
+  else if (sun && sun_scale != sky_scale)
     importing_.inexact("the sun is brightened with its sky: 'sun_scale' is taken to be 'sky_scale'",
                        e.location_of("sun_scale"));
   inexact(e, fmt::format("'{}' is a model of measured skies whose brightness differs from Mitsuba's", e.type));

@@ -46,6 +46,10 @@ Ref<Component> Converter::medium(const Element& e, const Component& object, cons
 // The emitter 'volumelight' of a shape: its "radiance" is what the medium inside adds per distance, whatever it absorbs.
 void Converter::shine(Component& medium, const Element& glow, const Component& object) {
   glow.ignore({"sampling_weight"});
+  if (!glow.has("radiance")) {
+    inexact(glow, "a 'volumelight' without 'radiance' is dark");
+    return;
+  }
   const Element* const volume = glow.nested("radiance");
   if (!volume || volume->type != "gridvolume") {
     set(medium, "emission", light(glow, "radiance", Uv::as_is));
@@ -170,11 +174,14 @@ Ref<Component> Converter::heterogeneous(const Element& e, const Component& objec
   const Color all_of_it = even ? scaled_spectrum(scale, volume ? spectrum_of(*volume, "value", 1) : spectrum_of(e, name, 1))
                                : flat_spectrum(float(scale));
   const bool of_maps = glow || (albedos && (even || !same_place(*albedo, *volume)));
+  const bool boxed = !even || !e.old;  // before version 2 a constant volume had no bounds
   const Location at = e.location_of(name);
+  if (!boxed && !of_maps) return even_everywhere(e, all_of_it, albedo);
   Ref<Component> medium = make(of_maps ? "MapVolume" : "GridVolume", e);
   if (of_maps) {
     // What shines ends with the box, too, which is therefore the density; a file's box is known to the grid alone.
-    if (even || !volume->boolean("use_grid_bbox", false)) set_member(*medium, "density", box_of(e, volume, object), at);
+    if (boxed && (even || !volume->boolean("use_grid_bbox", false)))
+      set_member(*medium, "density", box_of(e, volume, object), at);
     Ref<Component> extinction;
     if (!even) {
       const Ref<Component> grid = make("GridMap", *volume);
@@ -199,6 +206,15 @@ Ref<Component> Converter::heterogeneous(const Element& e, const Component& objec
   if (glow) shine(*medium, *glow, object);
   for (const Element* grid : {volume, albedo})
     if (grid) grid->ignore({"raw", "accel"});
+  return medium;
+}
+
+/// A heterogeneous medium of version 0.x whose volumes are constant: it fills its shape.
+Ref<Component> Converter::even_everywhere(const Element& e, const Color& extinction, const Element* albedo) {
+  Ref<Component> medium = make("HomogeneousVolume", e);
+  set_member(*medium, "extinction", extinction, e.at);
+  set_member(*medium, "albedo", albedo ? spectrum_of(*albedo, "value", 0.75) : spectrum_of(e, "albedo", 0.75), e.at);
+  set_phase(*medium, e);
   return medium;
 }
 

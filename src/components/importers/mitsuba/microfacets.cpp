@@ -65,6 +65,7 @@ void Converter::set_roughness(Component& shader, const Element& e, Uv uv, double
     set(shader, "roughness", scalar(e, "alpha", otherwise, uv));
   }
   set_member(shader, "multiple_scattering", false, e.at);
+  set_member(shader, "heights", "independent", e.at);  // G is the product of two G1 (MicrofacetDistribution::G)
   e.ignore({"sample_visible"});
 }
 

@@ -160,6 +160,35 @@ bool Converter::front_by_world(const Element& e) {
   }
 }
 
+// Where normals are turned round the back is the front: two sides change places, and so do the indices of glass.
+Ref<Component> Converter::turned_round(const Ref<Component>& shader, Location at) {
+  const auto [known, added] = turned_.try_emplace(shader.get());
+  Ref<Component>& made = known->second;
+  if (!added) return made;
+  made = shader;  // unless something in it has a front
+  const auto change = [&](const char* member, const Value& value) {
+    if (made == shader) {
+      made = copy(*shader);
+      if (made->origin && !made->origin->name.empty()) made->origin->name += "_turned";
+    }
+    set(*made, member, value);
+  };
+  for (const Member& m : shader->class_info().members) {
+    const Value value = get(*shader, m.name);
+    const auto* part = value.as<Ref<Component>>();
+    if (!part || !*part || !dynamic_cast<const Shader*>(part->get())) continue;
+    if (const Ref<Component> inner = turned_round(*part, at); inner != *part) change(m.name.c_str(), Value(inner, at));
+  }
+  const auto exchange = [&](const char* a, const char* b) {
+    const Value first = get(*made, a), second = get(*made, b);
+    change(a, second);
+    change(b, first);
+  };
+  if (shader->class_info().name == "TwoSidedShader") exchange("front", "back");
+  if (shader->class_info().name == "Dielectric") exchange("ior", "exterior");
+  return made;
+}
+
 void Converter::set_surface(Component& object, const Element& e, Uv uv) {
   bool flipped = e.boolean("flip_normals", false);
   if (mirrors(e.transform()) && front_by_world(e)) flipped = !flipped;
@@ -184,14 +213,13 @@ void Converter::set_surface(Component& object, const Element& e, Uv uv) {
   } else if (emitters.empty()) {
     looks = {make("Lambertian", e, ""), false};  // half of the light is reflected, as there
   }
+  if (flipped && looks.shader) looks.shader = turned_round(looks.shader, e.at);
   if (looks.shader) set_member(object, "shader", looks.shader, e.at);
   // Light that a normal which is not the triangle's own would send through the surface is lost there.
   const bool smooth = (e.type == "obj" || e.type == "ply" || e.type == "serialized") && !e.boolean("face_normals", false);
   if (looks.shader && (smooth || tilts(e))) set_member(object, "shading_normals", "clipped", e.at);
   const char* const front = flipped ? "back" : "front";
   if (looks.shader && !looks.both_sides) set_member(object, "sides", front, e.at);
-  if (flipped && looks.both_sides && looks.shader && looks.shader->class_info().name == "Dielectric")
-    inexact(e, "the normals of a transparent body are not turned round: its index is inside");
   if (!emitters.empty()) {
     Ref<Component> emission = area_emission(*emitters.front(), uv);
     if (flipped) set_member(*emission, "sides", "back", e.at);
@@ -200,6 +228,9 @@ void Converter::set_surface(Component& object, const Element& e, Uv uv) {
   if (interior)
     if (const Ref<Component> inside = medium(*interior, object, glow))
       set_member(object, "interior", inside, e.location_of("interior"));
+  if (flipped && (interior || e.nested("exterior")))
+    inexact(e,
+            "the normals of this shape point inwards, where Mitsuba has its exterior: here the medium is inside all the same");
   if (glow && !interior) inexact(*glow, "a 'volumelight' shines inside a medium, and its shape has none: it is left out");
   sides_.push_back({Ref<SceneObject>(dynamic_cast<SceneObject*>(&object)), interior, e.nested("exterior"), groups_read_ > 0,
                     e.location_of("exterior")});

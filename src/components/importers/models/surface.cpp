@@ -252,6 +252,11 @@ class SurfaceMaker {
     if (!(is_there(s_.transmission) || is_there(s_.translucence)) || s_.thin || !(s_.attenuation_distance > 0) ||
         !std::isfinite(s_.attenuation_distance))
       return nullptr;
+    if (!is_there(s_.transmission)) {
+      importing_.inexact("what lets light through diffusely is a sheet here: nothing is lost on the way through its inside",
+                         at_);
+      return nullptr;
+    }
     std::array<double, 3> left = s_.attenuation_color;
     for (double& x : left) x = std::clamp(std::isfinite(x) ? x : 1, 0.0, 1.0);
     if (left == std::array<double, 3>{1, 1, 1}) return nullptr;

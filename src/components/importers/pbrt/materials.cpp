@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "reader.h"
 
@@ -123,10 +124,14 @@ void set_roughness(Reader& reader, Component& shader, const Parameters& p, doubl
     if (n && n->value == 0) return roughness;
     return alpha_of(reader, p.at, std::move(roughness), remap, v3);
   };
-  set_map(shader, "roughness", alpha({u, r}), p.at);
+  const Value along = alpha({u, r});
+  set_map(shader, "roughness", along, p.at);
   const Parameter* across = p.find(v);
   if (p.has(u) || across) set_map(shader, "roughness_v", alpha({v, r}), p.at);
   set_member(shader, "multiple_scattering", false, p.at);
+  // pbrt's G of light that goes through is that of light that is reflected.
+  const Number* n = along.as<Number>();
+  if (shader.class_info().name == "Dielectric" && !(n && n->value == 0)) set_member(shader, "heights", "correlated", p.at);
 }
 
 std::vector<std::string> material_names() {
@@ -135,16 +140,25 @@ std::vector<std::string> material_names() {
   return all;
 }
 
-bool has_front(const Reader& reader, const Material& m, int depth) {
-  for (const char* relief : {"displacement", "bumpmap", "normalmap"})
-    if (std::ranges::count(m.parameters.own, relief, &Parameter::name)) return true;
-  for (const char* type : {"dielectric", "glass", "subsurface", "kdsubsurface"})
-    if (m.type == type) return true;
-  if (m.type != "mix" || depth > Reader::most_nested) return false;
-  for (const Parameter& p : m.parameters.own)
-    for (const std::string& name : p.strings)
-      if (const auto part = reader.named_materials.find(name); part != reader.named_materials.end())
-        if (has_front(reader, reader.materials[part->second], depth + 1)) return true;
+bool has_front(const Reader& reader, const Material& material) {
+  std::vector<const Material*> open{&material};
+  std::set<const Material*> seen;  // mixtures may be of the same ones, and of themselves
+  while (!open.empty()) {
+    const Material& m = *open.back();
+    open.pop_back();
+    if (!seen.insert(&m).second) continue;
+    for (const char* relief : {"displacement", "bumpmap", "normalmap"})
+      if (std::ranges::count(m.parameters.own, relief, &Parameter::name)) return true;
+    for (const char* type : {"dielectric", "glass", "subsurface", "kdsubsurface"})
+      if (m.type == type) return true;
+    if (m.type != "mix") continue;
+    for (const Parameter& p : m.parameters.own) {
+      if (p.name != "materials" && p.name != "namedmaterial1" && p.name != "namedmaterial2") continue;
+      for (const std::string& name : p.strings)
+        if (const auto part = reader.named_materials.find(name); part != reader.named_materials.end())
+          open.push_back(&reader.materials[part->second]);
+    }
+  }
   return false;
 }
 

@@ -182,7 +182,7 @@ void make_with_present_textures(Reader&, size_t material);
 /// Whether it matters which side of a shape that follows is its front.
 bool front_matters(const Reader&);
 /// Whether a material is another one when its front is its back.
-bool has_front(const Reader&, const Material&, int depth = 0);
+bool has_front(const Reader&, const Material&);
 /// A dielectric's index against the other side.
 void set_index(const Reader&, Component& dielectric, const Value& eta, Location at);
 Ref<Component> shader_named(Reader&, const std::string& name, Location used_at);

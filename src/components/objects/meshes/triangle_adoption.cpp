@@ -113,6 +113,7 @@ bool TriangleObject::closed() const {
   // In a closed and consistently oriented surface every directed edge meets its opposite, so this sum, to which an edge
   // and its opposite contribute inverse terms, is zero; of an open surface it is so with probability 2^-64. Corners are
   // told by position, not index: seams of texture coordinates are no holes.
+  if (!lazy_) return false;  // it is not prepared
   std::call_once(lazy_->closed_known, [this] {
     const float least = least_length(stored_bounds_);
     const auto corner = [this, least](std::uint32_t i) {

@@ -7,9 +7,8 @@
 namespace etendue {
 namespace {
 
-// Shadowing. Tilted normals are taken for the slopes of a rough surface, of which the farthest tilted there may be is this one.
-// Such a surface, in GGX's distribution of roughness alpha, lets through to its slopes, of the light at the angle theta to the
-// normal,
+// Shadowing. A tilted normal is taken for a slope of a rough surface that has hardly any steeper ones. Facets in GGX's
+// distribution with such an alpha let through, of light at the angle theta to the normal that is not tilted,
 //     2 / (1 + sqrt(1 + alpha^2 tan^2 theta)),   alpha^2 = min(tan^2(tilt) / 8, 1)
 // (Conty Estevez, Lecocq & Stein 2019, equations 1 to 3), a function of where light comes from alone.
 //
@@ -17,16 +16,20 @@ namespace {
 // al. 2017, section 3). Viewers are at `out` on paths from the camera, and at `in` on those from lights: there the slope is
 // known only when the direction is. So one of the two, drawn with probability 1/2, gives the direction, the density is
 // the mean of both, and the value is that of the slope which the direction sees. Both are so for importance the adjoint of
-// what they are for radiance.
+// what they are for radiance. What a slope that is not seen gives counts nothing, and twice what the seen one gives, where
+// values cannot be asked for: of mirrors, of what goes straight on, and of shaders that draw them (`stochastic`).
 class TiltedScatter final : public ScatterCombination {
  public:
   /// `opposite`: null, the tilt is seen from everywhere.
-  TiltedScatter(const SurfacePoint& p, const Scatter* own, const Scatter* opposite, float alpha2)
+  TiltedScatter(const SurfacePoint& p, const Normal3& tilted, const Scatter* own, const Scatter* opposite, float alpha2,
+                bool stochastic)
       : ScatterCombination(p, Lobes(own->lobes() | (opposite ? opposite->lobes() : no_lobes))),
         own_(own),
         opposite_(opposite),
         untilted_(p.shading_normal),
-        alpha2_(alpha2) {
+        tilted_(tilted),
+        alpha2_(alpha2),
+        stochastic_(stochastic) {
     frame_ = own->frame();
   }
 
@@ -43,18 +46,19 @@ class TiltedScatter final : public ScatterCombination {
                                             Lobes which) const override {
     const bool radiance = transport == Transport::radiance;
     if (radiance || !opposite_ || which == pass_through) {
-      const Scatter& part = radiance ? seen_from(out) : *own_;
+      const Scatter& part = radiance || which == pass_through ? seen_from(out) : *own_;
       std::optional<ScatterSample> s = part.sample(out, choice, u, transport, which);
       if (s && s->lobe != pass_through) s->weight *= let_through(radiance ? s->direction : out);
       return s;
     }
     const Scatter& part = choice < 0.5f ? *own_ : *opposite_;
     std::optional<ScatterSample> s = part.sample(out, left_of_choice(choice, 0.5f), u, transport, which);
-    if (!s || s->lobe == pass_through) return s;
-    if (s->specular()) {
+    if (!s) return s;
+    const bool discrete = s->specular() || s->lobe == pass_through;
+    if (discrete || stochastic_) {
       if (&seen_from(s->direction) != &part) return std::nullopt;
-      s->weight *= 2 * let_through(out);
-      s->density /= 2;
+      s->weight *= s->lobe == pass_through ? 2 : 2 * let_through(out);
+      s->density = discrete ? s->density / 2 : world_value_and_density(out, s->direction, transport, which).density;
       return s;
     }
     const ScatterValue v = world_value_and_density(out, s->direction, transport, which);
@@ -68,7 +72,7 @@ class TiltedScatter final : public ScatterCombination {
 
  private:
   const Scatter& seen_from(const Vector3& v) const {
-    return opposite_ && dot(v, untilted_) * dot(v, own_->frame().n) <= 0 ? *opposite_ : *own_;
+    return opposite_ && dot(v, untilted_) * dot(v, tilted_) <= 0 ? *opposite_ : *own_;
   }
   float let_through(const Vector3& v) const {
     if (alpha2_ == 0) return 1;
@@ -77,8 +81,9 @@ class TiltedScatter final : public ScatterCombination {
   }
 
   const Scatter *own_, *opposite_;
-  Normal3 untilted_;
+  Normal3 untilted_, tilted_;
   float alpha2_;
+  bool stochastic_;
 };
 
 }  // namespace
@@ -92,10 +97,10 @@ const Scatter* PerturbedNormalShader::bind(const SurfacePoint& p, const Waveleng
   const float alpha2 = !shadowing ? 0 : c2 > 0 ? std::min(std::max(1 - c2, 0.0f) / (8 * c2), 1.0f) : 1;
   const Scatter* opposite = nullptr;
   if (opposite_slopes) {
-    tilted.shading_normal = Normal3(2 * cosine * Vector3(p.shading_normal) - Vector3(n));
+    tilted.shading_normal = above_surface(2 * cosine * Vector3(p.shading_normal) - Vector3(n), p);
     opposite = shader->bind(tilted, w, arena);
   }
-  return arena.make<TiltedScatter>(p, own, opposite, alpha2);
+  return arena.make<TiltedScatter>(p, n, own, opposite, alpha2, stochastic());
 }
 
 }  // namespace etendue

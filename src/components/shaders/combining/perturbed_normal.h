@@ -34,14 +34,14 @@ class PerturbedNormalShader : public Shader {
     d.group("Slopes")
         .template member<&T::shadowing>(
             "shadowing", "",
-            "whether light that comes at a slant is dimmed, the more the farther the normal is tilted, as slopes that shade "
-            "one "
-            "another would: shadows on tilted normals then begin softly. It loses light (Conty Estevez, Lecocq & Stein 2019, A "
+            "whether light that comes at a slant is dimmed, the more the farther the normal is tilted, as slopes would dim it "
+            "that shade one another: shadows on tilted normals then begin softly. It loses light (Conty Estevez, Lecocq & "
+            "Stein 2019, A "
             "microfacet-based shadowing function to solve the bump terminator problem)")
         .template member<&T::opposite_slopes>(
             "opposite_slopes", "",
             "whether who looks at a slope from behind sees instead the one tilted the other way (Schuessler et al. 2017, "
-            "Microfacet-based normal mapping for robust Monte Carlo path tracing); else he sees an image of himself");
+            "Microfacet-based normal mapping for robust Monte Carlo path tracing); without, the slope is seen from there too");
   }
   /// A vector along the new normal, of any length; `p` has its tangents. What is no direction leaves the normal as it is.
   virtual Vector3 tilted(const SurfacePoint& p) const = 0;
@@ -53,14 +53,16 @@ class PerturbedNormalShader : public Shader {
     const Vector3 n = tilted(p);
     const float n2 = length_squared(n);
     if (!(n2 > 0 && n2 < infinity)) return p;
-    // A shading normal is on the front of the surface: beyond, it is turned back to just above it.
-    constexpr float least = 0.02f;
-    Vector3 unit = n / std::sqrt(n2);
-    const float cosine = dot(unit, p.normal);
-    if (cosine < least) unit += (least - cosine) * Vector3(p.normal);
-    const float l2 = length_squared(unit);
-    if (l2 > 1e-6f) p.shading_normal = Normal3(unit / std::sqrt(l2));
+    p.shading_normal = above_surface(n / std::sqrt(n2), p);
     return p;
+  }
+  /// A shading normal is on the front of the surface: one beyond is turned back to just above it. `n` is unit.
+  static Normal3 above_surface(Vector3 n, const SurfacePoint& p) {
+    constexpr float least = 0.02f;
+    const float cosine = dot(n, p.normal);
+    if (cosine < least) n += (least - cosine) * Vector3(p.normal);
+    const float l2 = length_squared(n);
+    return l2 > 1e-6f ? Normal3(n / std::sqrt(l2)) : p.shading_normal;
   }
 };
 

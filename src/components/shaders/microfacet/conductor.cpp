@@ -163,7 +163,12 @@ class Conductor final : public Shader {
                                       soft(0, 1), when("roughness_v"))
         .member<&Conductor::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
         .member<&Conductor::multiple_scattering>("multiple_scattering", "",
-                                                 "whether light that meets more than one facet is counted, or lost");
+                                                 "whether light that meets more than one facet is counted, or lost")
+        .member<&Conductor::heights>("heights", "",
+                                     "of facets that hide light on its way in and on its way out: by_side and correlated, as "
+                                     "in pbrt, the same ones hide "
+                                     "both ways; independent, as in Mitsuba, others do, and less is reflected at a slant",
+                                     choices("by_side", "independent", "correlated"), unless("multiple_scattering"));
   }
 
   void prepare() override {
@@ -192,7 +197,8 @@ class Conductor final : public Shader {
     const Spectrum tint = reflectance_at(*color, p, w);
     if (tint.black()) return nullptr;
     const BoundaryReflectance boundary = boundary_of(p, w);
-    const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
+    MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
+    if (!multiple_scattering) d.heights = heights;
     if (d.smooth()) return arena.make<PolishedConductor>(p, boundary, tint);
     const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
     return arena.make<RoughConductor>(p, frame, d, boundary, tint, multiple_scattering);
@@ -208,6 +214,7 @@ class Conductor final : public Shader {
   Color ior = metal_index("Al");
   Ref<ObjectMap> color = constant(1.0f), roughness = constant(0.2f), roughness_v, rotation = constant(0.0f);
   MicrofacetDistribution::Kind distribution = MicrofacetDistribution::ggx;
+  MicrofacetDistribution::Heights heights = MicrofacetDistribution::Heights::by_side;
   bool multiple_scattering = true;
   enum class Index : std::uint8_t { spectral, rgb };
   Index index = Index::spectral;

@@ -127,7 +127,13 @@ class Dielectric final : public Shader {
         .member<&Dielectric::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
         .member<&Dielectric::multiple_scattering>(
             "multiple_scattering", "",
-            "whether light that meets more than one facet is counted, or lost; where roughness_v differs it is lost");
+            "whether light that meets more than one facet is counted, or lost; where roughness_v differs it is lost")
+        .member<&Dielectric::heights>(
+            "heights", "",
+            "of facets that hide light on its way in and on its way out: by_side, the same ones hide both ways in reflection, "
+            "and "
+            "others through the surface; independent, always others, as in Mitsuba; correlated, always the same, as in pbrt",
+            choices("by_side", "independent", "correlated"), unless("multiple_scattering"));
   }
 
   void prepare() override {
@@ -150,7 +156,8 @@ class Dielectric final : public Shader {
     if (outside) eta = eta / MediumStack::index(outside, w);
     BoundaryTint tint;
     if (tinted_) tint = {reflectance_at(*reflection_tint, p, w), reflectance_at(*transmission_tint, p, w)};
-    const MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
+    MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
+    if (!multiple_scattering) d.heights = heights;
     if (!RoughDielectric::smooth(d, eta)) {
       const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
       return arena.make<RoughDielectric>(p, frame, d, eta, multiple_scattering, w.single(), tint);
@@ -167,6 +174,7 @@ class Dielectric final : public Shader {
   Ref<ObjectMap> reflection_tint = constant(1.0f), transmission_tint = constant(1.0f);
   Ref<ObjectMap> roughness = constant(0.0f), roughness_v, rotation = constant(0.0f);
   MicrofacetDistribution::Kind distribution = MicrofacetDistribution::ggx;
+  MicrofacetDistribution::Heights heights = MicrofacetDistribution::Heights::by_side;
   bool multiple_scattering = true;
 
  private:

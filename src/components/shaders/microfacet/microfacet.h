@@ -16,7 +16,13 @@ struct MicrofacetDistribution {
   /// A surface whose alphas are both below this is taken for smooth: the lobe is narrower than any pixel or lamp.
   static constexpr float smooth_below = 1e-3f;
 
+  /// How high facets lie that hide light on its way in, and on its way out. On one side of the surface the same heights hide
+  /// both ways; through it neither the top nor the bottom is likelier than the other to hide. Other programs take the two for
+  /// independent everywhere, or for correlated everywhere: at a slant that is up to a tenth of what is reflected.
+  enum class Heights : std::uint8_t { by_side, independent, correlated };
+
   Kind kind = ggx;
+  Heights heights = Heights::by_side;
   float alpha_x = 1, alpha_y = 1;  ///< root of twice the mean square slope along x and y (Beckmann); GGX has the same scale
 
   MicrofacetDistribution() = default;
@@ -42,16 +48,22 @@ struct MicrofacetDistribution {
   /// The fraction of facets of normal m that is seen from v (it does not depend on m, but for facing v).
   float G1(const Vector3& v, const Vector3& m) const { return dot(v, m) * v.z > 0 ? 1 / (1 + lambda(v)) : 0; }
 
-  /// The fraction seen from both directions on the same side, heights correlated (Heitz 2014, eq. 99).
-  float G2(const Vector3& out, const Vector3& in) const { return 1 / (1 + lambda(out) + lambda(in)); }
+  /// The fraction seen from both directions on the same side, heights correlated (Heitz 2014, eq. 99) unless it is said
+  /// otherwise.
+  float G2(const Vector3& out, const Vector3& in) const {
+    return heights == Heights::independent ? independent_G2(out, in) : correlated_G2(out, in);
+  }
   /// G2 / (4 |out.z in.z|), the factor of a reflecting lobe: f = F D(m) visibility.
   float visibility(const Vector3& out, const Vector3& in) const {
-    if (kind == ggx) return 0.5f / (std::abs(out.z) * stretched(in) + std::abs(in.z) * stretched(out));
+    if (kind == ggx && heights != Heights::independent)
+      return 0.5f / (std::abs(out.z) * stretched(in) + std::abs(in.z) * stretched(out));
     return G2(out, in) / (4 * std::abs(out.z * in.z));
   }
-  /// The fraction seen from directions on opposite sides. Heights are taken for independent (Walter et al. 2007, eq. 23): of
-  /// a facet seen from both sides neither the top nor the bottom of the surface is likelier than the other to hide it.
-  float G2_through(const Vector3& out, const Vector3& in) const { return 1 / ((1 + lambda(out)) * (1 + lambda(in))); }
+  /// The fraction seen from directions on opposite sides, heights independent (Walter et al. 2007, eq. 23) unless it is said
+  /// otherwise.
+  float G2_through(const Vector3& out, const Vector3& in) const {
+    return heights == Heights::correlated ? correlated_G2(out, in) : independent_G2(out, in);
+  }
 
   /// Density [1/sr] of sample_visible: of the facets seen from `out`, the share of area across `out` with normals around m:
   /// G1(out) |out . m| D(m) / |out.z| (Heitz 2014, eq. 16).
@@ -75,6 +87,8 @@ struct MicrofacetDistribution {
   }
 
  private:
+  float correlated_G2(const Vector3& out, const Vector3& in) const { return 1 / (1 + lambda(out) + lambda(in)); }
+  float independent_G2(const Vector3& out, const Vector3& in) const { return 1 / ((1 + lambda(out)) * (1 + lambda(in))); }
   static float valid(float roughness) { return roughness > smooth_below ? std::min(roughness, 1.0f) : smooth_below; }
   /// Length of v after the stretch that makes the surface one of alpha 1.
   float stretched(const Vector3& v) const { return std::sqrt(square(alpha_x * v.x) + square(alpha_y * v.y) + v.z * v.z); }
