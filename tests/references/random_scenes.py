@@ -7,8 +7,7 @@ not of the whole, which makes pictures whose lights are found in two ways wrong 
 - `points`: lights that only a connection finds (point, spot, directional, projector);
 - `scattered`: `direct` without samples of emitters, so that all light is found by scattering.
 
-Left out is what docs/coming-from-mitsuba.md tells of: `spec_tint` and `sheen_tint`, the shadowing of tilted normals, metals by name (from
-other sources), thin panes (whose polarizations Mitsuba averages), neighbouring texels of an environment that differ much; and
+Left out is what docs/coming-from-mitsuba.md tells of: `spec_tint` and `sheen_tint`, metals by name (from other sources), thin panes (whose polarizations Mitsuba averages), neighbouring texels of an environment that differ much; and
 `directionalarea`, whose light no path finds.
 """
 

@@ -188,8 +188,8 @@ class SurfaceMaker:
             inner = self.bsdf("twosided", inner)
         if self.chance(0.5):
             return self.bsdf("bumpmap", self.bitmap("height", 100, 140, True, True, False), self.flat("scale", 0.05, 0.6), inner,
-                             truth("use_shadowing_function", False))
-        return self.bsdf("normalmap", self.bitmap("normalmap", 108, 148, True), inner, truth("use_shadowing_function", False))
+                             truth("use_shadowing_function", self.chance(0.5)))
+        return self.bsdf("normalmap", self.bitmap("normalmap", 108, 148, True), inner, truth("use_shadowing_function", self.chance(0.5)))
 
     def opaque(self, depth=0, smooth=True):
         makers = [lambda: self.bsdf("diffuse", self.colour("reflectance")), self.rough_plastic, self.principled,
