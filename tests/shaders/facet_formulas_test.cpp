@@ -63,7 +63,7 @@ TEST(ShaderFormulas, RoughConductor) {
       set(*once, "heights", Value(std::string(heights)));
       once->prepare();
       expect_formula(heights, once, 0.1, [&](const V& out, const V& in, double l) {
-        return f(out, in, l) / facets.reflection(out, in) * facets.reflection(out, in, heights == std::string("independent"));
+        return f(out, in, l) * facets.hidden(out, in, false) / facets.hidden(out, in, heights == std::string("independent"));
       });
     }
 

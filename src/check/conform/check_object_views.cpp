@@ -66,7 +66,7 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
           seen = cell(s.direction);
           value = 1 / double(s.density);
         }
-      } else {
+      } else if (std::abs(dot(p.normal, s.direction)) > 1e-2f) {  // of a sheet seen edge on, rounding decides
         ++behind;
       }
     }

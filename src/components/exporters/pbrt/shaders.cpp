@@ -62,9 +62,9 @@ std::string Writer::roughness_of(const Component& shader, const std::string& pre
     exporting.inexact("pbrt has GGX's facets alone: they stand for Beckmann's", &shader);
   const Ref<Component> alpha = part_of(shader, "roughness");
   const Color c = alpha ? constant_of(*alpha) : nullptr;
-  const bool rough = !c || c->at(550, ColorUse::coefficient) > 0.001f;
+  const bool rough = !c || c->at(550, ColorUse::coefficient) > 0.001f, multiple = truth_of(shader, "multiple_scattering");
   const std::string heights = shader.class_info().find("heights") ? word_of(shader, "heights") : "correlated";
-  if (rough && truth_of(shader, "multiple_scattering"))
+  if (rough && multiple)
     exporting.inexact("pbrt loses the light that meets more than one facet: rough surfaces are a little darker there", &shader);
   else if (rough && (heights == "independent" || (heights == "by_side" && shader.class_info().name == "Dielectric")))
     exporting.inexact("the heights of facets are correlated in pbrt: rough surfaces are a little brighter at a slant", &shader);
