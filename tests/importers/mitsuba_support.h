@@ -67,6 +67,15 @@ inline std::string seen_scene(const std::string& content, int depth = 2, const s
   return scene(sensor() + integrator(depth) + content, version);
 }
 
+/// A square of 20 m at z = 5 that faces the camera.
+inline std::string wall(const std::string& inside, const std::string& more = "") {
+  return "<shape type=\"rectangle\"><transform name=\"to_world\">" + more +
+         "<scale value=\"10\"/><rotate y=\"1\" angle=\"180\"/><translate z=\"5\"/></transform>" + inside + "</shape>\n";
+}
+inline std::string matt(const std::string& reflectance) {
+  return "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" + reflectance + "\"/></bsdf>";
+}
+
 /// The mean of the picture, without a word having been said.
 inline Xyz seen(const Imported& imported, int samples = 0) {
   EXPECT_EQ(imported.told(), "");

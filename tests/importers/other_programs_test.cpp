@@ -214,20 +214,6 @@ TEST(OtherPrograms, PbrtsSubsurfaceMaterialsMayBeNamed) {
   EXPECT_NE(made("\"string name\" \"Custard\"").find("no measured medium 'Custard'"), std::string::npos);
 }
 
-// Lights are no part of the object that is being defined: they stand in the world, once.
-TEST(OtherPrograms, LightsInPbrtsDefinitionsStandInTheWorld) {
-  const TemporaryFolder folder;
-  const Imported imported = pbrt(folder,
-                                 "ObjectBegin \"o\"\nLightSource \"point\" \"rgb I\" [1 1 1]\nShape \"sphere\"\nObjectEnd\n"
-                                 "ObjectInstance \"o\"\nTranslate 5 0 0\nObjectInstance \"o\"\n");
-  EXPECT_EQ(imported.told(), "");
-  ASSERT_TRUE(imported.job);
-  int lights = 0;
-  for (const Ref<SceneObject>& object : imported.job->scene->objects) lights += object->delta();
-  EXPECT_EQ(lights, 1);
-  EXPECT_EQ(imported.job->scene->objects.size(), 3u);
-}
-
 // ---- Models -------------------------------------------------------------------------------------------------------
 
 struct Model {

@@ -13,9 +13,9 @@ namespace etendue::pbrt {
 namespace {
 
 /// Whether the image has an alpha that is not 1 everywhere.
-bool transparent(const FilePath& file) {
+bool transparent(Reader& reader, const FilePath& file) {
   try {
-    const std::vector<std::string> names = image_channels(file.resolved());
+    const std::vector<std::string>& names = reader.importing.image_channels(file.resolved());
     for (const char* name : {"R", "G", "B", "A"})
       if (!std::ranges::count(names, name)) return false;
     const Image image = read_image(file.resolved());
@@ -111,7 +111,7 @@ Ref<Component> image_texture(Reader& reader, const Parameters& p, bool spectrum)
   Ref<Component> result = map;
   // v4's lookups of single texels take the first channel.
   const bool texels = filter == "point" || filter == "ewa" || filter == "EWA";
-  if (reader.version == 4 && !texels && transparent(*file))
+  if (reader.version == 4 && !texels && transparent(reader, *file))
     set_member(*map, "channel", "A", at);
   else if (const bool several = colored(*file); several && reader.version == 3)
     result = luminance(reader, *map, p, file->resolved());
