@@ -5,7 +5,7 @@
     tests/fuzz/fuzz.py --program build-asan/tests/fuzz/readers_fuzz --runs 100000 pbrt glb      so many inputs for these
 
 Each reader begins with the right files of tests/hostile and with a dictionary of all words in quotes of its sources. --work keeps
-what it finds to be new for the next time, and inputs that crash, hang for 10 s, leak or take more memory than --memory. Exit
+what it finds to be new for the next time, and inputs that crash, hang, leak or take more memory than --memory. Exit
 status: 0 when there is none.
 """
 import argparse
@@ -67,7 +67,7 @@ def fuzz(arguments, reader, right, beside, work):
             (folder / name / file).write_bytes(data)
     words = dictionary(reader)
     (folder / "words").write_text(words)
-    command = [arguments.program, f"--reader={reader}", f"--beside={folder / 'beside'}", "-timeout=10", f"-rss_limit_mb={arguments.memory}",
+    command = [arguments.program, f"--reader={reader}", f"--beside={folder / 'beside'}", f"-timeout={arguments.timeout}", f"-rss_limit_mb={arguments.memory}",
                "-max_len=16384", *([f"-dict={folder / 'words'}"] if words else []), f"-artifact_prefix={folder / 'found'}/", f"-seed={arguments.seed}",
                "-print_final_stats=1", "-close_fd_mask=1"]
     command += [f"-runs={arguments.runs}"] if arguments.runs else [f"-max_total_time={arguments.seconds}"]
@@ -91,6 +91,7 @@ def main():
     parser.add_argument("--seconds", type=int, default=60)
     parser.add_argument("--runs", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--timeout", type=int, default=10, help="[s] by the clock: more where other programs run at the same time")
     parser.add_argument("--memory", type=int, default=1024, help="[MB]; the program itself and the sanitizers take about 300")
     parser.add_argument("--work", type=pathlib.Path)
     parser.add_argument("reader", nargs="*", choices=[*all_readers, []], default=[])

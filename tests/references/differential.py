@@ -121,10 +121,12 @@ class Programs:
 
 
 def left_out(scene):
-    """Ways to make the scene smaller, each with its way back: an element less, or in the place of the one that holds it."""
+    """Ways to make the scene smaller, each with its way back: an element less, or in the place of the one that holds it. The view
+    is kept: one from within a surface would differ for its own reasons."""
     parents = {inner: outer for outer in scene.iter() for inner in outer}
+    view = {e for sensor in scene.iter("sensor") for e in sensor.iter()}
     for e in sorted(parents, key=lambda e: -len(list(e.iter()))):
-        if e.tag in ("integrator", "sensor", "film", "rfilter") or e.get("name") in ("width", "height", "filename"):
+        if e in view or e.tag == "integrator" or e.get("name") == "filename":
             continue
         yield parents[e], e, [None, *([i for i in e if i.tag == "bsdf"] if e.tag == "bsdf" else [])]
 

@@ -69,7 +69,7 @@ class SurfaceMaker:
         middle = self.r.uniform(low, high)
         return value("rgb", name, [round(min(max(middle * self.r.uniform(0.75, 1.3), low), high), 3) for _ in range(3)])
 
-    def spectrum(self, name, low=0.1, high=0.8):
+    def spectrum(self, name, low=0.1, high=0.8, red_green_blue=True):
         def values(count):
             return [self.between(low, high) for _ in range(count)]
 
@@ -84,7 +84,7 @@ class SurfaceMaker:
             return element("spectrum", number("wavelength_min", 360), number("wavelength_max", 830),
                            word("values", values(self.r.randint(2, 6))), type="regular", name=name)
 
-        return self.one(table, irregular, regular, lambda: self.rgb(name, max(low, 0.05), high),
+        return self.one(table, irregular, regular, lambda: self.rgb(name, max(low, 0.05), high) if red_green_blue else table(),
                         lambda: value("spectrum", name, self.between(low, high)),
                         lambda: element("spectrum", number("value", self.between(low, high)), type="uniform", name=name))
 
@@ -100,12 +100,12 @@ class SurfaceMaker:
 
     # Textures.
 
-    def image(self, low, high, grey=False):
+    def image(self, low, high, grey=False, blue=None):
         width, height = self.r.choice([2, 3, 5, 8]), self.r.choice([2, 3, 5, 7])
 
         def pixel():
             first = self.r.randint(low, high)
-            return (first,) * 3 if grey else (first, self.r.randint(low, high), self.r.randint(low, high))
+            return (first,) * 3 if grey else (first, self.r.randint(low, high), self.r.randint(*(blue or (low, high))))
 
         return self.file(".png", png([[pixel() for _ in range(width)] for _ in range(height)]))
 
@@ -115,9 +115,9 @@ class SurfaceMaker:
                  element("translate", x=self.between(-1, 1), y=self.between(-1, 1))]
         return self.maybe(0.6, lambda: element("transform", *self.r.sample(steps, self.r.randint(1, 3)), name="to_uv"))
 
-    def bitmap(self, name, low=40, high=230, raw=False, grey=False, nearest=True):
+    def bitmap(self, name, low=40, high=230, raw=False, grey=False, nearest=True, blue=None):
         wrap = self.maybe(0.5, lambda: word("wrap_mode", self.r.choice(["repeat", "mirror", "clamp"])))
-        return element("texture", self.image(low, high, grey), self.to_uv(), truth("raw", True) if raw else None, wrap,
+        return element("texture", self.image(low, high, grey, blue), self.to_uv(), truth("raw", True) if raw else None, wrap,
                        self.maybe(0.4, lambda: word("filter_type", self.r.choice(["nearest", "bilinear"]) if nearest else "bilinear")),
                        type="bitmap", name=name)
 
@@ -165,7 +165,8 @@ class SurfaceMaker:
         return [number("int_ior", self.between(1.2, 2)), self.maybe(0.3, self.flat, "ext_ior", 1, 1.2)]
 
     def metal(self):
-        material = [self.spectrum("eta", 0.2, 2), self.spectrum("k", 1.5, 4)] if self.chance(0.8) else [word("material", "none")]
+        # As red, green and blue Mitsuba's spectral variants take no more than 1.
+        material = [self.spectrum("eta", 0.2, 2, False), self.spectrum("k", 1.5, 4, False)] if self.chance(0.8) else [word("material", "none")]
         return [*material, self.maybe(0.3, self.colour, "specular_reflectance", 0.3, 0.9)]
 
     def plastic(self):
@@ -187,9 +188,9 @@ class SurfaceMaker:
         if twice:
             inner = self.bsdf("twosided", inner)
         if self.chance(0.5):
-            return self.bsdf("bumpmap", self.bitmap("height", 100, 140, True, True, False), self.flat("scale", 0.05, 0.6), inner,
+            return self.bsdf("bumpmap", self.bitmap("height", 100, 140, True, self.chance(0.5), False), self.flat("scale", 0.05, 0.6), inner,
                              truth("use_shadowing_function", self.chance(0.5)))
-        return self.bsdf("normalmap", self.bitmap("normalmap", 108, 148, True), inner, truth("use_shadowing_function", self.chance(0.5)))
+        return self.bsdf("normalmap", self.bitmap("normalmap", 60, 195, True, blue=(190, 255)), inner, truth("use_shadowing_function", self.chance(0.5)))
 
     def opaque(self, depth=0, smooth=True):
         makers = [lambda: self.bsdf("diffuse", self.colour("reflectance")), self.rough_plastic, self.principled,

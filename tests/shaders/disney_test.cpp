@@ -102,6 +102,20 @@ TEST(DisneyPrincipled, TintsHaveTheLuminanceOfGrey) {
   EXPECT_LT(seen(1, blue)[0], 0.9f * seen(0, blue)[0]);
 }
 
+double sent_away(const char* name, const std::vector<Setting>& settings, const Vector3& out) {
+  SurfacePoint p = surface_point({0, 0, 1});
+  p.dpdu = {1, 0, 0};
+  p.dpdv = {0, 1, 0};
+  Arena arena;
+  const Scatter& s = *create<Shader>(name, settings)->bind(p, wavelengths(), arena);
+  Random random(11);
+  double sum = 0;
+  constexpr int n = 20000;
+  for (int i = 0; i < n; ++i)
+    if (const auto sample = s.sample(out, random(), random.pair(), Transport::importance)) sum += double(sample->weight[0]) / n;
+  return sum;
+}
+
 // Everything bright at once sends away no more than arrives, from any side.
 TEST(DisneyPrincipled, SendsAwayNoMoreThanArrives) {
   for (const char* name : {"DisneyPrincipled", "DisneyThin"})
@@ -112,17 +126,61 @@ TEST(DisneyPrincipled, SendsAwayNoMoreThanArrives) {
           settings.insert(settings.end(), {{"diff_trans", 0.8}, {"spec_trans", 0.2}});
         else
           settings.insert(settings.end(), {{"clearcoat", 1.0}, {"clearcoat_gloss", 0.2}});
-        Arena arena;
-        const Scatter& s = *create<Shader>(name, settings)->bind(surface_point({0, 0, 1}), wavelengths(), arena);
-        Random random(11);
-        double sum = 0;
-        constexpr int n = 20000;
-        for (int i = 0; i < n; ++i)
-          if (const auto sample = s.sample(direction(cosine, 0.3), random(), random.pair(), Transport::importance))
-            sum += double(sample->weight[0]) / n;
+        const double sum = sent_away(name, settings, direction(cosine, 0.3));
         EXPECT_LT(sum, 1.01) << name << " " << roughness << " " << cosine;
         EXPECT_GT(sum, 0.75) << name << " " << roughness << " " << cosine;
       }
+}
+
+// Nor towards a lower index, where all is reflected beyond the critical angle, by the metal's share and the coat's too; nor
+// along grooves.
+TEST(DisneyPrincipled, SendsAwayNoMoreThanArrivesTowardsLowerIndices) {
+  for (const double ior : {0.25, 0.5, 0.78, 0.95})
+    for (const double roughness : {0.1, 0.5, 1.0})
+      for (const double cosine : {0.05, 0.26, 0.6, 0.9, 1.0})
+        for (const double tint : {0.0, 1.0})
+          EXPECT_LT(sent_away("DisneyPrincipled",
+                              {{"base_color", 0.6},
+                               {"roughness", roughness},
+                               {"ior", ior},
+                               {"metallic", 0.4},
+                               {"spec_tint", tint},
+                               {"clearcoat", 1.0}},
+                              direction(cosine, 0.3)),
+                    1.01)
+              << ior << " " << roughness << " " << cosine << " " << tint;
+}
+
+TEST(DisneyThin, SendsAwayNoMoreThanArrivesAlongGrooves) {
+  for (const double turn : {0.0, 0.4, 1.5707})
+    for (const double roughness : {0.2, 0.5, 1.0})
+      for (const double cosine : {0.009, 0.1, 0.4})
+        EXPECT_LT(sent_away("DisneyThin",
+                            {{"base_color", 0.4},
+                             {"roughness", roughness},
+                             {"anisotropic", 1.0},
+                             {"spec_trans", 1.0},
+                             {"spec_tint", 0.7},
+                             {"ior", 2.0}},
+                            direction(cosine, turn)),
+                  1.01)
+            << turn << " " << roughness << " " << cosine;
+}
+
+// Where reflection is not asked for there is none, beyond the critical angle neither.
+TEST(DisneyPrincipled, ReflectsOnlyWhereThatIsAskedFor) {
+  Arena arena;
+  const Scatter& s = *create<Shader>("DisneyPrincipled", {{"spec_trans", 0.8}, {"ior", 0.5}, {"roughness", 0.3}})
+                          ->bind(surface_point({0, 0, 1}), wavelengths(), arena);
+  Random random(3);
+  int refracted = 0;
+  for (int i = 0; i < 2000; ++i)
+    if (const auto sample = s.sample(direction(0.8, 0), random(), random.pair(), Transport::radiance, glossy_transmission)) {
+      EXPECT_EQ(sample->lobe, glossy_transmission);
+      EXPECT_LT(sample->direction.z, 0);
+      ++refracted;
+    }
+  EXPECT_GT(refracted, 100);
 }
 
 }  // namespace

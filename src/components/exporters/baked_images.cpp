@@ -4,6 +4,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "components/maps/image_texture.h"
+#include "etendue/describe/color.h"
 #include "etendue/describe/registry.h"
 #include "images/linear_image.h"
 #include "members.h"
@@ -28,6 +30,42 @@ Ref<Component> changed(const Component& part, std::string_view member, const Val
   return made;
 }
 
+/// The ImageMap with other pixels, which are written beside the exported file.
+Ref<Component> with_pixels(Exporting& exporting, const Component& image, const char* what, const LinearImage& pixels) {
+  const std::string name = exporting.write_beside(what, "pfm", as_pfm(pixels));
+  const FilePath file{(std::filesystem::path(exporting.folder()) / name).string(), {}};
+  Ref<Component> made = changed(image, "file", Value(file));
+  set(*made, "transfer", Value(std::string("linear")));
+  set(*made, "channel", Value(std::string()));
+  set(*made, "color_space", Value(std::string("srgb")));
+  return made;
+}
+
+bool one_file(const Component& image) { return word_of(image, "file").find("<UDIM>") == std::string::npos; }
+
+std::array<double, 3> times(const std::array<double, 9>& m, const std::array<double, 3>& v) {
+  return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
+          m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
+}
+
+/// What `change` makes of an ImageMap's linear texels; it is told whether they have three channels or one.
+template <class Change>
+LinearImage texels(const Component& image, Change change) {
+  const std::string file = word_of(image, "file"), transfer = word_of(image, "transfer");
+  LinearImage pixels = read_linear_image(file, transfer);
+  const std::shared_ptr<const ImageTexture> texture = ImageTexture::open(file, transfer, word_of(image, "channel"));
+  for (size_t i = 0; i < pixels.rgb.size() / 3; ++i) {
+    const size_t x = i % size_t(pixels.width), y = i / size_t(pixels.width);
+    float rgb[3];
+    texture->nearest({(float(x) + 0.5f) / float(pixels.width), 1 - (float(y) + 0.5f) / float(pixels.height)}, Wrap::clamp, rgb);
+    const int channels = texture->channels();
+    if (channels == 1) rgb[1] = rgb[2] = rgb[0];
+    std::ranges::transform(change({double(rgb[0]), double(rgb[1]), double(rgb[2])}, channels), &pixels.rgb[3 * i],
+                           [](double value) { return float(value); });
+  }
+  return pixels;
+}
+
 }  // namespace
 
 Ref<Component> baked_product(Exporting& exporting, const Component& product) {
@@ -35,19 +73,52 @@ Ref<Component> baked_product(Exporting& exporting, const Component& product) {
   if (!first || !second || !constant_of(*second)) return nullptr;
   const bool moved = class_of(*first) == "UvTransformMap";
   const Ref<Component> image = moved ? part_of(*first, "map") : first;
-  if (!image || class_of(*image) != "ImageMap" || !word_of(*image, "channel").empty() ||
-      word_of(*image, "file").find("<UDIM>") != std::string::npos)
-    return nullptr;
+  if (!image || class_of(*image) != "ImageMap" || !word_of(*image, "channel").empty() || !one_file(*image)) return nullptr;
   LinearImage pixels = read_linear_image(word_of(*image, "file"), word_of(*image, "transfer"));
   const std::vector<double> factor = numbers_of(product, "factor"), offset = numbers_of(product, "offset");
   const std::array<double, 3> other = rgb_of(constant_of(*second), ColorUse::reflectance);
   for (size_t i = 0; i < pixels.rgb.size(); ++i)
     pixels.rgb[i] = std::max(0.0f, float(double(pixels.rgb[i]) * factor[i % 3] * other[i % 3] + offset[i % 3]));
-  const std::string name = exporting.write_beside("product", "pfm", as_pfm(pixels));
-  const FilePath file{(std::filesystem::path(exporting.folder()) / name).string(), {}};
-  Ref<Component> made = changed(*image, "file", Value(file));
-  set(*made, "transfer", Value(std::string("linear")));
+  const Ref<Component> made = with_pixels(exporting, *image, "product", pixels);
   return moved ? changed(*first, "map", Value(made)) : made;
+}
+
+Ref<Component> baked_color(Exporting& exporting, const Component& image) {
+  if (!one_file(image)) return nullptr;
+  const std::array<double, 9>&to_xyz = rgb_space(word_of(image, "color_space")).to_xyz, &from_xyz = rgb_space("srgb").from_xyz;
+  bool beyond = false;
+  const bool converted = word_of(image, "color_space") != "srgb";
+  const LinearImage pixels = texels(image, [&](std::array<double, 3> rgb, int) {
+    if (!converted) return rgb;
+    rgb = times(from_xyz, times(to_xyz, rgb));
+    for (double& value : rgb) {
+      beyond = beyond || value < -1e-4;
+      value = std::max(value, 0.0);
+    }
+    return rgb;
+  });
+  if (beyond) exporting.inexact("colours of an image that sRGB does not have are clipped", &image);
+  return with_pixels(exporting, image, "colors", pixels);
+}
+
+// Three equal values have themselves for their mean and for their luminance.
+Ref<Component> baked_number(Exporting& exporting, const Component& image, AsNumber there, bool decoded_there) {
+  const std::string file = word_of(image, "file"), channel = word_of(image, "channel"), space = word_of(image, "color_space");
+  if (!one_file(image)) return nullptr;
+  const bool mean = word_of(image, "as_number") == "mean",
+             same = mean == (there == AsNumber::mean) && (mean || space == "srgb");
+  if (channel.empty() && decoded_there && (same || image_channels(file).size() < 3)) return nullptr;
+  bool grey = channel.empty() && decoded_there;
+  const std::array<double, 9>& to_xyz = rgb_space(space).to_xyz;
+  const LinearImage pixels = texels(image, [&](const std::array<double, 3>& rgb, int channels) {
+    grey = grey && rgb[0] == rgb[1] && rgb[0] == rgb[2];
+    const double number = channels == 1 ? rgb[0] : mean ? (rgb[0] + rgb[1] + rgb[2]) / 3 : times(to_xyz, rgb)[1];
+    return std::array<double, 3>{number, number, number};
+  });
+  if (grey) return nullptr;
+  Ref<Component> made = with_pixels(exporting, image, "numbers", pixels);
+  set(*made, "as_number", Value(std::string(there == AsNumber::mean ? "mean" : "luminance")));
+  return made;
 }
 
 }  // namespace etendue

@@ -1,6 +1,12 @@
 // Colours and textures.
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "components/exporters/asked_members.h"
 #include "components/exporters/baked_images.h"
+#include "images/linear_image.h"
 #include "writer.h"
 
 namespace etendue::mitsuba_export {
@@ -8,6 +14,24 @@ namespace etendue::mitsuba_export {
 namespace {
 
 const Transform turn_over(Transform::DoubleMatrix{1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 1, 0});
+
+std::string ending_of(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return ending;
+}
+
+/// Whether Mitsuba decodes an ImageMap's file as is done here: integers are sRGB's for it, floats and what is `raw` are linear.
+bool decoded_alike(const Component& image, Texels texels) {
+  const std::string transfer = word_of(image, "transfer"), ending = ending_of(word_of(image, "file"));
+  const bool floats = ending == ".exr" || ending == ".hdr" || ending == ".pfm",
+             integers = ending == ".png" || ending == ".jpg" || ending == ".jpeg" || ending == ".bmp" || ending == ".tga";
+  // Its spectral variants take no other colours than raw ones for numbers, and as colours they take no raw ones.
+  if (texels == Texels::normals || (texels == Texels::numbers && image_channels(word_of(image, "file")).size() >= 3))
+    return transfer == "linear" || (transfer == "auto" && floats);
+  return transfer == "auto" || (transfer == "linear" && (floats || texels == Texels::numbers)) ||
+         (transfer == "srgb" && integers);
+}
 
 }  // namespace
 
@@ -30,10 +54,12 @@ void Writer::texture(Node parent, const char* name, const Component& m, ColorUse
     return n;
   };
   if (type == "RgbProductMap") {
-    Ref<Component>& made = baked_[&m];
+    Ref<Component>& made = baked_[{&m, Texels::colors}];
     if (!made) made = baked_product(exporting, m);
     if (made) return texture(parent, name, *made, use, coordinates, uv);
   }
+  if (type == "ImageMap")
+    if (const Ref<Component> made = readable(m)) return texture(parent, name, *made, use, coordinates, uv);
   if (type == "UvTransformMap") {
     const std::vector<double> scale = numbers_of(m, "scale"), shift = numbers_of(m, "shift");
     const Transform step = Transform::translate({shift[0], shift[1], 0}) *
@@ -56,13 +82,15 @@ void Writer::texture(Node parent, const char* name, const Component& m, ColorUse
     if (wrap == "mirror" || wrap == "clamp") text(n, "wrap_mode", wrap);
     if (const std::string above = word_of(m, "wrap_v"); above != "same" && above != wrap)
       exporting.inexact("a picture is continued along v as it is along u in Mitsuba", &m);
-    if (word_of(m, "transfer") == "linear") truth(n, "raw", true);
+    if (read_as_ != Texels::colors && decoded_alike(m, Texels::normals)) truth(n, "raw", true);
+    if (read_as_ != Texels::numbers) AskedMembers::note(m, "as_number");  // of which nothing else depends
     const std::vector<double> repeat = numbers_of(m, "repeat");
     transform(n, "to_uv", turn_over * Transform::scale({repeat[0], repeat[1], 1}) * own);
   } else if (type == "CheckerMap" && word_of(m, "space") == "uv") {
+    const bool exchanged = read_as_ == Texels::numbers;
     Node n = node("checkerboard");  // whose two values are exchanged in Mitsuba where they are numbers
-    map(n, number_ ? "color1" : "color0", m, "first", use, uv);
-    map(n, number_ ? "color0" : "color1", m, "second", use, uv);
+    map(n, exchanged ? "color1" : "color0", m, "first", use, uv);
+    map(n, exchanged ? "color0" : "color1", m, "second", use, uv);
     const std::vector<double> repeat = numbers_of(m, "repeat");
     transform(n, "to_uv", Transform::scale({repeat[0] / 2, repeat[1] / 2, 1}) * own);
   } else if (type == "AttributeMap") {
@@ -86,12 +114,32 @@ double Writer::scalar(const Component& of, const char* member) {
 void Writer::scalar_map(Node parent, const char* name, const Component& of, const char* member, Uv uv) {
   const Ref<Component> m = part_of(of, member);
   if (m && class_of(*m) != "ConstantMap") {
-    number_ = true;
+    read_as_ = Texels::numbers;
     texture(parent, name, *m, ColorUse::reflectance, {}, uv);
-    number_ = false;
+    read_as_ = Texels::colors;
   } else {
     number(parent, name, scalar(of, member));
   }
+}
+
+void Writer::normals(Node parent, const char* name, const Component& image, Uv uv) {
+  read_as_ = Texels::normals;
+  texture(parent, name, image, ColorUse::coefficient, {}, uv);
+  read_as_ = Texels::colors;
+}
+
+Ref<Component> Writer::readable(const Component& image) {
+  if (readable_.contains(&image) || word_of(image, "file").find("<UDIM>") != std::string::npos) return nullptr;
+  Ref<Component>& made = baked_[{&image, read_as_}];
+  if (made) return made;
+  const bool decoded = decoded_alike(image, read_as_);
+  const bool kept = read_as_ == Texels::normals || word_of(image, "color_space") == "srgb";
+  if (read_as_ == Texels::numbers)
+    made = baked_number(exporting, image, AsNumber::luminance, decoded);
+  else if (!decoded || !kept || !word_of(image, "channel").empty())
+    made = baked_color(exporting, image);
+  if (made) readable_.insert(made.get());
+  return made;
 }
 
 }  // namespace etendue::mitsuba_export

@@ -1,5 +1,6 @@
 // Surfaces.
 
+#include "etendue/describe/registry.h"
 #include "writer.h"
 
 namespace etendue::mitsuba_export {
@@ -94,6 +95,28 @@ void Writer::conductor(Node parent, const Component& s, Uv uv) {
   map(n, "specular_reflectance", s, "color", ColorUse::reflectance, uv);
 }
 
+Node Writer::tilted(Node parent, const Component& s, Uv uv) {
+  const bool bumps = class_of(s) == "BumpShader";
+  if (bumps && class_of(*part_of(s, "height")) == "ConstantMap") return parent;  // which is flat
+  Node n = plugin(parent, bumps ? "bumpmap" : "normalmap");
+  truth(n, "use_shadowing_function", truth_of(s, "shadowing"));
+  truth(n, "flip_invalid_normals", truth_of(s, "opposite_slopes"));
+  if (bumps) {
+    scalar_map(n, "arbitrary", s, "height", uv);
+    number(n, "scale", number_of(s, "scale"));
+    return n;
+  }
+  Ref<Component> image = part_of(s, "map");
+  if (!word_of(s, "file").empty()) {
+    image = made_.emplace_back(Registry::instance().create("ImageMap"));
+    for (const char* member : {"file", "transfer", "repeat"}) set(*image, member, value_of(s, member));
+  }
+  if (word_of(s, "green") == "v")
+    exporting.inexact("green of normals tilts to the left of u in Mitsuba, where v may run the other way", &s);
+  normals(n, "normalmap", *image, uv);
+  return n;
+}
+
 void Writer::bsdf(Node parent, const Component& s, bool both_sides, Uv uv) {
   const std::string& type = class_of(s);
   const bool holds_others = type == "MaskShader" || type == "MixShader";
@@ -145,13 +168,8 @@ void Writer::bsdf(Node parent, const Component& s, bool both_sides, Uv uv) {
   } else if (type == "TwoSidedShader") {  // `parent` is a "twosided" already, unless the front alone is seen
     inner(parent, "front");
     if (both_sides) inner(parent, "back");
-  } else if (type == "BumpShader") {
-    Node n = plugin(parent, "bumpmap");
-    map(n, "arbitrary", s, "height", ColorUse::coefficient, uv);
-    number(n, "scale", number_of(s, "scale"));
-    truth(n, "use_shadowing_function", truth_of(s, "shadowing"));
-    truth(n, "flip_invalid_normals", truth_of(s, "opposite_slopes"));
-    inner(n, "shader");
+  } else if (type == "BumpShader" || type == "NormalMapShader") {
+    inner(tilted(parent, s, uv), "shader");
   } else if (type == "DisneyPrincipled" || type == "DisneyThin") {
     const bool thin = type == "DisneyThin";
     Node n = plugin(parent, thin ? "principledthin" : "principled");

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <pugixml.hpp>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -22,6 +23,9 @@ using Node = pugi::xml_node;
 
 /// Whether v of an object's surface coordinates is 1 - that of Mitsuba's shape.
 enum class Uv : std::uint8_t { as_is, from_top };
+
+/// What the texels of an image stand for.
+enum class Texels : std::uint8_t { colors, numbers, normals };
 
 class Writer {
  public:
@@ -45,10 +49,15 @@ class Writer {
   /// A number; of what is a texture it is noted, and 0.5.
   double scalar(const Component& of, const char* member);
   void scalar_map(Node, const char* name, const Component& of, const char* member, Uv);
+  void normals(Node, const char* name, const Component& image, Uv);
+  /// The ImageMap, or one in its place whose file Mitsuba reads as it is read here.
+  Ref<Component> readable(const Component& image);
 
   // shaders.cpp
   void surface(Node shape, const Component* shader, bool both_sides, Uv);
   /// `both_sides`: what Mitsuba has on the front alone is made two-sided, inside of what lets light through.
+  /// A bump or normal map as a node, into which what is tilted is written.
+  Node tilted(Node parent, const Component& shader, Uv);
   void bsdf(Node parent, const Component& shader, bool both_sides, Uv);
   void dielectric(Node, const Component&, Uv);
   void conductor(Node, const Component&, Uv);
@@ -79,9 +88,12 @@ class Writer {
   Exporting& exporting;
   pugi::xml_document document_;
   Node scene_;
-  Ref<Component> around_;                             // the medium around everything
-  bool number_ = false;                               // whether the texture that is written stands for a number
-  std::map<const Component*, Ref<Component>> baked_;  // by products of images and colours
+  Ref<Component> around_;            // the medium around everything
+  Texels read_as_ = Texels::colors;  // of the texture that is written
+  std::map<std::pair<const Component*, Texels>, Ref<Component>>
+      baked_;                            // by images and products of them, as numbers or colours
+  std::set<const Component*> readable_;  // images that were written for Mitsuba
+  std::vector<Ref<Component>> made_;     // images for shaders that hold one of their own
   std::map<const Component*, std::string> groups_;
   std::map<std::tuple<const Component*, bool, Uv>, std::string> bsdfs_;
 };

@@ -1,5 +1,6 @@
 // Maps as textures.
 
+#include "components/exporters/asked_members.h"
 #include "components/exporters/baked_images.h"
 #include "writer.h"
 
@@ -41,7 +42,7 @@ std::string Writer::image(const Component& map, const std::string& more, bool nu
   const std::vector<double> repeat = numbers_of(map, "repeat");
   if (more.empty() && repeat.size() == 2 && (repeat[0] != 1 || repeat[1] != 1))
     text += fmt::format(" \"float uscale\" {} \"float vscale\" {}", repeat[0], repeat[1]);
-  static_cast<void>(numbers);
+  if (!numbers) AskedMembers::note(map, "as_number");  // of which no colour depends
   return text + more;
 }
 
@@ -50,6 +51,11 @@ std::string Writer::texture(const Component& map, bool numbers) {
     Ref<Component>& made = baked_[&map];
     if (!made) made = baked_product(exporting, map);
     if (made) return texture(*made, numbers);
+  }
+  if (class_of(map) == "ImageMap" && numbers) {
+    Ref<Component>& made = baked_[&map];
+    if (!made) made = baked_number(exporting, map, AsNumber::mean);
+    if (made) return texture(*made, true);
   }
   const std::string key = numbers ? "float" : "spectrum";
   // The same map may be asked for as numbers and as colours: two textures.

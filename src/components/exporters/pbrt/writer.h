@@ -82,7 +82,7 @@ class Writer {
   Exporting& exporting;
   std::string out_;
   std::string around_;                                ///< the medium around everything; empty: none
-  std::map<const Component*, Ref<Component>> baked_;  // by products of images and colours
+  std::map<const Component*, Ref<Component>> baked_;  // by images that are numbers, and products of images and colours
   std::map<const Component*, std::string> materials_, textures_, media_, instanced_;
 };
 

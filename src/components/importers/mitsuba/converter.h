@@ -19,6 +19,13 @@ enum class Uv : std::uint8_t {
   from_top,  ///< v is 1 - Mitsuba's, as images count here: OBJ files, which Mitsuba turns over, and spheres
 };
 
+/// What a texture is asked for.
+enum class Read : std::uint8_t {
+  color,
+  mean,       ///< a number: of a colour's three values, as in version 0
+  luminance,  ///< a number
+};
+
 class Converter {
  public:
   explicit Converter(Importing& importing) : importing_(importing) {}
@@ -102,11 +109,11 @@ class Converter {
 
   // textures and colours
   /// What a member that takes a colour or a map is set to.
-  Value color(const Element&, const std::string& name, double otherwise, Uv);
+  Value color(const Element&, const std::string& name, double otherwise, Uv, Read = Read::color);
   Value scalar(const Element&, const std::string& name, double otherwise, Uv);
-  Value texture(const Element&, Uv);
-  Value bitmap(const Element&, Uv);
-  Value checkerboard(const Element&, Uv, bool as_number);
+  Value texture(const Element&, Uv, Read = Read::color);
+  Value bitmap(const Element&, Uv, Read);
+  Value checkerboard(const Element&, Uv, Read);
   Value attribute_map(const Element&);
   Value light(const Element&, const std::string& name, Uv);
   Value light_of(const Element& spectrum, Uv);

@@ -212,7 +212,7 @@ Converter::Surface Converter::tilted(const Element& e, Uv uv, const std::string&
   Ref<Component> shader;
   if (e.type == "bumpmap") {
     shader = make("BumpShader", e, name);
-    set(*shader, "height", texture(*map, uv));
+    set(*shader, "height", texture(*map, uv, Read::luminance));
     set_member(*shader, "scale", e.number("scale", 1), e.location_of("scale"));
   } else {
     if (map->type == "rawconstant") {

@@ -33,23 +33,17 @@ Color Converter::spectrum_of(const Element& e, const std::string& name, double o
   return flat_spectrum(float(e.number(name, otherwise)));
 }
 
-Value Converter::color(const Element& e, const std::string& name, double otherwise, Uv uv) {
+Value Converter::color(const Element& e, const std::string& name, double otherwise, Uv uv, Read read) {
   const Property* p = e.find(name);
   if (!p) return Value(Number{otherwise}, e.at);
   if (const auto* c = std::get_if<ColorValue>(&p->value))
     return c->kind == ColorValue::Kind::flat ? Value(Number{c->rgb[0]}, p->at) : Value(c->color, p->at);
-  if (std::holds_alternative<Nested>(p->value)) return texture(*e.nested(name), uv);
+  if (std::holds_alternative<Nested>(p->value)) return texture(*e.nested(name), uv, read);
   return Value(Number{e.number(name, otherwise)}, p->at);
 }
 
 Value Converter::scalar(const Element& e, const std::string& name, double otherwise, Uv uv) {
-  const Property* const p = e.find(name);
-  if (p && std::holds_alternative<Nested>(p->value))
-    if (const Element& inner = *e.nested(name); inner.type == "checkerboard") {
-      const Reading reading(inner);
-      return checkerboard(inner, uv, true);
-    }
-  Value v = color(e, name, otherwise, uv);
+  Value v = color(e, name, otherwise, uv, e.old ? Read::mean : Read::luminance);
   if (const auto* c = e.find(name) ? std::get_if<ColorValue>(&e.find(name)->value) : nullptr) {
     // A colour stands for a number by its luminance.
     const double y = 0.2126 * c->rgb[0] + 0.7152 * c->rgb[1] + 0.0722 * c->rgb[2];
@@ -58,12 +52,12 @@ Value Converter::scalar(const Element& e, const std::string& name, double otherw
   return v;
 }
 
-Value Converter::texture(const Element& e, Uv uv) {
+Value Converter::texture(const Element& e, Uv uv, Read read) {
   const Reading reading(e);
   if (e.tag == "volume" && e.type == "constvolume") return color(e, "value", 1, uv);
   if (e.tag != "texture" && e.tag != "spectrum") throw Error(fmt::format("a texture is expected, not a {}", e.tag), e.at);
-  if (e.type == "bitmap") return bitmap(e, uv);
-  if (e.type == "checkerboard") return checkerboard(e, uv, false);
+  if (e.type == "bitmap") return bitmap(e, uv, read);
+  if (e.type == "checkerboard") return checkerboard(e, uv, read);
   if (e.type == "mesh_attribute" || e.type == "vertexcolors") return attribute_map(e);
   if (e.type == "srgb") return color(e, "color", 0.5, uv);
   if (e.type == "uniform" || e.type == "rawconstant") return color(e, "value", 1, uv);
@@ -99,8 +93,8 @@ Value Converter::texture(const Element& e, Uv uv) {
     const std::vector<const Element*> inner = e.all("texture");
     if (inner.empty()) throw Error("texture 'scale' needs a texture", e.at);
     Ref<Component> product = make("MultiplyMap", e);
-    set(*product, "first", texture(*inner.front(), uv));
-    set(*product, "second", color(e, "scale", 1, uv));
+    set(*product, "first", texture(*inner.front(), uv, read));
+    set(*product, "second", color(e, "scale", 1, uv, read));
     return Value(product, e.at);
   }
   if (std::ranges::find(known_textures, e.type) == known_textures.end()) fail_unknown(e, known_textures);
@@ -108,7 +102,7 @@ Value Converter::texture(const Element& e, Uv uv) {
   return Value(Number{0.5}, e.at);
 }
 
-Value Converter::bitmap(const Element& e, Uv uv) {
+Value Converter::bitmap(const Element& e, Uv uv, Read read) {
   Ref<Component> image = make("ImageMap", e);
   const auto found = importing_.optional_file(e.string("filename", ""), e.location_of("filename"), e.folder);
   if (!found) return Value(Number{0.5}, e.at);
@@ -142,16 +136,18 @@ Value Converter::bitmap(const Element& e, Uv uv) {
     set_member(*image, "channel", std::string(1, char(std::toupper(channel[0]))), e.location_of("channel"));
   else if (!channel.empty())
     importing_.inexact(fmt::format("channel '{}' is not chosen", channel), e.location_of("channel"));
+  else if (read == Read::luminance && importing_.image_channels(*found).size() >= 3)
+    set_member(*image, "as_number", "luminance", e.at);
   e.ignore({"max_anisotropy", "cache", "format", "accel"});
   return placed(image, e, uv, true);
 }
 
 // Where a number is asked for and not a colour, Mitsuba 2 and 3 exchange the two.
-Value Converter::checkerboard(const Element& e, Uv uv, bool as_number) {
-  const bool exchanged = as_number && !e.old;
+Value Converter::checkerboard(const Element& e, Uv uv, Read read) {
+  const bool exchanged = read != Read::color && !e.old;
   Ref<Component> map = make("CheckerMap", e);
-  set(*map, exchanged ? "second" : "first", color(e, "color0", 0.4, uv));
-  set(*map, exchanged ? "first" : "second", color(e, "color1", 0.2, uv));
+  set(*map, exchanged ? "second" : "first", color(e, "color0", 0.4, uv, read));
+  set(*map, exchanged ? "first" : "second", color(e, "color1", 0.2, uv, read));
   set_member(*map, "repeat", Numbers{{2, 2, 2}, 1, Dimension::none}, e.at);
   return placed(map, e, uv, false);
 }

@@ -14,6 +14,7 @@ namespace {
 
 enum class Interpolation : std::uint8_t { nearest, bilinear };
 enum class WrapV : std::uint8_t { same, repeat, mirror, clamp, black };  // Wrap, behind one more
+enum class AsNumber : std::uint8_t { mean, luminance };
 
 // The image's numbers are decoded to linear ones before they are interpolated or averaged. A footprint asks for a mean over it:
 // that over the ellipse in which a pixel sees the surface. Squares that are wider than the ellipse is long are given as they
@@ -45,11 +46,17 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
         .member<&ImageMap::channel>("channel", "",
                                     "which channels of the file: \"\" the first three or its only one, else the name of one "
                                     "(\"A\", \"depth.Z\") or of a layer (\"diffuse\" for diffuse.R, diffuse.G, diffuse.B)")
+        .member<&ImageMap::as_number>("as_number", "",
+                                      "what a colour is where a number is asked for, as a roughness or a height; mean: of its "
+                                      "three values; luminance: their "
+                                      "sum by the weights with which they are seen",
+                                      choices("mean", "luminance"))
         .member<&ImageMap::repeat>("repeat", "1", "how many times the image is laid along u and along v");
   }
 
   void prepare() override {
     space_ = &rgb_space(color_space);
+    for (size_t i = 0; i < 3; ++i) weights_[i] = as_number == AsNumber::mean ? 1.0f / 3 : float(space_->to_xyz[3 + i]);
     if (!(std::isfinite(repeat.x) && std::isfinite(repeat.y))) fail("repeat", "must be finite numbers");
     if (file.empty()) fail("file", "an image file is needed");
     load(file.resolved());
@@ -69,7 +76,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
   float scalar(const SurfacePoint& p) const override {
     float rgb[3];
     const int channels = look_up(p, rgb);
-    return channels == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
+    return channels == 1 ? rgb[0] : weights_[0] * rgb[0] + weights_[1] * rgb[1] + weights_[2] * rgb[2];
   }
 
   void rgb(const SurfacePoint& p, float out[3]) const override { look_up(p, out); }
@@ -86,6 +93,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
   Wrap wrap = Wrap::repeat;
   WrapV wrap_v = WrapV::same;
   std::string color_space = "srgb", transfer = automatic_transfer, channel;
+  AsNumber as_number = AsNumber::mean;
   Vector2 repeat{1, 1};
 
  private:
@@ -159,6 +167,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
   }
 
   const RgbSpace* space_ = nullptr;
+  float weights_[3] = {};  // of red, green and blue in a number
   bool tiled_ = false;
   std::vector<std::shared_ptr<const ImageTexture>> ahead_;
   std::vector<std::shared_ptr<const ImageTexture>> tiles_;  // the only one, or that of square (u, v) at 10 v + u

@@ -5,6 +5,13 @@
 #include "etendue/describe/color.h"
 
 namespace etendue::disney {
+
+Spectrum schlick(Spectrum f0, float cosine, float eta) {
+  if (eta < 1) fresnel_dielectric(cosine, eta, cosine);
+  const float growth = schlick_growth(cosine);
+  return f0 * (1 - growth) + Spectrum(growth);
+}
+
 namespace {
 
 /// Of lobes without facets, by the cosine. The diffuse lobe is a polynomial of second degree in the roughness, so three values
@@ -41,12 +48,13 @@ const SmoothTable& smooth_table() {
   return made;
 }
 
-/// Of facets with F = (1 - u)^5, by the roots of alpha and of the cosine.
+/// Of facets with F = (1 - u)^5, by the roots of alpha and of the cosine. Towards a lower index, eta < 1, u is the cosine
+/// behind.
 struct GrazingTable {
   static constexpr int count = 25;
   float value[count][count] = {};
 
-  GrazingTable() {
+  explicit GrazingTable(float eta) {
     const albedo::Slopes slopes(MicrofacetDistribution::ggx, 48, 32, pi);
     for (int a = 0; a < count; ++a)
       for (int i = 0; i < count; ++i) {
@@ -61,12 +69,46 @@ struct GrazingTable {
           const double weight = double(slopes.weight[k] * u / m.z);
           seen += weight;
           const Vector3 in = reflect(v, m);
-          if (in.z > 0) sum += weight * double(schlick_growth(u) * d.G1(in, m));
+          if (in.z > 0) sum += weight * double(schlick(Spectrum(), u, eta)[0] * d.G1(in, m));
         }
         value[a][i] = float(sum / seen);
       }
   }
+
+  /// Between them, or, as beyond the critical angle all is reflected at once, the greater of two neighbours.
+  float at(float alpha, float cosine, bool between) const {
+    constexpr int last = count - 1;
+    const float a = std::sqrt(std::min(alpha, 1.0f)) * last, c = std::sqrt(std::abs(cosine)) * last;
+    const int i = std::min(int(a), last - 1), k = std::min(int(c), last - 1);
+    const float y = std::min(c - float(k), 1.0f);
+    const auto along = [&](const float* row) { return between ? lerp(y, row[k], row[k + 1]) : std::max(row[k], row[k + 1]); };
+    return lerp(a - float(i), along(value[i]), along(value[i + 1]));
+  }
 };
+
+float grazing_albedo(float alpha, const Vector3& v, float eta) {
+  static const GrazingTable outside(1);
+  if (eta >= 1) return outside.at(alpha, v.z, true);
+  constexpr int indices = 25;
+  constexpr float least = 0.25f, step = (1 - least) / (indices - 1);
+  static const std::vector<GrazingTable> inside = [] {
+    std::vector<GrazingTable> all;
+    for (int i = 0; i < indices; ++i) all.emplace_back(least + step * float(i));
+    return all;
+  }();
+  const float x = clamp((eta - least) / step, 0, indices - 1);
+  const size_t i = std::min(size_t(x), size_t(indices - 2));
+  return lerp(x - float(i), inside[i].at(alpha, v.z, false), inside[i + 1].at(alpha, v.z, false));
+}
+
+/// The least and the greatest value for the alphas across and along the grooves and between them.
+template <class Albedo>
+Bounds bounds(const MicrofacetDistribution& d, const Albedo& of) {
+  const float between = of(std::sqrt(d.alpha_x * d.alpha_y));
+  if (d.alpha_x == d.alpha_y) return {between, between};
+  const auto [least, greatest] = std::minmax({between, of(d.alpha_x), of(d.alpha_y)});
+  return {least, greatest};
+}
 
 }  // namespace
 
@@ -76,12 +118,6 @@ MicrofacetDistribution facets(float roughness, float anisotropy) {
   d.alpha_x = std::max(squared / aspect, MicrofacetDistribution::smooth_below);
   d.alpha_y = std::max(squared * aspect, MicrofacetDistribution::smooth_below);
   return d;
-}
-
-Spectrum schlick(Spectrum f0, float cosine, float eta) {
-  if (eta < 1) fresnel_dielectric(cosine, eta, cosine);
-  const float growth = schlick_growth(cosine);
-  return f0 * (1 - growth) + Spectrum(growth);
 }
 
 float diffuse(float cosine_out, float cosine_in, float half_cosine, float roughness, float flatness) {
@@ -109,21 +145,19 @@ float sheen_albedo(float cosine) {
   return SmoothTable::between(cosine, [](int i) { return smooth_table().sheen_at[i]; });
 }
 
-float grazing_albedo(const MicrofacetDistribution& d, const Vector3& v) {
-  static const GrazingTable table;
-  constexpr int last = GrazingTable::count - 1;
-  const float a = std::sqrt(std::min(std::sqrt(d.alpha_x * d.alpha_y), 1.0f)) * last, c = std::sqrt(std::abs(v.z)) * last;
-  const int i = std::min(int(a), last - 1), k = std::min(int(c), last - 1);
-  const float x = a - float(i), y = std::min(c - float(k), 1.0f);
-  return lerp(x, lerp(y, table.value[i][k], table.value[i][k + 1]), lerp(y, table.value[i + 1][k], table.value[i + 1][k + 1]));
+Bounds grazing_albedo(const MicrofacetDistribution& d, const Vector3& v, float eta) {
+  return bounds(d, [&](float alpha) { return grazing_albedo(alpha, v, eta); });
 }
 
-float whole_albedo(const MicrofacetDistribution& d, const Vector3& v) {
-  return 1 - MultipleReflection({d.kind, d.alpha_x, d.alpha_y}).missing(v);
+Bounds whole_albedo(const MicrofacetDistribution& d, const Vector3& v) {
+  return bounds(d, [&](float alpha) { return 1 - MultipleReflection({d.kind, alpha}).missing(v); });
 }
 
-float dielectric_albedo(const MicrofacetDistribution& d, const Vector3& v, float eta) {
-  return 1 - CoatTransmittance({d.kind, std::sqrt(d.alpha_x * d.alpha_y)}, clamp(eta, 0.25f, 4))(v);
+// Close to an index of 1, Fresnel's F rises within the last degree, between two places of the table.
+Bounds dielectric_albedo(const MicrofacetDistribution& d, const Vector3& v, float eta) {
+  const auto table = [&](float alpha) { return 1 - CoatTransmittance({d.kind, alpha}, clamp(eta, 0.25f, 4))(v); };
+  const auto [least, greatest] = bounds(d, table);
+  return {std::min(least, fresnel_dielectric(std::abs(v.z), eta)), greatest};
 }
 
 Spectrum tint_of(const ObjectMap& color, Spectrum at_path, const SurfacePoint& p) {

@@ -28,11 +28,14 @@ float diffuse(float cosine_out, float cosine_in, float half_cosine, float roughn
 /// Albedos of the diffuse lobe with a colour of 1, and of the sheen (1 - half_cosine)^5.
 float diffuse_albedo(float cosine, float roughness, float flatness);
 float sheen_albedo(float cosine);
-/// Bounds of the albedos of a lobe of facets with F = (1 - cosine)^5, and with F = 1.
-float grazing_albedo(const MicrofacetDistribution&, const Vector3& v);
-float whole_albedo(const MicrofacetDistribution&, const Vector3& v);
+struct Bounds {
+  float least, greatest;
+};
+/// Of the albedos of a lobe of facets with Schlick's F of f0 = 0, and with F = 1.
+Bounds grazing_albedo(const MicrofacetDistribution&, const Vector3& v, float eta);
+Bounds whole_albedo(const MicrofacetDistribution&, const Vector3& v);
 /// And with Fresnel's of a dielectric.
-float dielectric_albedo(const MicrofacetDistribution&, const Vector3& v, float eta);
+Bounds dielectric_albedo(const MicrofacetDistribution&, const Vector3& v, float eta);
 
 /// The colour over its luminance under daylight, which is what tints are: 1 where it is black.
 Spectrum tint_of(const ObjectMap& color, Spectrum at_path, const SurfacePoint&);

@@ -141,22 +141,26 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
 
   Shares shares(const Vector3& out) const {
     Shares a;
-    const float dielectric = disney::dielectric_albedo(d_.facets, out, towards(out));
-    a.refracted = root_ * (d_.glass * (1 - dielectric));
+    const auto [least, dielectric] = disney::dielectric_albedo(d_.facets, out, towards(out));
+    a.refracted = root_ * (d_.glass * (1 - least));
     if (out.z < 0) {
       a.facets = Spectrum(d_.glass * dielectric);
       return a;
     }
     a.facets = Spectrum((1 - d_.metallic) * (1 - d_.spec_tint) * dielectric);
     if (d_.metallic > 0 || d_.spec_tint > 0) {
-      const float whole = disney::whole_albedo(d_.facets, out), grazing = disney::grazing_albedo(d_.facets, out);
+      const float whole = disney::whole_albedo(d_.facets, out).greatest,
+                  grazing = disney::grazing_albedo(d_.facets, out, d_.eta).greatest;
       const auto of = [&](Spectrum f0) { return f0 * std::max(whole - grazing, 0.0f) + Spectrum(grazing); };
       a.facets += of(d_.color) * d_.metallic + of(tinted_f0()) * ((1 - d_.metallic) * d_.spec_tint);
     }
     if (d_.body > 0)
       a.diffuse = d_.color * (d_.body * disney::diffuse_albedo(out.z, d_.roughness, d_.flatness)) +
                   sheen() * disney::sheen_albedo(out.z);
-    a.coat = d_.clearcoat * (0.04f + 0.96f * schlick_growth(out.z)) * square(out.z);
+    // Towards a lower index slopes that are a little steeper may be beyond the critical angle.
+    const float steeper = safe_sqrt(1 - square(d_.coat_alpha)) * out.z - d_.coat_alpha * safe_sqrt(1 - out.z * out.z);
+    const float u = d_.eta < 1 ? std::max(steeper, 0.0f) : out.z;
+    a.coat = d_.clearcoat * disney::schlick(Spectrum(0.04f), u, d_.eta)[0] * square(out.z);
     return a;
   }
   static Spectrum scale_of(const Shares& a) {
@@ -183,8 +187,8 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
   }
   /// Of a facet: that it reflects and does not refract.
   float reflect_chance(float f, float u, bool front, Lobes which) const {
-    if (!(which & glossy_transmission) || f >= 1) return 1;
     if (!(which & glossy_reflection)) return 0;
+    if (!(which & glossy_transmission) || f >= 1) return 1;
     const float r = fresnel(f, u, front).average(), t = d_.glass * (1 - f) * root_.average();
     return r + t > 0 ? r / (r + t) : 1;
   }

@@ -108,14 +108,16 @@ class SheetScatter final : public JointScatter<SheetScatter> {
 
   Shares shares(const Vector3& v) const {
     Shares a;
-    const float shine = disney::dielectric_albedo(d_.front, v, d_.eta);
+    const float shine = disney::dielectric_albedo(d_.front, v, d_.eta).greatest;
     Spectrum reflected(shine);
     if (d_.spec_tint > 0) {
-      const float whole = disney::whole_albedo(d_.front, v), grazing = disney::grazing_albedo(d_.front, v);
+      const float whole = disney::whole_albedo(d_.front, v).greatest,
+                  grazing = disney::grazing_albedo(d_.front, v, d_.eta).greatest;
       reflected = disney::mix(d_.spec_tint, reflected, tinted_f0() * std::max(whole - grazing, 0.0f) + Spectrum(grazing));
     }
     a.shine = reflected * d_.clear;
-    const float behind = std::max(disney::whole_albedo(d_.behind, v) - disney::dielectric_albedo(d_.behind, v, d_.eta), 0.0f);
+    const float behind =
+        std::max(disney::whole_albedo(d_.behind, v).greatest - disney::dielectric_albedo(d_.behind, v, d_.eta).least, 0.0f);
     a.shine_through = d_.color * (d_.clear * behind);
     a.diffuse =
         d_.color * (body() * disney::diffuse_albedo(v.z, d_.roughness, d_.flatness)) + sheen() * disney::sheen_albedo(v.z);
