@@ -29,6 +29,8 @@ void check_png_chunks(const std::string& path) {
       throw Error(fmt::format("it ends too early: a piece of it claims {} bytes, {} are left", length, file.size() - at));
     if (std::memcmp(bytes + 4, "IEND", 4) == 0) return;
     at += length + 4;
+    // The library that reads it would find that out, too, and lose the memory of texts that it has begun to read.
+    if (at > file.size()) throw Error("it ends too early: the sum of a piece is missing");
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "etendue/exporter.h"
 #include "etendue/language/language.h"
+#include "files/input_files.h"
 #include "mitsuba_support.h"
 #include "support/image_file.h"
 
@@ -51,6 +52,9 @@ Exported exported(const std::string& job, const char* name) {
   for (const Error& note : exporting.notes())
     if (std::string(note.what()) != "pbrt's pictures are not tone mapped") ADD_FAILURE() << note.what();
   folder.write(name, result.text);
+  // Once more over the same files: what was written beside is none that was read.
+  for (const auto& file : std::filesystem::directory_iterator(folder.path()))
+    EXPECT_EQ(input_at(file.path().string()), "") << file.path();
   const Imported back = import_file(path);
   if (!back.job) {
     ADD_FAILURE() << back.told();
@@ -143,6 +147,7 @@ TEST(ImagesOfNormals, AreExportedToMitsuba) {
                                    "map: UvTransformMap { scale: [2, 3], map: ImageMap { file: \"" + floats + "\" } }"}) {
     SCOPED_TRACE(image);
     std::string job = square("NormalMapShader { green: across, shader: Lambertian { color: 1 }, " + image + " }");
+    job.insert(job.find("shader:"), "shading_normals: clipped, ");
     const size_t light = job.find("Environment");
     job.replace(light, job.find("Rectangle") - light,
                 "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: rgb(1, 1, 1) } }, ");

@@ -125,14 +125,20 @@ TEST(MitsubaExport, TellsWhatItCannotExpress) {
 // Whatever an exporter does not ask for is told, at its place, where it says something.
 TEST(MitsubaExport, MembersThatAreLeftOutAreTold) {
   const TemporaryFolder folder;
+  const std::string bumps = "BumpShader { shader: Lambertian {}, height: CheckerMap { first: 0, second: 1 } }";
   const Exported e = export_job(folder, job("Sphere { priority: 2, shader: Dielectric {} },\nSphere { priority: 0 },\n"
-                                            "Sphere { priority: 3, shading_normals: clipped }"));
+                                            "Sphere { priority: 3, shading_normals: clipped, shader: " +
+                                            bumps +
+                                            " },\n"
+                                            "Sphere { shader: MaskShader { shader: " +
+                                            bumps + " } }"));
   ASSERT_EQ(e.notes.size(), 2u);
-  EXPECT_STREQ(e.notes[0].what(), "'priority' of Sphere is left out (2 times)");
-  EXPECT_EQ(e.notes[0].location.line, 6);
-  EXPECT_EQ(e.notes[0].location.column, 20);
-  EXPECT_STREQ(e.notes[1].what(), "'shading_normals' of Sphere is left out");
-  EXPECT_EQ(e.notes[1].location.line, 8);
+  // Its own `clipped` normals are Mitsuba's.
+  EXPECT_EQ(std::string(e.notes[0].what()).find("light that tilted normals would send through the surface is lost"), 0u);
+  EXPECT_EQ(e.notes[0].location.line, 9);
+  EXPECT_STREQ(e.notes[1].what(), "'priority' of Sphere is left out (2 times)");
+  EXPECT_EQ(e.notes[1].location.line, 6);
+  EXPECT_EQ(e.notes[1].location.column, 20);
 }
 
 TEST(MitsubaExport, NormalsThatAMeshFindsForItself) {

@@ -52,8 +52,8 @@ std::string Exporting::copy_beside(const std::string& path) {
   std::error_code error;
   const fs::path here = fs::weakly_canonical(fs::absolute(folder_.empty() ? fs::path(".") : fs::path(folder_)), error);
   const fs::path from = fs::weakly_canonical(fs::absolute(path), error);
-  note_input(from.string());
   const fs::path relative = from.lexically_relative(here);
+  if (!taken_paths_.contains((fs::path(folder_) / relative).string())) note_input(from.string());  // else it is written here
   if (!relative.empty() && *relative.begin() != "..") return relative.generic_string();
   std::string& name = copied_[from.string()];
   if (!name.empty()) return name;
