@@ -57,7 +57,7 @@ class ImageLibrary {
  public:
   virtual ~ImageLibrary();
   virtual StoredImage read(const std::string& path) const = 0;
-  virtual LinearImage read_linear(const std::string& path, const std::string& transfer) const = 0;
+  virtual LinearImage read_linear(const std::string& path, const std::string& transfer, const std::string& channel) const = 0;
   /// See images/linear_image.h.
   virtual std::vector<std::string> channel_names(const std::string& path) const = 0;
   virtual void check_channel(const std::string& path, const std::string& channel) const = 0;

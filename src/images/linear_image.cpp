@@ -43,8 +43,8 @@ std::vector<std::string> image_channels(const std::string& path) {
   return reading(path, [&](const ImageLibrary& library) { return library.channel_names(path); });
 }
 
-LinearImage read_linear_image(const std::string& path, const std::string& transfer) {
-  return reading(path, [&](const ImageLibrary& library) { return library.read_linear(path, transfer); });
+LinearImage read_linear_image(const std::string& path, const std::string& transfer, const std::string& channel) {
+  return reading(path, [&](const ImageLibrary& library) { return library.read_linear(path, transfer, channel); });
 }
 
 std::shared_ptr<const ImageTexture> read_texture(const std::string& path, const std::string& transfer,

@@ -24,8 +24,8 @@ struct LinearImage {
   int width = 0, height = 0;
   std::vector<float> rgb;
 };
-/// Throws Error naming the file and the reason.
-LinearImage read_linear_image(const std::string& path, const std::string& transfer);
+/// Of the channel or layer of that name, see check_channel. Throws Error naming the file and the reason.
+LinearImage read_linear_image(const std::string& path, const std::string& transfer, const std::string& channel = {});
 
 class ImageTexture;
 /// For ImageTexture::open, which says what it does.

@@ -193,10 +193,10 @@ std::string linear_image_key(const std::string& path, const std::string& transfe
          path;
 }
 
-LinearImage read_linear_file(const std::string& path, const std::string& transfer) {
+LinearImage read_linear_file(const std::string& path, const std::string& transfer, const std::string& channel) {
   LinearInput input;
   OIIO::ImageSpec spec;
-  if (!input.open(linear_image_key(path, transfer), spec)) refuse(input.geterror());
+  if (!input.open(linear_image_key(path, transfer, channel), spec)) refuse(input.geterror());
   LinearImage image;
   image.width = spec.width;
   image.height = spec.height;

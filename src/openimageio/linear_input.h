@@ -16,6 +16,6 @@ std::string linear_image_key(const std::string& path, const std::string& transfe
 
 // See images/linear_image.h; errors in reading tell the reason alone.
 void check_file_channel(const std::string& path, const std::string& channel);
-LinearImage read_linear_file(const std::string& path, const std::string& transfer);
+LinearImage read_linear_file(const std::string& path, const std::string& transfer, const std::string& channel);
 
 }  // namespace etendue

@@ -15,8 +15,8 @@ class OpenImageIoLibrary final : public ImageLibrary {
  public:
   OpenImageIoLibrary() { announce_image_library(*this, ETENDUE_VERSION); }
   StoredImage read(const std::string& path) const override { return read_file(path); }
-  LinearImage read_linear(const std::string& path, const std::string& transfer) const override {
-    return read_linear_file(path, transfer);
+  LinearImage read_linear(const std::string& path, const std::string& transfer, const std::string& channel) const override {
+    return read_linear_file(path, transfer, channel);
   }
   std::vector<std::string> channel_names(const std::string& path) const override {
     return open_checked(path)->spec().channelnames;

@@ -261,7 +261,7 @@ TEST_F(HostileFiles, images_of_formats_that_are_not_read_reach_no_reader) {
   };
   const auto whole = [](const std::string& path) { read_image(path); };
   const auto texture = [](const std::string& path) { image_library().open_texture(path, "auto", ""); };
-  const auto linear = [](const std::string& path) { image_library().read_linear(path, "auto"); };
+  const auto linear = [](const std::string& path) { image_library().read_linear(path, "auto", ""); };
   for (const auto& [ending, beginning] : kinds)
     for (const std::string& name : {std::string("a.") + ending, std::string("a.png")}) {
       const std::string path = folder.write(name, beginning + std::string(300, '\0'));

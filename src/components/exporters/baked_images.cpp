@@ -4,7 +4,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "components/maps/image_texture.h"
 #include "etendue/describe/color.h"
 #include "etendue/describe/registry.h"
 #include "images/linear_image.h"
@@ -48,21 +47,13 @@ std::array<double, 3> times(const std::array<double, 9>& m, const std::array<dou
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
 
-/// What `change` makes of an ImageMap's linear texels; it is told whether they have three channels or one.
+/// What `change` makes of an ImageMap's linear texels; those of one channel have it three times.
 template <class Change>
 LinearImage texels(const Component& image, Change change) {
-  const std::string file = word_of(image, "file"), transfer = word_of(image, "transfer");
-  LinearImage pixels = read_linear_image(file, transfer);
-  const std::shared_ptr<const ImageTexture> texture = ImageTexture::open(file, transfer, word_of(image, "channel"));
-  for (size_t i = 0; i < pixels.rgb.size() / 3; ++i) {
-    const size_t x = i % size_t(pixels.width), y = i / size_t(pixels.width);
-    float rgb[3];
-    texture->nearest({(float(x) + 0.5f) / float(pixels.width), 1 - (float(y) + 0.5f) / float(pixels.height)}, Wrap::clamp, rgb);
-    const int channels = texture->channels();
-    if (channels == 1) rgb[1] = rgb[2] = rgb[0];
-    std::ranges::transform(change({double(rgb[0]), double(rgb[1]), double(rgb[2])}, channels), &pixels.rgb[3 * i],
+  LinearImage pixels = read_linear_image(word_of(image, "file"), word_of(image, "transfer"), word_of(image, "channel"));
+  for (float* rgb = pixels.rgb.data(); rgb != pixels.rgb.data() + pixels.rgb.size(); rgb += 3)
+    std::ranges::transform(change(std::array<double, 3>{double(rgb[0]), double(rgb[1]), double(rgb[2])}), rgb,
                            [](double value) { return float(value); });
-  }
   return pixels;
 }
 
@@ -88,7 +79,7 @@ Ref<Component> baked_color(Exporting& exporting, const Component& image) {
   const std::array<double, 9>&to_xyz = rgb_space(word_of(image, "color_space")).to_xyz, &from_xyz = rgb_space("srgb").from_xyz;
   bool beyond = false;
   const bool converted = word_of(image, "color_space") != "srgb";
-  const LinearImage pixels = texels(image, [&](std::array<double, 3> rgb, int) {
+  const LinearImage pixels = texels(image, [&](std::array<double, 3> rgb) {
     if (!converted) return rgb;
     rgb = times(from_xyz, times(to_xyz, rgb));
     for (double& value : rgb) {
@@ -110,9 +101,9 @@ Ref<Component> baked_number(Exporting& exporting, const Component& image, AsNumb
   if (channel.empty() && decoded_there && (same || image_channels(file).size() < 3)) return nullptr;
   bool grey = channel.empty() && decoded_there;
   const std::array<double, 9>& to_xyz = rgb_space(space).to_xyz;
-  const LinearImage pixels = texels(image, [&](const std::array<double, 3>& rgb, int channels) {
+  const LinearImage pixels = texels(image, [&](const std::array<double, 3>& rgb) {
     grey = grey && rgb[0] == rgb[1] && rgb[0] == rgb[2];
-    const double number = channels == 1 ? rgb[0] : mean ? (rgb[0] + rgb[1] + rgb[2]) / 3 : times(to_xyz, rgb)[1];
+    const double number = mean ? (rgb[0] + rgb[1] + rgb[2]) / 3 : times(to_xyz, rgb)[1];
     return std::array<double, 3>{number, number, number};
   });
   if (grey) return nullptr;
