@@ -117,6 +117,27 @@ TEST(ImagesOfNumbers, AreExported) {
   }
 }
 
+// A product is written anew once, and is not read before that.
+TEST(ImagesOfNumbers, ProductsAreExportedToMitsuba) {
+  const TemporaryFolder folder;
+  const std::string file = picture(folder, "a.exr", NumberType::single, {0.4f, 0.4f, 0.4f}), path = folder / "out.xml";
+  const Ref<Job> job =
+      load_job_text(square("MixShader { first: Lambertian { color: 0 }, second: Lambertian { color: 1 }, amount: "
+                           "RgbProductMap { first: ImageMap { file: \"" +
+                           file + "\" }, second: 0.5 } }"),
+                    "test.etd");
+  Exporting exporting(path);
+  folder.write("out.xml", exporter_of(path)->write(*job, exporting));
+  exporting.write_files();
+  ASSERT_EQ(exporting.notes().size(), 1u);
+  EXPECT_NE(std::string(exporting.notes()[0].what()).find("takes the luminance, not the mean"), std::string::npos);
+  const Imported back = import_file(path);
+  ASSERT_TRUE(back.job) << back.told();
+  back.job->outputs.clear();
+  back.job->image = job->image;
+  EXPECT_NEAR(test::measure(back.job).mean.y, 0.2, 0.01);
+}
+
 TEST(ImagesOfColors, AreExportedToMitsubaAsTheyAreDecoded) {
   const TemporaryFolder folder;
   const std::string floats = picture(folder, "a.exr", NumberType::single, {0.6f, 0.3f, 0.4f}),

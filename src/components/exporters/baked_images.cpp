@@ -36,7 +36,6 @@ Ref<Component> with_pixels(Exporting& exporting, const Component& image, const c
   Ref<Component> made = changed(image, "file", Value(file));
   set(*made, "transfer", Value(std::string("linear")));
   set(*made, "channel", Value(std::string()));
-  set(*made, "color_space", Value(std::string("srgb")));
   return made;
 }
 
@@ -89,7 +88,9 @@ Ref<Component> baked_color(Exporting& exporting, const Component& image) {
     return rgb;
   });
   if (beyond) exporting.inexact("colours of an image that sRGB does not have are clipped", &image);
-  return with_pixels(exporting, image, "colors", pixels);
+  Ref<Component> made = with_pixels(exporting, image, "colors", pixels);
+  set(*made, "color_space", Value(std::string("srgb")));
+  return made;
 }
 
 // Three equal values have themselves for their mean and for their luminance.
@@ -108,6 +109,7 @@ Ref<Component> baked_number(Exporting& exporting, const Component& image, AsNumb
   });
   if (grey) return nullptr;
   Ref<Component> made = with_pixels(exporting, image, "numbers", pixels);
+  set(*made, "color_space", Value(std::string("srgb")));
   set(*made, "as_number", Value(std::string(there == AsNumber::mean ? "mean" : "luminance")));
   return made;
 }

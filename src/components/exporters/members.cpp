@@ -68,16 +68,17 @@ AnimatedTransform transform_of(const Component& of, std::string_view member) {
 }
 const std::string& class_of(const Component& c) { return c.class_info().name; }
 
-bool textured(const Component* shader) {
-  if (!shader) return false;
-  const std::string& type = class_of(*shader);
-  if (type == "ImageMap" || type == "CheckerMap" || type == "UvTransformMap") return true;
-  for (const Member& m : shader->class_info().members)
+bool holds(const Component* part, std::initializer_list<std::string_view> classes) {
+  if (!part) return false;
+  if (std::ranges::find(classes, class_of(*part)) != classes.end()) return true;
+  for (const Member& m : part->class_info().members)
     if (m.kind == Kind::component && !m.list)
-      if (const Value value = get(*shader, m.name); const auto* inner = value.as<Ref<Component>>())
-        if (*inner && textured(inner->get())) return true;
+      if (const Value value = get(*part, m.name); const auto* inner = value.as<Ref<Component>>())
+        if (holds(inner->get(), classes)) return true;
   return false;
 }
+
+bool textured(const Component* shader) { return holds(shader, {"ImageMap", "CheckerMap", "UvTransformMap"}); }
 
 Color constant_of(const Component& map) { return class_of(map) == "ConstantMap" ? color_of(map, "value") : nullptr; }
 

@@ -27,6 +27,8 @@ Color color_of(const Component&, std::string_view member);
 AnimatedTransform transform_of(const Component&, std::string_view member);
 const std::string& class_of(const Component&);
 
+/// Whether a part, or one within it, is of one of these classes; null: it is not.
+bool holds(const Component* part, std::initializer_list<std::string_view> classes);
 /// Whether any map of a shader looks at surface coordinates; null: none does.
 bool textured(const Component* shader);
 /// The value of a map that is the same everywhere; null: it is not.

@@ -56,7 +56,13 @@ void Writer::texture(Node parent, const char* name, const Component& m, ColorUse
   if (type == "RgbProductMap") {
     Ref<Component>& made = baked_[{&m, Texels::colors}];
     if (!made) made = baked_product(exporting, m);
-    if (made) return texture(parent, name, *made, use, coordinates, uv);
+    if (made) {
+      const Ref<Component> image = class_of(*made) == "ImageMap" ? made : part_of(*made, "map");
+      readable_.insert(image.get());
+      if (read_as_ == Texels::numbers)
+        exporting.inexact("of a product of colours that stands for a number Mitsuba takes the luminance, not the mean", &m);
+      return texture(parent, name, *made, use, coordinates, uv);
+    }
   }
   if (type == "ImageMap")
     if (const Ref<Component> made = readable(m)) return texture(parent, name, *made, use, coordinates, uv);

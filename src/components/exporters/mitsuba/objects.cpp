@@ -18,22 +18,6 @@ Node plugin(Node parent, const char* tag, const char* type) {
 
 }  // namespace
 
-namespace {
-
-/// Whether a shader has normals of its own, or a part of it.
-bool tilts(const Component* shader) {
-  if (!shader) return false;
-  const std::string& type = class_of(*shader);
-  if (type == "BumpShader" || type == "NormalMapShader") return true;
-  for (const Member& m : shader->class_info().members)
-    if (m.kind == Kind::component && !m.list)
-      if (const Value value = get(*shader, m.name); const auto* inner = value.as<Ref<Component>>())
-        if (*inner && dynamic_cast<const Shader*>(inner->get()) && tilts(inner->get())) return true;
-  return false;
-}
-
-}  // namespace
-
 void Writer::objects(Node parent, const Scene& scene, const Transform& outer) {
   for (const Ref<SceneObject>& o : scene.objects) object(parent, *o, outer);
 }
@@ -55,7 +39,7 @@ void Writer::object(Node parent, const SceneObject& o, const Transform& outer) {
   const Ref<Component> shader = part_of(o, "shader"), light = part_of(o, "emission"), inside = part_of(o, "interior");
   const std::string sides = word_of(o, "sides");
   surface(n, shader.get(), sides == "both", uv);
-  if (word_of(o, "shading_normals") != "clipped" && tilts(shader.get()))
+  if (word_of(o, "shading_normals") != "clipped" && holds(shader.get(), {"BumpShader", "NormalMapShader"}))
     exporting.inexact(
         "light that tilted normals would send through the surface is lost in Mitsuba, as by 'shading_normals' clipped", &o);
   if (light) emission(n, o, *light, uv);
