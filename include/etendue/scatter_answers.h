@@ -284,7 +284,8 @@ class ScatterAnswers {
     }
     s.density *= chance(m, slope) / float(light.count * to.count);
     const float visible = visibility(m, s.direction, slope);
-    s.weight = value * (visible * projected(m, out, s.direction) / s.density);
+    // In this order, as the last two over a density of 1e-36 are more than a float holds.
+    s.weight = value / s.density * (visible * projected(m, out, s.direction));
     return visible > 0 ? std::optional(s) : std::nullopt;
   }
 

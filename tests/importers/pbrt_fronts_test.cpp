@@ -132,10 +132,27 @@ TEST(PbrtAlpha, HolesOfLightsAreDark) {
   EXPECT_NEAR(lamp(folder, true, "", "\"float alpha\" 0.25"), 0.25, 0.01);
   const std::string texture = "Texture \"a\" \"float\" \"constant\" \"float value\" 0.5\n";
   EXPECT_NEAR(lamp(folder, true, texture, "\"texture alpha\" \"a\""), 0.5, 0.01);
-  // A light of 0 lights what is around it, and is not seen in pbrt.
-  Imported i;
-  EXPECT_NEAR(lamp(folder, true, "", "\"float alpha\" 0", &i), 1, 0.01);
-  EXPECT_NE(i.told().find("a light whose alpha is 0 is seen here"), std::string::npos) << i.told();
+}
+
+TEST(PbrtAlpha, LightsOfZeroLightAndAreNotSeen) {
+  const TemporaryFolder folder;
+  Imported told;
+  EXPECT_EQ(lamp(folder, true, "", "\"float alpha\" 0", &told), 0);
+  EXPECT_NE(told.told().find("a light whose alpha is 0 is left out of what the camera sees"), std::string::npos) << told.told();
+  // A square lamp before a matt wall of 0.5: the wall is lit, and seen through the lamp, whatever that is made of. With half
+  // its width the distance, a radiance of 1 gives the wall's middle the irradiance 4 s atan(s), s = 1 / sqrt(2): pi times four
+  // quarters, each seen from below its corner (Howell, A catalog of radiation heat transfer configuration factors, B-3).
+  const auto ceiling = [&](const std::string& alpha) {
+    const std::string wall =
+        "Material \"diffuse\" \"rgb reflectance\" 0.5 Shape \"trianglemesh\" \"point3 P\" [-9 -9 5 9 -9 5 9 9 5 -9 9 5] "
+        "\"integer indices\" [0 1 2 0 2 3]\n";
+    const std::string light =
+        "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Material \"dielectric\" Shape \"trianglemesh\" \"point3 P\" "
+        "[-1 -1 4 1 -1 4 1 1 4 -1 1 4] \"integer indices\" [0 1 2 0 2 3] ";
+    return seen(import_text(folder, v4(wall + light + alpha)), 4096).y;
+  };
+  const double s = 1 / std::sqrt(2.0);
+  EXPECT_NEAR(ceiling("\"float alpha\" 0"), 0.5 / M_PI * 4 * s * std::atan(s), 0.01);
 }
 
 TEST(PbrtAlpha, Version3HasHolesWhereItIsZeroAlone) {

@@ -128,8 +128,12 @@ class EmissionTrial {
     for (const Vector3& v : drawn) ++counts[cells.cell_of(v)];
     if (lost > 0) counts.push_back(double(lost));
     double sum = 0, p_value = 0;
+    const double error = std::sqrt(kept * (1 - kept) / n);
+    const auto integrates = [&] {
+      return std::abs(sum - kept) < 3e-3 + Trial::significant_errors * error + (lost > 0 ? 10 / n : 0);
+    };
     // A density with sharp borders may need more points than most do.
-    for (double tolerance = 1e-3; tolerance > 1e-5 && !(p_value > Trial::significance); tolerance /= 10) {
+    for (double tolerance = 1e-3; tolerance > 1e-5 && !(p_value > Trial::significance && integrates()); tolerance /= 10) {
       std::vector<double> expected;
       sum = 0;
       for (const auto& [share] : cells.integrate<1>([&](const Vector3& v) -> std::array<double, 1> { return {density(v)}; },
@@ -140,9 +144,7 @@ class EmissionTrial {
       if (lost > 0) expected.push_back(std::max(0.0, 1 - sum) * n);
       p_value = statistics::chi_square(counts, expected, 10, 1e-3 * n);
     }
-    const double error = std::sqrt(kept * (1 - kept) / n);
-    trial.expect(std::abs(sum - kept) < 3e-3 + Trial::significant_errors * error + (lost > 0 ? 10 / n : 0),
-                 "the density integrates to 1, or to what is not lost",
+    trial.expect(integrates(), "the density integrates to 1, or to what is not lost",
                  [&] { return fmt::format("on a {}: {:.5f}, and {:.5f} of the samples have a density", name_, sum, kept); });
     trial.expect(p_value > Trial::significance, check,
                  [&] { return fmt::format("on a {}: p = {:.2g} in {} cells", name_, p_value, cells.size()); });

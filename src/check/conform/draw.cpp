@@ -207,7 +207,13 @@ class Drawer {
     Value::List list;
     const std::vector<const ClassInfo*> classes = candidates(m);
     if (!classes.empty())
-      for (size_t n = index(4); n > 0; --n) list.emplace_back(made(*classes[index(classes.size())], depth));
+      for (size_t n = index(4); n > 0; --n) {
+        const Ref<Component> part = made(*classes[index(classes.size())], depth);
+        // Where discs and rings as they are made lie in one another, lines meet both at once.
+        if (dynamic_cast<SceneObject*>(part.get()) && depth > 1)
+          set(*part, "transform", Value(AnimatedTransform(Transform::translate(float(n) * Vector3{0.11f, -0.07f, 0.13f}))));
+        list.emplace_back(part);
+      }
     return Value(std::move(list));
   }
 

@@ -55,9 +55,9 @@ class ProjectorEmission final : public ShapedEmission {
   }
 
   void prepare() override {
-    space_ = &rgb_space(color_space);
     if (file.empty() && !picture) fail("file", "an image file is needed, or a map as the `picture`");
     of_map_ = file.empty();
+    space_ = &rgb_space(of_map_ ? "srgb" : color_space);  // a map makes its own spectra; white is D65 then
     if (of_map_ && !std::isfinite(aspect)) fail("aspect", "must be finite");
     of_map_ ? look_at_picture() : read_image();
     const float shape = of_map_ ? aspect : float(image_.width) / float(image_.height), half = std::tan(radians(fov) / 2);

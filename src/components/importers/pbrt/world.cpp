@@ -44,14 +44,10 @@ Value opacity_of(Reader& reader, const Parameters& p) {
   return Value(formula(reader, p.at, "step(0.00001, alpha)", {{"alpha", alpha}}), p.at);
 }
 
-/// The light of a shape with holes: none comes out of them. A number of 0 alone means light that is not seen.
+/// The light of a shape with holes: none comes out of them.
 Ref<Component> with_holes(Reader& reader, const Ref<Component>& emission, const Value& alpha, Location at) {
   if (alpha.none()) return emission;
-  if (const Number* n = alpha.as<Number>(); n && (n->value == 0 || n->value >= 1)) {
-    if (n->value == 0)
-      reader.importing.inexact("a light whose alpha is 0 is seen here, where pbrt shows nothing of it but what it lights", at);
-    return emission;
-  }
+  if (const Number* n = alpha.as<Number>(); n && n->value >= 1) return emission;
   const Ref<Component> own = copy(*emission), product = reader.make("MultiplyMap", at);
   set_map(*product, "first", get(*emission, "radiance"), at);
   set_map(*product, "second", alpha, at);
@@ -59,11 +55,25 @@ Ref<Component> with_holes(Reader& reader, const Ref<Component>& emission, const 
   return own;
 }
 
+/// A light whose alpha is the number 0 is in the way of none of pbrt's rays, and lights what surfaces choose it for: the lamp
+/// that is not in the picture.
+void light_unseen(Reader& reader, Component& object, const Ref<Component>& emission, Location at) {
+  set_emission(object, emission, at);
+  set_member(object, "shader", reader.make("PassThrough", at), at);
+  set_member(object, "visible_to_camera", false, at);
+  reader.importing.inexact(
+      "a light whose alpha is 0 is left out of what the camera sees; in mirrors and behind smooth glass it shows here, and not "
+      "in pbrt",
+      at);
+}
+
 }  // namespace
 
 void Reader::shape(const std::string& type, Parameters&& p) {
   const Location at = p.at;
   const Value alpha = opacity_of(*this, p);
+  const Number* whole = alpha.as<Number>();
+  const bool unseen = whole && whole->value == 0 && state.light && !in_object();
   const Shape made = make_shape(*this, type, p);
   if (p.has("shadowalpha"))
     importing.inexact("'shadowalpha' is left out: shadows are those of 'alpha'", p.place("shadowalpha"));
@@ -78,8 +88,11 @@ void Reader::shape(const std::string& type, Parameters&& p) {
   set_member(object, "transform", transform, at);
   if (state.light && in_object())
     importing.inexact("objects that are instanced do not emit in pbrt, nor here", at);
-  else if (state.light)
-    set_emission(object, with_holes(*this, area_emission(*this, *state.light, made.turned, made.pieces), alpha, at), at);
+  else if (state.light) {
+    const Ref<Component> emission = area_emission(*this, *state.light, made.turned, made.pieces);
+    unseen ? light_unseen(*this, object, emission, at) : set_emission(object, with_holes(*this, emission, alpha, at), at);
+  }
+  if (unseen) return add(made.object);
   // What is inside is where the normal does not point.
   const std::string &inside = made.turned ? state.outside : state.inside, &outside = made.turned ? state.inside : state.outside;
   if (!inside.empty())

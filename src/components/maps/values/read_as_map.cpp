@@ -1,5 +1,6 @@
 // What a map's RGB stands for, whoever asks.
 
+#include "components/maps/combining/combination.h"
 #include "components/volumes/bounded_map.h"
 #include "etendue/object_map.h"
 
@@ -24,7 +25,9 @@ class ReadAsMap final : public ObjectMap, public BoundedMap {
   void prepare() override {
     if (!map) fail("map", "a map is needed");
   }
-  Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse) const override { return map->color(p, w, use); }
+  Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse asked) const override {
+    return as_used(map->color(p, w, use), asked);
+  }
   float scalar(const SurfacePoint& p) const override { return map->scalar(p); }
   float largest() const override { return map->largest(); }
   float bound() const override { return use == ColorUse::coefficient ? bound_of(*map) : infinity; }
