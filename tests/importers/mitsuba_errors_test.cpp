@@ -88,7 +88,8 @@ TEST(MitsubaParameters, NamesOfOlderVersions) {
       "name=\"extEta\" value=\"1\"/><rgb name=\"eta\" value=\"1 2 3\"/><rgb name=\"k\" value=\"1 2 3\"/></bsdf></shape>";
   const Imported i = import_text(scene(sensor() +
                                            "<integrator type=\"path\"><integer name=\"maxDepth\" value=\"7\"/><boolean "
-                                           "name=\"strictNormals\" value=\"true\"/></integrator>" +
+                                           "name=\"strictNormals\" value=\"true\"/></integrator><emitter "
+                                           "type=\"constant\"/>" +
                                            old,
                                        "0.5.0"));
   EXPECT_EQ(i.told(), "");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "transport/unprepared.h"
 
@@ -22,13 +23,14 @@ Converter::Reading::Reading(const Element& element) : element_(element) {
 
 namespace {
 
-/// The first element of one of these types within another; null: there is none.
+/// The first element of one of these types, or of any when none is named, within another; null: there is none.
 const Element* first_of(const Element& within, const char* tag, std::initializer_list<const char*> types) {
   for (const Property& p : within.properties) {
     const auto* nested = std::get_if<Nested>(&p.value);
     if (!nested || !nested->reference.empty()) continue;
     const Element& e = *nested->element;
-    if (e.tag == tag && std::ranges::any_of(types, [&](const char* type) { return e.type == type; })) return &e;
+    const bool is_one = types.size() == 0 || std::ranges::any_of(types, [&](const char* type) { return e.type == type; });
+    if (e.tag == tag && is_one) return &e;
     if (const Element* inner = first_of(e, tag, types)) return inner;
   }
   return nullptr;
@@ -44,6 +46,7 @@ bool knows_media(const Element& scene) {
 
 Ref<Job> Converter::job(const Element& scene) {
   const Reading reading(scene);
+  pair_sun_and_sky(scene);
   Ref<Component> job = importing_.make("Job", scene.at);
   std::vector<const Element*> sensors = scene.all("sensor");
   const Element* sensor = sensors.empty() ? nullptr : sensors.front();
@@ -81,15 +84,11 @@ Ref<Job> Converter::job(const Element& scene) {
   const Element* pane = first_of(scene, "bsdf", {"thindielectric"});
   if (volumetric && pane && volumetric->integer("max_depth", -1) >= 0)
     importing_.inexact("passing through a thin dielectric counts for max_depth here, unlike in volpath", pane->at);
-  if (sensor) {
-    set_member(*job, "camera", camera(*sensor), sensor->at);
-  } else {
-    importing_.inexact("the scene has no sensor: a camera at the origin looks along +z", scene.at);
-    set_member(*job, "camera", importing_.make("PerspectiveCamera", scene.at), scene.at);
-  }
-  set_member(*job, "renderer",
-             renderer(integrators.empty() ? nullptr : integrators.front(), samplers.empty() ? nullptr : samplers.front()),
-             scene.at);
+  if (sensor) set_member(*job, "camera", camera(*sensor), sensor->at);
+  set_member(
+      *job, "renderer",
+      renderer(scene, integrators.empty() ? nullptr : integrators.front(), samplers.empty() ? nullptr : samplers.front()),
+      scene.at);
   if (!samplers.empty() && samplers.front()->has("seed")) {
     const Reading of_sampler(*samplers.front());
     const std::int64_t seed = samplers.front()->integer("seed", 0);
@@ -97,6 +96,11 @@ Ref<Job> Converter::job(const Element& scene) {
   }
   std::vector<Ref<SceneObject>> world;
   for (const Value& v : list) world.push_back(ref_cast<SceneObject>(*v.as<Ref<Component>>()));
+  if (!sensor) set_member(*job, "camera", default_camera(scene, world), scene.at);
+  if (scene.old && !first_of(scene, "emitter", {})) {
+    world.push_back(default_sky(scene));
+    list.emplace_back(Ref<Component>(world.back()), scene.at);
+  }
   if (const Ref<SceneObject> around = settle_media(sensor, knows_media(scene), world))
     list.emplace_back(Ref<Component>(around), scene.at);
   if (hides_emitters_.known()) hide_emitters(world);
@@ -137,7 +141,21 @@ void Converter::fail_unknown(const Element& e, const std::vector<std::string>& k
   throw Error(fmt::format("there is no {} '{}' in Mitsuba{}", e.tag, e.type, suggestion(e.type, known)), e.at);
 }
 
+void Converter::stand_in(const Element& e, const std::vector<std::string>& known, const std::string& what) {
+  if (std::ranges::find(known, e.type) != known.end())
+    inexact(e, fmt::format("{} '{}' has no counterpart here: {}", e.tag, e.type, what));
+  else
+    inexact(e, fmt::format("there is no {} '{}' in Mitsuba{}: {}", e.tag, e.type, suggestion(e.type, known), what));
+  e.dismiss();
+}
+
 void Converter::note_unread(const Element& scene) {
+  struct Unread {
+    std::string what;
+    Location at;
+  };
+  std::vector<Unread> all;
+  std::vector<const char*> files;  // as they are met: names of files are each stored once
   std::vector<const Element*> open{&scene};
   std::set<const Element*> seen;
   while (!open.empty()) {
@@ -145,21 +163,28 @@ void Converter::note_unread(const Element& scene) {
     open.pop_back();
     if (!seen.insert(&e).second) continue;
     for (const Property& p : e.properties) {
+      if (std::ranges::find(files, p.at.file) == files.end()) files.push_back(p.at.file);
       const auto* nested = std::get_if<Nested>(&p.value);
       if (nested && nested->element->read) open.push_back(nested->element);
-      if (!e.read || p.asked) continue;
+      // What stands in the scene may be referred to from within.
+      if (!e.read || e.dismissed || p.asked || (nested && &e == &scene && nested->element->read)) continue;
       if (nested) {
-        importing_.inexact(fmt::format("{} '{}' has no use for a {} '{}'{}", e.tag, e.type, nested->element->tag,
-                                       nested->element->type, p.name.empty() ? "" : " called '" + p.name + "'"),
-                           p.at);
+        all.push_back({fmt::format("{} '{}' has no use for a {} '{}'{}", e.tag, e.type, nested->element->tag,
+                                   nested->element->type, p.name.empty() ? "" : " called '" + p.name + "'"),
+                       p.at});
       } else {
         std::vector<std::string> known = e.known;
         std::erase(known, p.name);
-        importing_.inexact(fmt::format("'{}' of {} '{}' is not used{}", p.name, e.tag, e.type, suggestion(p.name, known)),
-                           p.at);
+        all.push_back({fmt::format("'{}' of {} '{}' is not used{}", p.name, e.tag, e.type, suggestion(p.name, known)), p.at});
       }
     }
   }
+  // Of several places of one text the first in the file is told.
+  const auto place = [&](const Unread& u) {
+    return std::tuple(std::ranges::find(files, u.at.file) - files.begin(), u.at.line, u.at.column);
+  };
+  std::ranges::stable_sort(all, {}, place);
+  for (const Unread& u : all) importing_.inexact(u.what, u.at);
 }
 
 }  // namespace etendue::mitsuba

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "components/volumes/volume_grid.h"
 #include "element.h"
 #include "etendue/importer.h"
 #include "etendue/render/job.h"
@@ -57,7 +58,12 @@ class Converter {
   Ref<Component> image(const Element* film);
   Ref<Component> filter(const Element& film);
   void add_outputs(Component& job, const Element* film);
-  Ref<Component> renderer(const Element* integrator, const Element* sampler);
+  Ref<Component> renderer(const Element& scene, const Element* integrator, const Element* sampler);
+  Ref<Component> around(const Element& outer, const std::vector<const Element*>& inner);
+  Ref<Component> features(const Element& integrator);
+  /// What Mitsuba takes where a scene has none.
+  Ref<Component> default_camera(const Element& scene, const std::vector<Ref<SceneObject>>& world);
+  Ref<SceneObject> default_sky(const Element& scene);
   Ref<Component> light_transport(const Element& integrator);
   void set_depths(Component& renderer, const Element& integrator);
   /// Notes where an integrator says that the camera is not to see emitters.
@@ -78,7 +84,10 @@ class Converter {
   Ref<Component> curves(const Element&);
   Ref<Component> instance(const Element&);
   Ref<Component> group(const Element&);
-  void set_surface(Component& object, const Element& shape, Uv);
+  /// `shader`: what it looks like where there is no bsdf.
+  void set_surface(Component& object, const Element& shape, Uv, const Element* bsdf, const Ref<Component>& shader = nullptr);
+  /// An OBJ file of version 0.x whose faces have several materials, as a group; null: it is one mesh.
+  Ref<Component> parts_of_obj(const Element&);
   Ref<Component> turned_round(const Ref<Component>& shader, Location at);
   bool textured(const Element&);
   bool tilts(const Element&);  ///< whether bumps or an image of normals are among the bsdfs it is made of
@@ -130,6 +139,11 @@ class Converter {
   Ref<Component> directional(const Element&);
   Ref<Component> environment(const Element&);
   Ref<Component> sky(const Element&);
+  /// Remembers which sun of version 0.x is that of which sky.
+  void pair_sun_and_sky(const Element& scene);
+  void aim_sun(Component& emission, const Element&, const AnimatedTransform& stands);
+  void set_sun_diameter(Component& emission, const Element&);
+  Ref<Component> lone_sun(const Element&);
   Ref<Component> beam(const Element&);
   Ref<Component> diffuse_emission(const Element&, const char* light_name);
 
@@ -148,6 +162,19 @@ class Converter {
   static Transform to_world_of(const Component& object);
   void shine(Component& medium, const Element& glow, const Component& object);
   void set_grid(Component& grid, const Element& volume, const Component& object);
+  /// Where a grid lies in the world.
+  struct GridPlace {
+    Transform cells;       ///< from the unit cube; where the box is the file's and `apart` is false, from that box
+    Transform box;         ///< from the same to what a medium of this grid ends with
+    bool by_file = false;  ///< the box is the file's
+    bool apart = false;    ///< the cells do not fill just that box
+  };
+  GridPlace place_of_grid(const Element& volume);
+  VolumeGrid read_grid(const Element& volume);
+  /// What lies outside of a grid, as `outside` of a GridMap.
+  static std::string beyond_grid(const Element& volume);
+  /// From the unit cube to the box that a medium ends with; nothing: it is not on a grid.
+  std::optional<Transform> grid_box(const Element& medium);
   void set_phase(Component& volume, const Element& medium);
   Ref<Component> phase_function(const Element&);
   Ref<Component> blended_phases(const Element&);
@@ -164,6 +191,8 @@ class Converter {
   /// A file a plugin names.
   FilePath file(const Element&, const std::string& name = "filename");
   [[noreturn]] void fail_unknown(const Element&, const std::vector<std::string>& known) const;
+  /// Tells that there is no such plugin, or none here, and what stands for it; what else it says is told no more.
+  void stand_in(const Element&, const std::vector<std::string>& known, const std::string& what);
   /// Notes properties of plugins that were read which nobody has asked for.
   void note_unread(const Element& scene);
   void inexact(const Element& e, const std::string& what) { importing_.inexact(what, e.at); }
@@ -183,7 +212,9 @@ class Converter {
   std::map<std::pair<const Element*, Uv>, Surface> surfaces_;
   std::map<const Element*, Ref<Component>> media_, groups_;
   std::map<const Element*, bool> textured_, tilts_;
-  std::map<const Component*, Ref<Component>> turned_;  // shaders, by those that are not
+  std::map<const Element*, GridPlace> places_;
+  const Element *sun_of_sky_ = nullptr, *sky_with_sun_ = nullptr;  ///< that belong together
+  std::map<const Component*, Ref<Component>> turned_;              // shaders, by those that are not
 };
 
 }  // namespace etendue::mitsuba

@@ -54,6 +54,7 @@ struct Element {
   std::vector<Property> properties;
   mutable std::vector<std::string> known;  ///< names asked for so far
   mutable bool read = false, being_read = false;
+  mutable bool dismissed = false;  ///< it has been told that something else stands for it
 
   const Property* find(const std::string& name) const;
   bool has(const std::string& name) const { return find(name); }
@@ -72,6 +73,8 @@ struct Element {
   void ignore(std::initializer_list<const char*> names) const {
     for (const char* name : names) find(name);
   }
+  /// Has what it says told no more where nothing reads it.
+  void dismiss() const { dismissed = true; }
   Location location_of(const std::string& name) const;
 };
 

@@ -44,20 +44,26 @@ constexpr int without_end = 100000;  // segments; Russian roulette ends paths lo
 
 }  // namespace
 
-Ref<Component> Converter::renderer(const Element* integrator, const Element* sampler) {
+Ref<Component> Converter::renderer(const Element& scene, const Element* integrator, const Element* sampler) {
   Ref<Component> made;
-  const Location at = integrator ? integrator->at : importing_.at();
   if (integrator) {
     made = light_transport(*integrator);
   } else {
-    importing_.inexact("the scene has no integrator: paths are traced", at);
-    made = importing_.make("PathTracer", at);
+    importing_.inexact(scene.old ? "the scene has no integrator: direct light alone is shown, as in Mitsuba 0.x"
+                                 : "the scene has no integrator: paths are traced",
+                       scene.at);
+    Element none;
+    none.tag = "integrator";
+    none.type = scene.old ? "direct" : "path";
+    none.at = scene.at;
+    none.old = scene.old;
+    made = light_transport(none);
   }
   if (sampler) {
     const Reading reading(*sampler);
     static const std::vector<std::string> known = {"independent", "stratified", "multijitter", "orthogonal",
                                                    "ldsampler",   "halton",     "hammersley",  "sobol"};
-    if (std::ranges::find(known, sampler->type) == known.end()) fail_unknown(*sampler, known);
+    if (std::ranges::find(known, sampler->type) == known.end()) stand_in(*sampler, known, "the usual one stands for it");
     set_member(*made, "samples", double(sampler->integer("sample_count", 4)), sampler->location_of("sample_count"));
     if (sampler->type == "independent") set_member(*made, "sampler", make("IndependentSampler", *sampler), sampler->at);
     sampler->ignore({"scramble", "jitter", "strength", "dimension"});
@@ -87,20 +93,83 @@ void Converter::set_depths(Component& outer, const Element& e) {
     e.ignore({"strict_normals"});  // light that interpolated normals would send through a surface never goes through here
 }
 
+// What only measures, or adds channels, around another integrator.
+Ref<Component> Converter::around(const Element& e, const std::vector<const Element*>& inner) {
+  const std::string& t = e.type;
+  if (inner.size() > 1) inexact(*inner[1], "one integrator is used: the first");
+  if (t == "aov")
+    inexact(e, "channels of an 'aov' are not written: ask for layers of the image");
+  else if (t == "moment" || t == "stokes")
+    inexact(e, fmt::format("the channels that '{}' adds are not written", t));
+  else if (t == "irrcache")
+    inexact(e, inner.front()->type == "direct"
+                   ? "light that 'irrcache' adds to 'direct' is left out: 'path' has it"
+                   : "'irrcache' is left out: irradiance is computed for each point by itself, without its bias");
+  else if (t != "adaptive" && t != "multichannel")
+    inexact(e, fmt::format("'{}' around another integrator is left out", t));
+  Ref<Component> made = light_transport(*inner.front());
+  if (t == "adaptive") {
+    static const std::vector<std::string> plain = {"path", "volpath", "volpath_simple", "direct"};
+    if (std::ranges::find(plain, inner.front()->type) != plain.end()) {
+      inexact(e, "'adaptive' becomes AdaptiveSampling: samples are the mean over all pixels, whatever the error");
+      Ref<Component> outer = make("AdaptiveSampling", e);
+      set_member(*outer, "inner", made, e.at);
+      made = outer;
+    } else {
+      inexact(e, "'adaptive' is left out: all pixels have the same samples");
+    }
+  }
+  e.dismiss();
+  return made;
+}
+
+// A feature of what is seen: the 'field' of version 0.x, or the first of an 'aov' that stands by itself.
+Ref<Component> Converter::features(const Element& e) {
+  Ref<Component> made = make("FeatureRenderer", e);
+  std::string asked = "depth";
+  const char* const name = e.type == "field" ? "field" : "aovs";
+  if (e.type != "depth") {
+    asked = e.string(name, "");
+    if (const size_t comma = asked.find(','); comma != std::string::npos) {
+      importing_.inexact("one of several channels is shown: the first", e.location_of(name));
+      asked.resize(comma);
+    }
+    if (const size_t colon = asked.find(':'); colon != std::string::npos) asked.erase(0, colon + 1);
+    std::erase(asked, ' ');
+  }
+  static constexpr std::pair<const char*, const char*> known[] = {
+      {"depth", "depth"},
+      {"distance", "depth"},
+      {"position", "position"},
+      {"relPosition", "position"},
+      {"geoNormal", "normal"},
+      {"geo_normal", "normal"},
+      {"shNormal", "shading_normal"},
+      {"sh_normal", "shading_normal"},
+      {"uv", "uv"},
+      {"albedo", "albedo"},
+      {"shapeIndex", "object"},
+      {"shape_index", "object"},
+      {"primIndex", "primitive"},
+      {"prim_index", "primitive"},
+  };
+  const auto found = std::ranges::find(known, asked, [](const auto& k) { return std::string(k.first); });
+  const char* const feature = found == std::end(known) ? "depth" : found->second;
+  if (found == std::end(known))
+    importing_.inexact(fmt::format("'{}' is not shown: depth stands for it", asked), e.location_of(name));
+  else if (std::string_view(feature) != "depth")
+    importing_.inexact(fmt::format("'{}' is shown as FeatureRenderer's '{}', in colours of its own", asked, feature),
+                       e.location_of(name));
+  set_member(*made, "feature", feature, e.location_of(name));
+  return made;
+}
+
 Ref<Component> Converter::light_transport(const Element& e) {
-  if (std::ranges::find(known_integrators, e.type) == known_integrators.end()) fail_unknown(e, known_integrators);
   const Reading reading(e);
   const std::vector<const Element*> inner = e.all("integrator");
-  if (!inner.empty()) {  // what only measures, or adds channels, around another
-    if (e.type == "aov") {
-      inexact(e, "channels of an 'aov' are not written: ask for layers of the image");
-      e.ignore({"aovs"});
-    }
-    if (inner.size() > 1) inexact(*inner[1], "one integrator is used: the first");
-    e.ignore({"max_error", "p_value", "max_sample_factor", "resolution", "quality"});
-    return light_transport(*inner.front());
-  }
+  if (!inner.empty()) return around(e, inner);
   const std::string& t = e.type;
+  if (t == "depth" || t == "field" || t == "aov") return features(e);
   Ref<Component> made;
   if (t == "direct" || t == "direct_projective") {
     made = make("DirectRenderer", e);
@@ -113,11 +182,10 @@ Ref<Component> Converter::light_transport(const Element& e) {
     e.ignore({"strict_normals"});
     return made;
   }
-  if (t == "ao" || t == "depth") {
-    made = make(t == "ao" ? "AmbientOcclusionRenderer" : "FeatureRenderer", e);
-    if (t == "depth") set_member(*made, "feature", "depth", e.at);
-    if (t == "ao") set_member(*made, "rays", double(e.integer("shading_samples", 1)), e.location_of("shading_samples"));
-    if (t == "ao" && e.number("ray_length", -1) > 0) set_member(*made, "distance", e.number("ray_length", 0), e.at);
+  if (t == "ao") {
+    made = make("AmbientOcclusionRenderer", e);
+    set_member(*made, "rays", double(e.integer("shading_samples", 1)), e.location_of("shading_samples"));
+    if (e.number("ray_length", -1) > 0) set_member(*made, "distance", e.number("ray_length", 0), e.at);
     return made;
   }
   const char* renderer = "PathTracer";
@@ -135,8 +203,12 @@ Ref<Component> Converter::light_transport(const Element& e) {
     renderer = "PathSpaceMetropolis";
   static const std::vector<std::string> plain = {"path",      "volpath",    "volpathmis",     "volpath_simple", "prb",
                                                  "prb_basic", "prbvolpath", "prb_projective", "bdpt",           "ptracer"};
-  if (std::ranges::find(plain, t) == plain.end())
+  if (std::ranges::find(known_integrators, t) == known_integrators.end()) {
+    stand_in(e, known_integrators, "paths are traced");
+  } else if (std::ranges::find(plain, t) == plain.end()) {
     inexact(e, fmt::format("integrator '{}' becomes {}, whose other settings are its defaults", t, renderer));
+    e.dismiss();
+  }
   made = make(renderer, e);
   set_depths(*made, e);
   e.ignore({"light_image", "sample_direct", "samples_per_pass", "block_size", "timeout", "guiding_samples"});

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/emission/sun_position.h"
 #include "converter.h"
 #include "etendue/describe/color.h"
 #include "etendue/film/image_tools.h"
@@ -94,7 +93,9 @@ Ref<SceneObject> Converter::emitter(const Element& e) {
     set_member(*object, "emission", diffuse_emission(e, other ? "intensity" : "radiance"), e.at);
   } else if (e.type == "envmap") {
     object = environment(e);
-  } else if (e.type == "sky" || e.type == "sun" || e.type == "sunsky" || e.type == "timed_sunsky") {
+  } else if (e.type == "sun") {
+    if (&e != sun_of_sky_) object = lone_sun(e);
+  } else if (e.type == "sky" || e.type == "sunsky" || e.type == "timed_sunsky") {
     object = sky(e);
   } else if (e.type == "collimated") {
     object = beam(e);
@@ -103,6 +104,7 @@ Ref<SceneObject> Converter::emitter(const Element& e) {
     e.read = false;  // shapes refer to it
   } else {
     inexact(e, fmt::format("emitter '{}' is not known here: it is left out", e.type));
+    e.dismiss();
   }
   return ref_cast<SceneObject>(object);
 }
@@ -169,8 +171,9 @@ Ref<Component> Converter::directional(const Element& e) {
 Ref<Component> Converter::environment(const Element& e) {
   Ref<Component> emission = make("EnvironmentEmission", e, "");
   set_member(*emission, "file", file(e), e.location_of("filename"));
-  if (!e.old) set_member(*emission, "rows", "poles", e.at);  // row j at v = j / (height - 1)
-  if (e.has("scale")) set_member(*emission, "scale", e.number("scale", 1), e.location_of("scale"));
+  if (!e.old) set_member(*emission, "rows", "poles", e.at);                // row j at v = j / (height - 1)
+  const char* const scale = e.has("scale") ? "scale" : "intensity_scale";  // the latter in 0.4
+  if (e.has(scale)) set_member(*emission, "scale", e.number(scale, 1), e.location_of(scale));
   if (e.has("gamma")) {
     if (e.number("gamma", 0) == 1) set_member(*emission, "transfer", "linear", e.location_of("gamma"));
   }
@@ -178,64 +181,6 @@ Ref<Component> Converter::environment(const Element& e) {
   set_member(*object, "emission", emission, e.at);
   set_transform(*object, e.transform(), e.location_of("to_world"));
   e.ignore({"cache", "mis_compensation"});
-  return object;
-}
-
-namespace {
-
-/// Towards the sun by place and time, in the coordinates of Mitsuba 3's sky: x south, y west, z up. Its defaults are those
-/// there.
-DoubleVector3 sun_by_time(const Element& e) {
-  const auto whole = [&](const char* name, std::int64_t otherwise) { return e.integer(name, otherwise); };
-  const double hours = e.number("hour", 15) + e.number("minute", 0) / 60 + e.number("second", 0) / 3600;
-  const std::string day = fmt::format("{:04}-{:02}-{:02}T00:00:00Z", whole("year", 2010), whole("month", 7), whole("day", 10));
-  try {
-    UniversalTime time = parse_time(day);
-    time.days += (hours - e.number("timezone", 9)) / 24;
-    const Vector3 sun = sun_direction(time, e.number("latitude", 35.6894), e.number("longitude", 139.6917));
-    return {double(sun.z), -double(sun.x), double(sun.y)};
-  } catch (const Error& error) {
-    throw Error(error.what(), e.at);
-  }
-}
-
-}  // namespace
-
-// The sky's own up is y in Mitsuba 0.x, as here, and z in version 3; the sun's direction is the world's in both.
-Ref<Component> Converter::sky(const Element& e) {
-  const Transform y_to_z(Transform::DoubleMatrix{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0});
-  TransformValue stands = e.transform();
-  if (!e.old) stands.transform = stands.transform * AnimatedTransform(y_to_z);
-  Ref<Component> emission = make("SkyEmission", e, "");
-  const double sun_scale = e.number("sun_scale", 1), sky_scale = e.number("sky_scale", 1);
-  const bool sun = e.type != "sky" && sun_scale > 0;
-  set_member(*emission, "sun", sun, e.at);
-  if (e.has("turbidity")) set_member(*emission, "turbidity", e.number("turbidity", 3), e.location_of("turbidity"));
-  if (e.has("albedo")) set_member(*emission, "ground_albedo", spectrum_of(e, "albedo", 0.3), e.location_of("albedo"));
-  if (e.has("sun_direction")) {
-    const DoubleVector3 to_sun = e.vector("sun_direction", {0, 1, 0});
-    const Transform& world = stands.transform.still();
-    const DoublePoint3 end = world.back(DoublePoint3{to_sun.x, to_sun.y, to_sun.z}), begin = world.back(DoublePoint3{0, 0, 0});
-    set_member(*emission, "sun_direction", three({end.x - begin.x, end.y - begin.y, end.z - begin.z}),
-               e.location_of("sun_direction"));
-  } else if (e.old || e.type == "timed_sunsky") {
-    inexact(e, "the sun's place by date and time is not read: it stands in the direction (1, 1, 1)");
-  } else {
-    const DoubleVector3 to_sun = sun_by_time(e);
-    set_member(*emission, "sun_direction", three({to_sun.x, to_sun.z, -to_sun.y}), e.at);
-  }
-  const bool alone = sun && sky_scale <= 0;
-  set_member(*emission, "scale", e.number("scale", 1) * (alone ? sun_scale : sky_scale),
-             e.location_of(e.has("sky_scale") ? "sky_scale" : "scale"));
-  if (alone)
-    importing_.inexact("the sky shines with its sun, although 'sky_scale' is 0", e.location_of("sky_scale"));
-  else if (sun && sun_scale != sky_scale)
-    importing_.inexact("the sun is brightened with its sky: 'sun_scale' is taken to be 'sky_scale'",
-                       e.location_of("sun_scale"));
-  inexact(e, fmt::format("'{}' is a model of measured skies whose brightness differs from Mitsuba's", e.type));
-  Ref<Component> object = make("Environment", e);
-  set_member(*object, "emission", emission, e.at);
-  set_transform(*object, stands, e.location_of("to_world"));
   return object;
 }
 

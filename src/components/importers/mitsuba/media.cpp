@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 
+#include "components/importers/measured_media.h"
 #include "converter.h"
 #include "etendue/describe/color.h"
 
@@ -13,14 +15,6 @@ namespace etendue::mitsuba {
 namespace {
 
 const std::vector<std::string> known_media = {"homogeneous", "heterogeneous"};
-
-std::string wrap_mode(const Element& volume) {
-  const std::string wrap = volume.string("wrap_mode", "clamp");
-  if (wrap != "clamp" && wrap != "repeat" && wrap != "mirror")
-    throw Error(fmt::format("there is no wrap mode '{}'{}", wrap, suggestion(wrap, {"clamp", "repeat", "mirror"})),
-                volume.location_of("wrap_mode"));
-  return wrap;
-}
 
 /// Of a medium or a phase function: the lobe of an 'hg'.
 void set_lobe(Component& part, const Element& hg) { set_member(part, "anisotropy", hg.number("g", 0.8), hg.at); }
@@ -34,7 +28,10 @@ Ref<Component> Converter::medium(const Element& e, const Component& object, cons
   std::optional<Reading> of_glow;
   if (glow) of_glow.emplace(*glow);
   if (e.type == "heterogeneous") return heterogeneous(e, object, glow);
-  if (e.type != "homogeneous") fail_unknown(e, known_media);
+  if (e.type != "homogeneous") {
+    stand_in(e, known_media, "the medium is left out");
+    return nullptr;
+  }
   Ref<Component> made = homogeneous(e);
   if (glow)
     shine(*made, *glow, object);
@@ -60,7 +57,7 @@ void Converter::shine(Component& medium, const Element& glow, const Component& o
   const Reading reading(*volume);
   const Ref<Component> grid = make("GridMap", *volume), read = make("ReadAsMap", *volume, "");
   set_grid(*grid, *volume, object);
-  set_member(*grid, "outside", wrap_mode(*volume), volume->at);
+  set_member(*grid, "outside", beyond_grid(*volume), volume->at);
   set_member(*read, "map", grid, volume->at);
   set_member(*read, "as", "coefficient", volume->at);  // a grid as light is not multiplied by a white there
   set_member(medium, "emission", read, volume->at);
@@ -97,6 +94,7 @@ Ref<Component> Converter::phase_function(const Element& e) {
   }
   if (e.type == "blendphase" || e.type == "mixturephase") return blended_phases(e);
   inexact(e, fmt::format("phase function '{}' has no counterpart here: light scatters alike in all directions", e.type));
+  e.dismiss();
   return make("HenyeyGreensteinPhase", e);
 }
 
@@ -135,151 +133,64 @@ Ref<Component> Converter::blended_phases(const Element& e) {
   return made.front();
 }
 
+namespace {
+
+/// A measured medium by its name, small letters and capitals aside; null: there is none.
+const MeasuredMedium* measured_medium(std::string name) {
+  const auto small = [](std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+  };
+  name = small(name);
+  if (name == "orange juice powder") name = "orange powder";
+  for (const MeasuredMedium& m : measured_media())
+    if (small(m.name) == name) return &m;
+  return nullptr;
+}
+
+}  // namespace
+
 Ref<Component> Converter::homogeneous(const Element& e) {
   Ref<Component> volume = make("HomogeneousVolume", e);
   set_phase(*volume, e);
   const double scale = e.number("scale", 1);
-  const auto scaled = [&](const char* name, double otherwise) {
-    const Color c = spectrum_of(e, name, otherwise);
-    return scale == 1 ? c : scaled_spectrum(scale, c);
-  };
-  if (e.has("material")) {
-    inexact(e, fmt::format("the medium of the material '{}' is not known: it neither absorbs nor scatters",
-                           e.string("material", "")));
+  const auto scaled = [&](const Color& c) { return scale == 1 ? c : scaled_spectrum(scale, c); };
+  if (!e.old && !e.has("material") && !e.has("sigma_a") && !e.has("sigma_s")) {
+    set_member(*volume, "extinction", scaled(spectrum_of(e, "sigma_t", 1)), e.location_of("sigma_t"));
+    set_member(*volume, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
     return volume;
   }
-  if (e.has("sigma_a") || e.has("sigma_s")) {
-    if (e.has("sigma_a")) set_member(*volume, "absorption", scaled("sigma_a", 0), e.location_of("sigma_a"));
-    if (e.has("sigma_s")) set_member(*volume, "scattering", scaled("sigma_s", 0), e.location_of("sigma_s"));
+  // Before version 2 all that is not given is of a measured medium, there in 1/mm.
+  const MeasuredMedium* known = measured_medium("Skin1");
+  if (e.has("material")) {
+    const std::string name = e.string("material", "");
+    if (const MeasuredMedium* named = measured_medium(name)) {
+      known = named;
+    } else {
+      std::vector<std::string> names;
+      for (const MeasuredMedium& m : measured_media()) names.emplace_back(m.name);
+      importing_.inexact(fmt::format("there is no measured medium '{}'{}: Skin1 stands for it", name, suggestion(name, names)),
+                         e.location_of("material"));
+    }
+  }
+  std::array<double, 3> absorbed{}, scattered{}, whole{}, albedo{};
+  for (size_t i = 0; i < 3; ++i) {
+    absorbed[i] = 100 * known->absorption[i];
+    scattered[i] = 100 * known->scattering[i];
+    whole[i] = absorbed[i] + scattered[i];
+    albedo[i] = scattered[i] / whole[i];
+  }
+  const auto given = [&](const char* name, const std::array<double, 3>& otherwise) {
+    return e.has(name) ? spectrum_of(e, name, 0) : rgb_color("srgb", otherwise[0], otherwise[1], otherwise[2]);
+  };
+  if (!e.has("sigma_a") && !e.has("sigma_s") && (e.has("sigma_t") || e.has("albedo"))) {
+    set_member(*volume, "extinction", scaled(given("sigma_t", whole)), e.location_of("sigma_t"));
+    set_member(*volume, "albedo", given("albedo", albedo), e.location_of("albedo"));
   } else {
-    set_member(*volume, "extinction", scaled("sigma_t", 1), e.location_of("sigma_t"));
-    set_member(*volume, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
+    set_member(*volume, "absorption", scaled(given("sigma_a", absorbed)), e.location_of("sigma_a"));
+    set_member(*volume, "scattering", scaled(given("sigma_s", scattered)), e.location_of("sigma_s"));
   }
   return volume;
-}
-
-Ref<Component> Converter::heterogeneous(const Element& e, const Component& object, const Element* glow) {
-  const char* const name = e.has("sigma_t") ? "sigma_t" : "density";  // the latter in 0.5
-  const Element *const volume = e.nested(name), *albedo = e.nested("albedo");
-  if (albedo && albedo->tag != "volume") albedo = nullptr;
-  std::optional<Reading> of_volume, of_albedo;
-  if (volume) of_volume.emplace(*volume);
-  if (albedo && albedo != volume) of_albedo.emplace(*albedo);
-  const bool even = !volume || volume->type == "constvolume", albedos = albedo && albedo->type == "gridvolume";
-  if (!even && volume->type != "gridvolume") {
-    inexact(*volume, fmt::format("volume '{}' is not known here: the medium is left out", volume->type));
-    return nullptr;
-  }
-  const double scale = e.number("scale", 1);
-  const Color all_of_it = even ? scaled_spectrum(scale, volume ? spectrum_of(*volume, "value", 1) : spectrum_of(e, name, 1))
-                               : flat_spectrum(float(scale));
-  const bool of_maps = glow || (albedos && (even || !same_place(*albedo, *volume)));
-  const bool boxed = !even || !e.old;  // before version 2 a constant volume had no bounds
-  const Location at = e.location_of(name);
-  if (!boxed && !of_maps) return even_everywhere(e, all_of_it, albedo);
-  Ref<Component> medium = make(of_maps ? "MapVolume" : "GridVolume", e);
-  if (of_maps) {
-    // What shines ends with the box, too, which is therefore the density; a file's box is known to the grid alone.
-    if (boxed && (even || !volume->boolean("use_grid_bbox", false)))
-      set_member(*medium, "density", box_of(e, volume, object), at);
-    Ref<Component> extinction;
-    if (!even) {
-      const Ref<Component> grid = make("GridMap", *volume);
-      set_grid(*grid, *volume, object);
-      set_member(*grid, "outside", "cut", at);
-      extinction = make("MultiplyMap", e, "");
-      set_member(*extinction, "first", grid, at);
-      set_member(*extinction, "second", all_of_it, e.location_of("scale"));
-    }
-    set(*medium, "extinction", even ? Value(all_of_it, at) : Value(extinction, at));
-  } else {
-    set_member(*medium, "extinction", all_of_it, e.location_of("scale"));
-    if (even)
-      place_box(*medium, e, nullptr, object);
-    else
-      set_grid(*medium, *volume, object);
-    set_member(*medium, "outside", "cut", at);  // the medium ends with the box, whatever is around it
-  }
-  if (!even) wrap_mode(*volume);
-  set_albedo(*medium, e, albedo, object);
-  set_phase(*medium, e);
-  if (glow) shine(*medium, *glow, object);
-  for (const Element* grid : {volume, albedo})
-    if (grid) grid->ignore({"raw", "accel"});
-  return medium;
-}
-
-/// A heterogeneous medium of version 0.x whose volumes are constant: it fills its shape.
-Ref<Component> Converter::even_everywhere(const Element& e, const Color& extinction, const Element* albedo) {
-  Ref<Component> medium = make("HomogeneousVolume", e);
-  set_member(*medium, "extinction", extinction, e.at);
-  set_member(*medium, "albedo", albedo ? spectrum_of(*albedo, "value", 0.75) : spectrum_of(e, "albedo", 0.75), e.at);
-  set_phase(*medium, e);
-  return medium;
-}
-
-/// 1 in the box of a heterogeneous medium, and 0 outside. `volume`: its 'sigma_t', if that is one.
-Ref<Component> Converter::box_of(const Element& e, const Element* volume, const Component& object) {
-  Ref<Component> box = make("GridMap", e, "");
-  place_box(*box, e, volume && volume->type == "gridvolume" ? volume : nullptr, object);
-  set_member(*box, "outside", "cut", e.at);
-  return box;
-}
-
-void Converter::place_box(Component& box, const Element& e, const Element* grid, const Component& object) {
-  const Transform to_world = grid ? grid->transform().transform.still() : box_of_constant(e);
-  const Transform placement = to_world_of(object).inverse() * to_world;
-  if (!placement.identity()) set_member(box, "placement", placement, e.at);
-}
-
-/// Whether two grids lie in one place and are read alike.
-bool Converter::same_place(const Element& a, const Element& b) {
-  // Boxes that two files name may differ.
-  if (a.boolean("use_grid_bbox", false) && file(a).resolved() != file(b).resolved()) return false;
-  return a.transform().transform.still().exact() == b.transform().transform.still().exact() &&
-         a.boolean("use_grid_bbox", false) == b.boolean("use_grid_bbox", false) &&
-         a.string("filter_type", "trilinear") == b.string("filter_type", "trilinear");
-}
-
-/// `volume`: the volume that says it; null: the medium itself says it.
-void Converter::set_albedo(Component& medium, const Element& e, const Element* volume, const Component& object) {
-  if (!volume || volume->type != "gridvolume") {
-    const Color same = volume ? spectrum_of(*volume, "value", 0.75) : spectrum_of(e, "albedo", 0.75);
-    set_member(medium, "albedo", same, e.location_of("albedo"));
-  } else if (medium.class_info().name == "MapVolume") {
-    const Ref<Component> grid = make("GridMap", *volume);
-    set_grid(*grid, *volume, object);
-    set_member(*grid, "outside", wrap_mode(*volume), volume->at);
-    set_member(medium, "albedo", grid, volume->at);
-  } else {
-    set_member(medium, "albedo", 1, volume->at);
-    set_member(medium, "albedo_file", file(*volume), volume->location_of("filename"));
-    volume->ignore({"wrap_mode"});
-  }
-}
-
-// A heterogeneous medium ends there with the box, along the axes of the world, of its 'sigma_t', be that the same everywhere.
-Transform Converter::box_of_constant(const Element& medium) {
-  const Element* const volume = medium.nested("sigma_t");
-  const Bounds3 box = (volume ? volume->transform().transform.still() : Transform())(Bounds3{Point3{0, 0, 0}, Point3{1, 1, 1}});
-  const Vector3 size = box.high - box.low;
-  return Transform::translate({box.low.x, box.low.y, box.low.z}) * Transform::scale({size.x, size.y, size.z});
-}
-
-Transform Converter::to_world_of(const Component& object) {
-  const Value transform = get(object, "transform");
-  const auto* placed = transform.as<AnimatedTransform>();
-  const auto* still = transform.as<Transform>();
-  return placed ? placed->still() : (still ? *still : Transform());
-}
-
-/// The file of a grid and its place.
-void Converter::set_grid(Component& grid, const Element& volume, const Component& object) {
-  set_member(grid, "file", file(volume), volume.location_of("filename"));
-  const Transform placement = to_world_of(object).inverse() * volume.transform().transform.still();
-  if (!placement.identity()) set_member(grid, "placement", placement, volume.location_of("to_world"));
-  set_member(grid, "file_box", volume.boolean("use_grid_bbox", false), volume.at);
-  set_member(grid, "filter", volume.string("filter_type", "trilinear"), volume.location_of("filter_type"));
 }
 
 }  // namespace etendue::mitsuba

@@ -144,7 +144,10 @@ Ref<Component> Converter::curves(const Element& e) {
   set_member(*curve, "radius", strands.radius, e.at);
   set_member(*curve, "counts", strands.counts, e.at);
   set_member(*curve, "basis", spline ? "b_spline" : "linear", e.at);
-  e.ignore({"angle_threshold", "reduction"});
+  if (e.number("reduction", 0) > 0)
+    importing_.inexact("all hairs are there: Mitsuba leaves out the part that 'reduction' says, and makes the others thicker",
+                       e.location_of("reduction"));
+  e.ignore({"angle_threshold"});
   return curve;
 }
 

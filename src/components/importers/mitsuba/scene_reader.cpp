@@ -19,9 +19,9 @@ constexpr size_t most_included = size_t(1) << 30;  // [bytes] of all files toget
 
 const std::vector<std::string> plugin_tags = {"integrator", "sensor", "film",   "sampler", "rfilter", "bsdf",      "texture",
                                               "emitter",    "shape",  "medium", "phase",   "volume",  "subsurface"};
-const std::vector<std::string> value_tags = {"float", "integer", "boolean",  "string",    "vector",    "point",
-                                             "rgb",   "srgb",    "spectrum", "blackbody", "transform", "animation",
-                                             "ref",   "alias",   "include",  "default",   "path"};
+const std::vector<std::string> value_tags = {"float",     "integer", "boolean", "string",   "vector",    "point",
+                                             "rgb",       "srgb",    "xyz",     "spectrum", "blackbody", "transform",
+                                             "animation", "ref",     "alias",   "include",  "default",   "path"};
 
 bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
@@ -56,6 +56,7 @@ void SceneReader::read_file(const std::string& path, Element& into, Location fro
   const std::string tag = root.name();
   if (tag == "scene") {
     read_scene_version(root);
+    if (open_files_.size() == 1) into.old = old_;
     read_content(root, into);
   } else if (open_files_.size() > 1 && (is_one_of(plugin_tags, modern_tag(tag)) || is_one_of(value_tags, tag))) {
     read_child(root, into);
@@ -71,7 +72,11 @@ void SceneReader::read_file(const std::string& path, Element& into, Location fro
 void SceneReader::read_scene_version(const pugi::xml_node& root) {
   const auto version = attribute(root, "version");
   if (!version) {
-    importing_.inexact("<scene> does not say which version of Mitsuba it is for: it is read as for version 3", at(root));
+    // Version 0.3 had cameras and luminaires.
+    old_ = root.child("camera") || root.child("luminaire");
+    importing_.inexact(fmt::format("<scene> does not say which version of Mitsuba it is for: it is read as for version {}",
+                                   old_ ? "0.3, whose tags it has" : "3"),
+                       at(root));
     return;
   }
   int major = 0;
@@ -116,6 +121,8 @@ void SceneReader::read_child(const pugi::xml_node& node, Element& into) {
     set(parse_vector(node, attributes(), places(), 0));
   else if (tag == "rgb" || tag == "srgb")
     set(parse_rgb(required(node, "value"), tag == "srgb"));
+  else if (tag == "xyz")
+    set(parse_xyz(required(node, "value")));
   else if (tag == "transform")
     set(parse_transform(node, attributes(), places(), old_));
   else
@@ -231,7 +238,12 @@ void SceneReader::name_element(const std::string& id, Element* element, Location
 void SceneReader::add(Element& into, Property property) {
   if (!property.name.empty() && !std::holds_alternative<Nested>(property.value)) {
     size_t values = 0;
-    for (const Property& p : into.properties) {
+    for (Property& p : into.properties) {
+      if (p.name == property.name && old_ && !std::holds_alternative<Nested>(p.value)) {
+        importing_.inexact(fmt::format("'{}' is given twice: the last counts, as in Mitsuba 0.x", p.name), property.at);
+        p = std::move(property);
+        return;
+      }
       if (p.name == property.name)
         throw Error(fmt::format("'{}' is given twice; the first is in line {}", p.name, p.at.line), property.at);
       values += !std::holds_alternative<Nested>(p.value);

@@ -47,7 +47,6 @@ void Converter::place(Component& camera, const Element& e) {
 }
 
 Ref<Component> Converter::camera(const Element& e) {
-  if (std::ranges::find(known_sensors, e.type) == known_sensors.end()) fail_unknown(e, known_sensors);
   const Reading reading(e);
   if (const std::vector<const Element*> inner = e.all("sensor"); e.type == "batch" && !inner.empty()) {
     inexact(e, "of the sensors of a 'batch' the first takes the whole picture");
@@ -62,9 +61,10 @@ Ref<Component> Converter::camera(const Element& e) {
     if (std::abs(x - y) > 1e-4 * x)
       importing_.inexact("the picture of an orthographic sensor is not stretched upwards", e.location_of("to_world"));
     if (e.type == "telecentric") inexact(e, "a telecentric lens is taken for a pinhole: all is sharp");
+  } else if (e.type == "spherical") {
+    made = make("SphericalCamera", e);
   } else {
-    if (e.type != "perspective" && e.type != "thinlens")
-      inexact(e, fmt::format("sensor '{}' has no counterpart here: a perspective camera stands for it", e.type));
+    if (e.type != "perspective" && e.type != "thinlens") stand_in(e, known_sensors, "a perspective camera stands for it");
     made = make("PerspectiveCamera", e);
     set_view(*made, e);
     if (e.type == "thinlens") {
@@ -120,6 +120,12 @@ void Converter::set_view(Component& camera, const Element& e) {
 // than 0.01 or farther than 10000; nothing is left out here (docs/coming-from-mitsuba.md).
 void Converter::set_clip(Component& camera, const Element& e) {
   if (!e.has("near_clip") && !e.has("far_clip")) return;
+  if (!camera.class_info().find("near_clip")) {
+    importing_.inexact(fmt::format("a {} leaves out nothing that is near or far", camera.class_info().name),
+                       e.location_of(e.has("near_clip") ? "near_clip" : "far_clip"));
+    e.ignore({"far_clip"});
+    return;
+  }
   double nearest = e.number("near_clip", 0.01), farthest = e.number("far_clip", 1e4);
   if (!(nearest > 0)) throw Error("near_clip must be more than 0", e.location_of("near_clip"));
   if (!(farthest > nearest))
@@ -196,7 +202,9 @@ Ref<Component> Converter::filter(const Element& film) {
     filter = make("LanczosFilter", e);
     set_member(*filter, "radius", double(e.integer("lobes", 3)), e.location_of("lobes"));
   } else {
-    fail_unknown(e, {"box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"});
+    stand_in(e, {"box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"}, "a Gaussian stands for it");
+    filter = make("GaussianFilter", e);
+    set_member(*filter, "radius", 2, e.at);
   }
   return filter;
 }
@@ -204,7 +212,8 @@ Ref<Component> Converter::filter(const Element& film) {
 void Converter::add_outputs(Component& job, const Element* film) {
   static const std::vector<std::string> known_films = {"hdrfilm", "ldrfilm", "specfilm", "mfilm", "tiledhdrfilm"};
   if (!film) return;
-  if (std::ranges::find(known_films, film->type) == known_films.end()) fail_unknown(*film, known_films);
+  if (std::ranges::find(known_films, film->type) == known_films.end())
+    stand_in(*film, known_films, "it is taken for 'hdrfilm'");
   film->ignore({"sample_border", "high_quality_edges", "banner", "label", "attach_log", "compensate", "variable"});
   if (const std::string channels = film->string("pixel_format", "rgb"); channels != "rgb")
     importing_.inexact(channels.ends_with("a")

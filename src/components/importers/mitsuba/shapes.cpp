@@ -32,13 +32,17 @@ Ref<SceneObject> Converter::shape(const Element& e) {
     set_transform(*all, e.transform(), e.location_of("to_world"));
     return ref_cast<SceneObject>(all);
   }
+  if (Ref<Component> parts = parts_of_obj(e)) return ref_cast<SceneObject>(parts);
   Uv uv = Uv::as_is;
   Ref<Component> object = geometry(e, uv);
   if (!object) {
     inexact(e, fmt::format("shape '{}' is not known here: it is left out", e.type));
+    e.dismiss();
     return nullptr;
   }
-  set_surface(*object, e, uv);
+  const std::vector<const Element*> bsdfs = e.all("bsdf");
+  if (bsdfs.size() > 1) importing_.inexact("a shape has one bsdf: the first counts", bsdfs[1]->at);
+  set_surface(*object, e, uv, bsdfs.empty() ? nullptr : bsdfs.front());
   return ref_cast<SceneObject>(object);
 }
 
@@ -189,10 +193,9 @@ Ref<Component> Converter::turned_round(const Ref<Component>& shader, Location at
   return made;
 }
 
-void Converter::set_surface(Component& object, const Element& e, Uv uv) {
+void Converter::set_surface(Component& object, const Element& e, Uv uv, const Element* bsdf, const Ref<Component>& shader) {
   bool flipped = e.boolean("flip_normals", false);
   if (mirrors(e.transform()) && front_by_world(e)) flipped = !flipped;
-  const std::vector<const Element*> bsdfs = e.all("bsdf");
   std::vector<const Element*> emitters = e.all("emitter");
   const Element* glow = nullptr;
   std::erase_if(emitters, [&](const Element* emitter) {
@@ -200,14 +203,15 @@ void Converter::set_surface(Component& object, const Element& e, Uv uv) {
     if (inside) glow = emitter;
     return inside;
   });
-  if (bsdfs.size() > 1) importing_.inexact("a shape has one bsdf: the first counts", bsdfs[1]->at);
   if (!e.all("subsurface").empty()) inexact(e, "subsurface scattering of Mitsuba 0.5 is left out: the bsdf alone counts");
   if (!e.all("sensor").empty()) inexact(e, "a sensor on a shape is left out");
 
   const Element* const interior = e.nested("interior");
   Surface looks;
-  if (!bsdfs.empty()) {
-    looks = surface(*bsdfs.front(), textured(*bsdfs.front()) ? uv : Uv::as_is);
+  if (bsdf) {
+    looks = surface(*bsdf, textured(*bsdf) ? uv : Uv::as_is);
+  } else if (shader) {
+    looks = {shader, true};
   } else if (e.old && emitters.empty() && (interior || e.nested("exterior"))) {
     looks = {make("PassThrough", e, ""), true};  // what bounds a medium and nothing else
   } else if (emitters.empty()) {

@@ -89,9 +89,15 @@ Converter::Surface Converter::make_surface(const Element& e, Uv uv, const std::s
     const Reading reading(*inner.front());
     return {make_surface(*inner.front(), uv, name).shader, true};
   }
-  if (std::ranges::find(known_bsdfs, type) == known_bsdfs.end()) fail_unknown(e, known_bsdfs);
-  inexact(e, fmt::format("bsdf '{}' has no counterpart here: a matt grey stands for it", type));
-  return {make("Lambertian", e, name), false};
+  Ref<Component> shader = make("Lambertian", e, name);
+  bool colored = false;
+  for (const char* own : {"reflectance", "diffuse_reflectance", "base_color", "color"})
+    if (!colored && e.has(own)) {
+      set(*shader, "color", color(e, own, 0.5, uv));
+      colored = true;
+    }
+  stand_in(e, known_bsdfs, fmt::format("a matt {} stands for it", colored ? "surface of its colour" : "grey"));
+  return {shader, false};
 }
 
 // Of light without polarization they let half through, or all, straight on, as Mitsuba's unpolarized variants do.
@@ -204,11 +210,10 @@ Converter::Surface Converter::coating(const Element& e, Uv uv, const std::string
 
 Converter::Surface Converter::tilted(const Element& e, Uv uv, const std::string& name) {
   const Surface inner = inner_surface(e, uv);
-  std::string map_name;
-  for (const Property& p : e.properties)
-    if (const auto* nested = std::get_if<Nested>(&p.value); nested && nested->element->tag == "texture") map_name = p.name;
-  const Element* const map = e.nested(map_name);
-  if (!map || map->tag != "texture") throw Error(fmt::format("'{}' needs a texture", e.type), e.at);
+  const std::vector<const Element*> maps = e.all("texture");  // whatever its name, before the bsdf or after it
+  if (maps.empty()) throw Error(fmt::format("'{}' needs a texture", e.type), e.at);
+  if (maps.size() > 1) inexact(*maps[1], fmt::format("'{}' has one texture: the first counts", e.type));
+  const Element* const map = maps.front();
   Ref<Component> shader;
   if (e.type == "bumpmap") {
     shader = make("BumpShader", e, name);

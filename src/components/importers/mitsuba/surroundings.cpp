@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "components/volumes/volume_grid.h"
 #include "converter.h"
 #include "etendue/scene_object.h"
 
@@ -16,22 +15,6 @@ namespace {
 
 std::string called(const Element& medium) {
   return medium.id.empty() ? fmt::format("of line {}", medium.at.line) : "'" + medium.id + "'";
-}
-
-/// The unit cube, or the box that the file names, of a grid of densities.
-std::optional<Transform> grid_box(const Element& medium, const std::string& file) {
-  const Element* const volume = medium.nested(medium.has("sigma_t") ? "sigma_t" : "density");
-  if (medium.type != "heterogeneous" || !volume || volume->type != "gridvolume") return std::nullopt;
-  const Transform placed = volume->transform().transform.still();
-  if (!volume->boolean("use_grid_bbox", false)) return placed;
-  VolumeGrid grid;
-  try {
-    grid = read_volume_grid(file);
-  } catch (const Error& e) {
-    throw Error("'" + file + "': " + e.what(), volume->location_of("filename"));
-  }
-  const Vector3 size = grid.high - grid.low;
-  return placed * Transform::translate({grid.low.x, grid.low.y, grid.low.z}) * Transform::scale({size.x, size.y, size.z});
 }
 
 }  // namespace
@@ -59,10 +42,8 @@ Ref<SceneObject> Converter::settle_media(const Element* sensor, bool seen, const
   const Ref<Component> cube = make("Box", *around);  // whose coordinates are the world's
   camera.medium = medium(*around, *cube);
   if (!camera.medium) return nullptr;
-  if (camera.medium->class_info().find("file_box")) {
-    const Element* const volume = around->nested(around->has("sigma_t") ? "sigma_t" : "density");
-    const bool file_box = volume && volume->boolean("use_grid_bbox", false);
-    camera.box = grid_box(*around, file_box ? file(*volume).resolved() : "");
+  if (camera.medium->class_info().name != "HomogeneousVolume") {
+    camera.box = grid_box(*around);
     if (!camera.box) camera.box = box_of_constant(*around);
     set_member(*cube, "transform", *camera.box, around->at);
     camera.medium = medium(*around, *cube);

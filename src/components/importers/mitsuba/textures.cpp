@@ -77,7 +77,8 @@ Value Converter::texture(const Element& e, Uv uv, Read read) {
     if (e.type == "irregular") {
       places = parse_numbers({e.string("wavelengths", ""), e.location_of("wavelengths")});
     } else {
-      const double low = e.number("wavelength_min", 360), high = e.number("wavelength_max", 830);
+      const double low = e.number("wavelength_min", e.number("lambda_min", 360)),  // the latter in version 2
+          high = e.number("wavelength_max", e.number("lambda_max", 830));
       for (size_t i = 0; i < values.size(); ++i)
         places.push_back(low + (high - low) * double(i) / double(std::max<size_t>(values.size(), 2) - 1));
     }
@@ -97,8 +98,7 @@ Value Converter::texture(const Element& e, Uv uv, Read read) {
     set(*product, "second", color(e, "scale", 1, uv, read));
     return Value(product, e.at);
   }
-  if (std::ranges::find(known_textures, e.type) == known_textures.end()) fail_unknown(e, known_textures);
-  inexact(e, fmt::format("texture '{}' has no counterpart here: 0.5 stands for it", e.type));
+  stand_in(e, known_textures, "0.5 stands for it");
   return Value(Number{0.5}, e.at);
 }
 

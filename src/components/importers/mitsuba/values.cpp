@@ -97,6 +97,16 @@ ColorValue parse_rgb(const Text& t, bool encoded) {
   return c;
 }
 
+ColorValue parse_xyz(const Text& t) {
+  const std::vector<double> xyz = parse_numbers(t);
+  if (xyz.size() != 3) throw Error(fmt::format("a colour in XYZ has three numbers, not {}", xyz.size()), t.at);
+  const std::array<double, 9>& m = rgb_space("srgb").from_xyz;
+  ColorValue c;
+  for (size_t i = 0; i < 3; ++i) c.rgb[i] = std::max(m[3 * i] * xyz[0] + m[3 * i + 1] * xyz[1] + m[3 * i + 2] * xyz[2], 0.0);
+  c.color = rgb_color("srgb", c.rgb[0], c.rgb[1], c.rgb[2]);
+  return c;
+}
+
 ColorValue constant_spectrum(double value) {
   ColorValue c;
   c.kind = ColorValue::Kind::flat;

@@ -28,6 +28,8 @@ std::vector<double> parse_numbers(const Text&);
 
 /// `<rgb>` or `<srgb>`: one number or three, or "#rrggbb". `encoded`: they are sRGB code values.
 ColorValue parse_rgb(const Text&, bool encoded);
+/// `<xyz>` of version 0.x, which is red, green and blue there.
+ColorValue parse_xyz(const Text&);
 /// `<spectrum value="0.5">` or "400:0.1, 700:0.9".
 ColorValue parse_spectrum(const Text&);
 ColorValue constant_spectrum(double value);

@@ -1,0 +1,17 @@
+#pragma once
+// Media that were measured, by the names that pbrt and Mitsuba 0.x give them.
+
+#include <array>
+#include <span>
+
+namespace etendue {
+
+/// Red, green and blue [1/mm] of a medium that scatters alike in all directions: the scattering is reduced, times 1 - g.
+struct MeasuredMedium {
+  const char* name;
+  std::array<double, 3> scattering, absorption;
+};
+
+std::span<const MeasuredMedium> measured_media();
+
+}  // namespace etendue
