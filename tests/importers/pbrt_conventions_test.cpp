@@ -101,13 +101,13 @@ TEST(PbrtMaterial, RoughnessBecomesAlpha) {
   EXPECT_NEAR(alpha(v4("Material \"dielectric\" \"float uroughness\" 0.09 \"float vroughness\" 0.04")), 0.3, 1e-6);
   EXPECT_NEAR(alpha(v4("Material \"dielectric\" \"float uroughness\" 0.09 \"float vroughness\" 0.04"), "roughness_v"), 0.2,
               1e-6);
-  // RoughnessToAlpha of v3's TrowbridgeReitzDistribution at 0.1 and 0.5, computed apart.
+  // RoughnessToAlpha of v3's TrowbridgeReitzDistribution at 0.1 and 0.3, computed apart.
   const std::string metal = v3("");
   const auto v3_scene = [](const std::string& material) {
     return "Camera \"perspective\" Film \"image\" WorldBegin\n" + material;
   };
   EXPECT_NEAR(alpha(v3_scene("Material \"metal\" \"float roughness\" 0.1")), 0.46176003, 1e-5);
-  EXPECT_NEAR(alpha(v3_scene("Material \"metal\" \"float roughness\" 0.5")), 1.13082754, 1e-5);
+  EXPECT_NEAR(alpha(v3_scene("Material \"metal\" \"float roughness\" 0.3")), 0.85703647, 1e-5);
 }
 
 TEST(PbrtMaterial, DiffuseAndPlastic) {

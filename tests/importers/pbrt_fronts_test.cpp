@@ -115,12 +115,15 @@ TEST(PbrtFront, ReversedBumpsAreHollows) {
 /// A light of 1 before the camera.
 double lamp(const TemporaryFolder& folder, bool v4_file, const std::string& before, const std::string& more,
             Imported* told = {}) {
-  const std::string world = before +
-                            "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\nMaterial \"none\" Shape \"trianglemesh\" "
-                            "\"point P\" [-9 9 5 9 9 5 0 -19 5] " +
-                            more;
+  const std::string world =
+      before +
+      "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\nMaterial \"matte\" \"rgb Kd\" [0 0 0] Shape \"trianglemesh\" "
+      "\"point P\" [-9 9 5 9 9 5 0 -19 5] " +
+      more;
   std::string as_v4 = world;
-  as_v4.replace(as_v4.find("\"point P\""), 9, "\"point3 P\"").replace(as_v4.find("\"none\""), 6, "\"interface\"");
+  as_v4.replace(as_v4.find("\"point P\""), 9, "\"point3 P\"")
+      .replace(as_v4.find("\"matte\""), 7, "\"diffuse\"")
+      .replace(as_v4.find("Kd"), 2, "reflectance");
   const Imported i = import_text(folder, v4_file ? v4(as_v4) : v3(world));
   if (told) *told = i;
   return seen(i, 1024).y;
@@ -144,7 +147,7 @@ TEST(PbrtAlpha, LightsOfZeroLightAndAreNotSeen) {
   // quarters, each seen from below its corner (Howell, A catalog of radiation heat transfer configuration factors, B-3).
   const auto ceiling = [&](const std::string& alpha) {
     const std::string wall =
-        "Material \"diffuse\" \"rgb reflectance\" 0.5 Shape \"trianglemesh\" \"point3 P\" [-9 -9 5 9 -9 5 9 9 5 -9 9 5] "
+        "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5] Shape \"trianglemesh\" \"point3 P\" [-9 -9 5 9 -9 5 9 9 5 -9 9 5] "
         "\"integer indices\" [0 1 2 0 2 3]\n";
     const std::string light =
         "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] Material \"dielectric\" Shape \"trianglemesh\" \"point3 P\" "

@@ -28,8 +28,11 @@ std::string comments(const std::string& file, const std::vector<Error>& notes) {
     std::string words = note.what();
     for (char& c : words)
       if (c == '\n' || c == '\r') c = ' ';
-    text +=
-        note.location.line > 0 ? fmt::format("#   line {}: {}\n", note.location.line, words) : fmt::format("#   {}\n", words);
+    // In a file that it includes the line is none of its own.
+    const std::filesystem::path named = std::filesystem::path(note.location.file).filename();
+    const std::string other = named == std::filesystem::path(file).filename() ? "" : named.string();
+    text += "#   " + (other.empty() ? "" : other + ", ") +
+            (note.location.line > 0 ? fmt::format("line {}: {}\n", note.location.line, words) : words + "\n");
   }
   return text + "\n";
 }

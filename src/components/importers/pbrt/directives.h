@@ -73,7 +73,6 @@ class Directives {
   void apply(const Transform& t);
   void put(const std::array<Transform, 2>& to);
   Transform matrix();
-  Transform checked(const Transform& t);
   void identity();
   void translate();
   void scale();

@@ -15,6 +15,8 @@ void Directives::set(Setting& setting) {
 void Directives::camera() {
   set(r.camera);
   std::array<Transform, 2> inverse;
+  if (!r.state.ctm[0].valid() || !r.state.ctm[1].valid())
+    throw Error("the camera cannot be placed: its transform cannot be inverted", at_);
   for (size_t i = 0; i < 2; ++i) inverse[i] = r.state.ctm[i].inverse();
   named_systems_["camera"] = inverse;
   std::swap(r.state.ctm, inverse);

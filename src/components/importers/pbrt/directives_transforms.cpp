@@ -18,18 +18,15 @@ void Directives::put(const std::array<Transform, 2>& to) {
 
 Transform Directives::matrix() {
   const auto m = numbers<16>();
-  // By columns. The last row must leave points what they are.
+  // By columns. The last row should leave points what they are; directions, of which a light at infinity is made, do not know
+  // it.
   if (std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) > 1e-9 * std::abs(m[15]) || m[15] == 0)
-    throw Error("a matrix with a perspective is not possible here", at_);
-  const double w = m[15];
+    r.importing.inexact("the last row of a matrix, which makes a perspective, is left out: for directions nothing is changed",
+                        at_);
+  const double w = m[15] == 0 ? 1 : m[15];
   Transform::DoubleMatrix rows{m[0], m[4], m[8], m[12], m[1], m[5], m[9], m[13], m[2], m[6], m[10], m[14]};
   for (double& x : rows) x /= w;
-  return checked(Transform(rows));
-}
-
-Transform Directives::checked(const Transform& t) {
-  if (!t.valid()) throw Error(fmt::format("the transform of {} cannot be inverted", token_.text), at_);
-  return t;
+  return Transform(rows);
 }
 
 void Directives::identity() { put({}); }
@@ -41,7 +38,7 @@ void Directives::translate() {
 
 void Directives::scale() {
   const auto n = numbers<3>();
-  apply(checked(Transform::scale({n[0], n[1], n[2]})));
+  apply(Transform::scale({n[0], n[1], n[2]}));
 }
 
 void Directives::rotate() {

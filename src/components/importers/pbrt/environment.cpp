@@ -19,23 +19,18 @@ Transform to_light(bool square) {
 }
 
 /// An environment can be turned and mirrored, but what stretches it is left out, as pbrt does with directions.
-AnimatedTransform directions_only(Reader& reader, const Transform& inner, Location at) {
-  const AnimatedTransform whole = reader.to_world(inner);
+Transform directions_only(Reader& reader, const Transform& inner, Location at) {
+  const Transform whole = reader.of_light(inner, at);
   if (!whole.valid()) throw Error("the light's transform cannot be inverted", at);
-  std::vector<AnimatedTransform::Key> keys;
-  for (AnimatedTransform::Key key : whole.keys()) {
-    Transform::DoubleMatrix m = key.transform.exact();
-    double longest = 0;
-    for (size_t c = 0; c < 3; ++c)
-      longest = std::max(longest, std::sqrt(m[c] * m[c] + m[4 + c] * m[4 + c] + m[8 + c] * m[8 + c]));
-    for (size_t r = 0; r < 3; ++r) {
-      for (size_t c = 0; c < 3; ++c) m[4 * r + c] /= longest;
-      m[4 * r + 3] = 0;
-    }
-    key.transform = Transform(m);
-    keys.push_back(key);
+  Transform::DoubleMatrix m = whole.exact();
+  double longest = 0;
+  for (size_t c = 0; c < 3; ++c)
+    longest = std::max(longest, std::sqrt(m[c] * m[c] + m[4 + c] * m[4 + c] + m[8 + c] * m[8 + c]));
+  for (size_t r = 0; r < 3; ++r) {
+    for (size_t c = 0; c < 3; ++c) m[4 * r + c] /= longest;
+    m[4 * r + 3] = 0;
   }
-  return AnimatedTransform(std::move(keys));
+  return Transform(m);
 }
 
 /// How many times brighter than its image v3's "L" and either version's "scale" make it.
@@ -66,9 +61,10 @@ void make_environment(Reader& reader, const Parameters& p) {
   const Ref<Component> emission = reader.make("EnvironmentEmission", at);
   const char* name = p.has("mapname") ? "mapname" : "filename";
   const double lux = v3 ? -1 : p.number("illuminance", -1);
-  if (p.has(name)) {
-    const auto file = image_file(reader, p, name);
-    if (!file) return;
+  const std::optional<FilePath> file = p.has(name) ? image_file(reader, p, name) : std::nullopt;
+  // Where the image is missing, version 3 goes on with the light alone.
+  if (p.has(name) && !file && !v3) return p.forget();
+  if (file) {
     set_member(*emission, "file", *file, p.place(name));
     if (!v3) set_member(*emission, "layout", "equal_area", at);
     set_member(*emission, "scale", image_scale(reader, p), at);
@@ -76,20 +72,10 @@ void make_environment(Reader& reader, const Parameters& p) {
     // twice the illuminance that is asked for.
     if (lux > 0) set_member(*emission, "illuminance", 2 * lux * luminous_unit * image_scale(reader, p), at);
   } else {
-    const Parameter* given = p.find("L");
     // What shines through a portal is an image of one texel, whose light is not divided by its luminance.
-    const Color color = given ? spectrum_of(reader, p, *given, p.has("portal") ? Use::coefficient : Use::light)
-                              : rgb_color(p.space ? p.space->name : "srgb", 1, 1, 1);
-    const Parameter* s = p.find("scale");
-    double scale = reader.exposure;
-    if (s && s->is("float"))
-      scale *= p.number("scale", 1);
-    else if (s)
-      scale *= double(to_xyz(*spectrum_of(reader, p, *s, Use::coefficient), ColorUse::coefficient).y);
-    if (lux > 0) scale *= lux / pi;
-    if (!(scale >= 0)) throw Error("a light's scale must not be negative", p.place("scale"));
-    set_member(*emission, "radiance", color, at);
-    set_member(*emission, "scale", scale, at);
+    const Light light = light_of(reader, p, "L", p.has("portal") ? Use::coefficient : Use::light);
+    set_member(*emission, "radiance", light.color, at);
+    set_member(*emission, "scale", light.scale * (lux > 0 ? lux / pi : 1), at);
   }
   if (p.has("portal"))
     reader.importing.inexact(
@@ -97,7 +83,7 @@ void make_environment(Reader& reader, const Parameters& p) {
         "closed but for the portal",
         p.place("portal"));
   const Ref<Component> object = reader.make("Environment", at);
-  set_member(*object, "transform", directions_only(reader, to_light(!v3), at), at);
+  set_member(*object, "transform", AnimatedTransform(directions_only(reader, to_light(!v3), at)), at);
   set_emission(*object, emission, at);
   reader.add_light(object);
 }

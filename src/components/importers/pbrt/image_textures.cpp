@@ -36,9 +36,17 @@ void set_wrap(Reader& reader, Component& map, const Parameters& p) {
     reader.importing.inexact(fmt::format("wrap '{}' is not known: the image repeats", wrap), p.place("wrap"));
 }
 
+/// Of v3: whether an image's numbers are decoded. Exporters for older versions gave an exponent, which pbrt passes over.
+bool decoded(Reader& reader, const Parameters& p) {
+  const Parameter* gamma = p.find("gamma");
+  if (!gamma || gamma->is("bool")) return p.boolean("gamma", true);
+  reader.importing.inexact("a 'gamma' that is a number is not used, as in pbrt", gamma->at);
+  return true;
+}
+
 void set_encoding(Reader& reader, Component& map, const Parameters& p) {
   const std::string encoding = p.text("encoding", "");
-  if (encoding == "linear" || !p.boolean("gamma", true))
+  if (encoding == "linear" || !decoded(reader, p))
     set_member(map, "transfer", "linear", p.at);
   else if (encoding == "gamma 2.2")
     set_member(map, "transfer", "gamma2.2", p.at);
@@ -61,8 +69,7 @@ Ref<Component> of_channels(Reader& reader, const Component& map, const Parameter
 /// v3 makes a number of a colour before it is decoded: y of what the file holds.
 Ref<Component> luminance(Reader& reader, const Component& map, const Parameters& p, const std::string& path) {
   const std::string y = "(0.212671 * r + 0.71516 * g + 0.072169 * b)";
-  if (!p.boolean("gamma", true) || !(path.ends_with(".png") || path.ends_with(".tga")))
-    return of_channels(reader, map, p, y, false);
+  if (!decoded(reader, p) || !(path.ends_with(".png") || path.ends_with(".tga"))) return of_channels(reader, map, p, y, false);
   return of_channels(reader, map, p, fmt::format("mix({0} / 12.92, pow(({0} + 0.055) / 1.055, 2.4), step(0.04045, {0}))", y),
                      false);
 }
@@ -85,6 +92,7 @@ Ref<Component> image_texture(Reader& reader, const Parameters& p, bool spectrum)
   const Location at = p.at;
   const auto file = image_file(reader, p, "filename");
   if (!file) {
+    reader.importing.inexact("grey, 0.5, stands for the image that is missing", p.place("filename"));
     const Ref<Component> grey = reader.make("ConstantMap", at);
     set_member(*grey, "value", 0.5, at);
     return grey;

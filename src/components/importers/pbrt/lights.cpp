@@ -13,11 +13,13 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// The light of a parameter times "scale" (which v3 has as a spectrum), times what the sensor makes of it.
-Color light_of(Reader& reader, const Parameters& p, const char* name, double more = 1) {
+}  // namespace
+
+// Version 3's scale is a spectrum, too.
+Light light_of(Reader& reader, const Parameters& p, const char* name, Use use) {
   const Parameter* given = p.find(name);
-  const Color color = given ? spectrum_of(reader, p, *given, Use::light) : rgb_color(p.space ? p.space->name : "srgb", 1, 1, 1);
-  double scale = more * reader.exposure;
+  const Color color = given ? spectrum_of(reader, p, *given, use) : rgb_color(p.space ? p.space->name : "srgb", 1, 1, 1);
+  double scale = reader.exposure;
   if (const Parameter* s = p.find("scale")) {
     if (s->is("float")) {
       scale *= p.number("scale", 1);
@@ -29,7 +31,7 @@ Color light_of(Reader& reader, const Parameters& p, const char* name, double mor
       } else if (given && given->numbers.size() == 3) {
         Parameter product = *given;
         for (size_t i = 0; i < 3; ++i) product.numbers[i] *= n[i];
-        return scaled_spectrum(scale, spectrum_of(reader, p, product, Use::light));
+        return {spectrum_of(reader, p, product, use), scale};
       } else {
         reader.importing.inexact("a scale that is a colour is its mean here", s->at);
         scale *= (n[0] + n[1] + n[2]) / 3;
@@ -38,8 +40,23 @@ Color light_of(Reader& reader, const Parameters& p, const char* name, double mor
       scale *= double(to_xyz(*spectrum_of(reader, p, *s, Use::coefficient), ColorUse::coefficient).y);
     }
   }
-  if (scale < 0) throw Error("a light's scale must not be negative", p.place("scale"));
-  return scale == 1 ? color : scaled_spectrum(scale, color);
+  if (!(scale >= 0)) throw Error("a light's scale must not be negative", p.place("scale"));
+  return {color, scale};
+}
+
+Transform Reader::of_light(const Transform& inner, Location at) {
+  if (to_world(inner).animated())
+    importing.inexact("this light does not move: it stands where it is at the first of the two times, as in pbrt", at);
+  return state.ctm[0] * inner;
+}
+
+namespace {
+
+/// The same in one, times `more`.
+Color scaled_light(Reader& reader, const Parameters& p, const char* name, double more = 1) {
+  const Light light = light_of(reader, p, name, Use::light);
+  const double scale = light.scale * more;
+  return scale == 1 ? light.color : scaled_spectrum(scale, light.color);
 }
 
 /// Of v4's "power" in lumens, which takes the place of what the scale gives; `per_unit` is that of an intensity of 1.
@@ -56,9 +73,9 @@ Numbers way(const DoublePoint3& from, const DoublePoint3& to, const Parameters& 
 
 Ref<Component> placed(Reader& reader, const char* class_name, const Parameters& p, const Transform& inner = {}) {
   const Ref<Component> object = reader.make(class_name, p.at);
-  const AnimatedTransform transform = reader.to_world(inner);
+  const Transform transform = reader.of_light(inner, p.at);
   if (!transform.valid()) throw Error(fmt::format("{} cannot be placed: its transform cannot be inverted", p.of), p.at);
-  set_member(*object, "transform", transform, p.at);
+  set_member(*object, "transform", AnimatedTransform(transform), p.at);
   return object;
 }
 
@@ -69,19 +86,25 @@ void add_light(Reader& reader, const Ref<Component>& object, const Ref<Component
 
 void point(Reader& reader, const Parameters& p) {
   const Ref<Component> emission = reader.make("DiffuseEmission", p.at);
-  set_member(*emission, "radiance", light_of(reader, p, "I", power_factor(p, 4 * pi)), p.at);
+  set_member(*emission, "radiance", scaled_light(reader, p, "I", power_factor(p, 4 * pi)), p.at);
   const Ref<Component> object = placed(reader, "Point", p);
   set_member(*object, "position", list(p.point("from", {0, 0, 0})), p.at);
   add_light(reader, object, emission, p.at);
 }
 
 void spot(Reader& reader, const Parameters& p) {
-  const double outer = p.number("coneangle", 30), inner = outer - p.number("conedeltaangle", 5);
+  const double outer = p.number("coneangle", 30);
+  // Only its cosine counts: where the cone is narrower than the border is wide, the border begins on the other side of the
+  // axis.
+  double inner = std::abs(outer - p.number("conedeltaangle", 5));
   if (!(outer > 0 && outer <= 180)) throw Error("'coneangle' must be more than 0 and at most 180", p.place("coneangle"));
-  if (!(inner >= 0 && inner <= outer)) throw Error("'conedeltaangle' must be from 0 to 'coneangle'", p.place("conedeltaangle"));
+  if (!(inner <= outer)) {
+    reader.importing.inexact("a 'conedeltaangle' that ends outside of the cone is no border here", p.place("conedeltaangle"));
+    inner = outer;
+  }
   const double begin = std::cos(inner * pi / 180), end = std::cos(outer * pi / 180);
   const Ref<Component> emission = reader.make("SpotEmission", p.at);
-  set_member(*emission, "radiance", light_of(reader, p, "I", power_factor(p, 2 * pi * ((1 - begin) + (begin - end) / 2))),
+  set_member(*emission, "radiance", scaled_light(reader, p, "I", power_factor(p, 2 * pi * ((1 - begin) + (begin - end) / 2))),
              p.at);
   const DoublePoint3 from = p.point("from", {0, 0, 0});
   set_member(*emission, "axis", way(from, p.point("to", {0, 0, 1}), p), p.at);
@@ -97,7 +120,7 @@ void distant(Reader& reader, const Parameters& p) {
   const Ref<Component> emission = reader.make("DiffuseEmission", p.at);
   // An irradiance of 1 on a plane across the light; v4's "illuminance" says that it is so much.
   const double lux = p.number("illuminance", -1);
-  set_member(*emission, "radiance", light_of(reader, p, "L", lux > 0 ? lux : 1), p.at);
+  set_member(*emission, "radiance", scaled_light(reader, p, "L", lux > 0 ? lux : 1), p.at);
   const Ref<Component> object = placed(reader, "Distant", p);
   set_member(*object, "direction", way(p.point("from", {0, 0, 0}), p.point("to", {0, 0, 1}), p), p.at);
   add_light(reader, object, emission, p.at);
@@ -153,13 +176,13 @@ void goniometric(Reader& reader, const Parameters& p) {
   const std::optional<FilePath> file = p.has(name) ? image_file(reader, p, name) : std::nullopt;
   if (!file) {
     const Ref<Component> emission = reader.make("DiffuseEmission", p.at);
-    set_member(*emission, "radiance", light_of(reader, p, "I", power_factor(p, 4 * pi)), p.at);
+    set_member(*emission, "radiance", scaled_light(reader, p, "I", power_factor(p, 4 * pi)), p.at);
     add_light(reader, placed(reader, "Point", p), emission, p.at);
     return;
   }
   const Ref<Component> emission = reader.make("GoniometricEmission", p.at);
   set_member(*emission, "file", *file, p.place(name));
-  set_member(*emission, "radiance", light_of(reader, p, "I"), p.at);
+  set_member(*emission, "radiance", scaled_light(reader, p, "I"), p.at);
   if (!v3) {
     set_member(*emission, "layout", "equal_area", p.at);
     set_member(*emission, "interpolation", "nearest", p.at);
@@ -197,7 +220,7 @@ Ref<Component> area_emission(Reader& reader, AreaLight& light, bool turned, size
       set_member(*emission, "radiance", product, at);
     }
   } else {
-    set_member(*emission, "radiance", light_of(reader, p, "L"), at);
+    set_member(*emission, "radiance", scaled_light(reader, p, "L"), at);
   }
   if (power > 0) {
     // pbrt has a light of this power, times its scale, for each triangle.

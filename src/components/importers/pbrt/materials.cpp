@@ -43,7 +43,7 @@ Ref<Component> mix(Reader& reader, const Material& m) {
   if (v3) {
     const Value amount = color_map(reader, p, {"amount"}, 0.5, Use::reflectance);
     if (const Color* c = amount.as<Color>())
-      set_member(*shader, "amount", double(to_xyz(**c, ColorUse::reflectance, illuminant_spectrum("D65").get()).y), p.at);
+      set_member(*shader, "amount", brightness_of(reader, **c, "the amount of a mixture", p.place("amount")), p.at);
     else
       set_map(*shader, "amount", amount, p.at);
   } else {
@@ -101,6 +101,13 @@ class Making {
 
 }  // namespace
 
+double brightness_of(Reader& reader, const SpectralFunction& color, const std::string& what, Location at) {
+  const ValueRange range = range_of(color, ColorUse::reflectance);
+  if (range.most - range.least > 0.01f)
+    reader.importing.inexact(fmt::format("{} that differs between colours is their brightness here", what), at);
+  return std::min(1.0, double(to_xyz(color, ColorUse::reflectance, illuminant_spectrum("D65").get()).y));
+}
+
 // pbrt's index is that of one side against the other, whatever the path came through: boundaries between glass and water have
 // their quotient.
 void set_index(const Reader& reader, Component& dielectric, const Value& eta, Location at) {
@@ -113,21 +120,31 @@ double v3_alpha(double roughness) {
   return 1.62142 + x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)));
 }
 
-void set_roughness(Reader& reader, Component& shader, const Parameters& p, double otherwise, bool v3,
-                   const std::string& prefix) {
-  const std::string r = prefix + "roughness", u = prefix + "uroughness", v = prefix + "vroughness";
-  const bool remap = p.boolean("remaproughness", true);
-  const auto alpha = [&](std::initializer_list<std::string_view> names) {
-    Value roughness = number_map(reader, p, names, otherwise);
-    // v3's glass is smooth where nothing says otherwise, and so is v4's at 0.
-    const Number* n = roughness.as<Number>();
-    if (n && n->value == 0) return roughness;
-    return alpha_of(reader, p.at, std::move(roughness), remap, v3);
+void set_roughness(Reader& reader, Component& shader, const Parameters& p, const Roughness& asked) {
+  const bool v3 = reader.version == 3, remap = p.boolean("remaproughness", true);
+  const auto given = [&](const std::vector<std::string>& names) {
+    const auto found = std::ranges::find_if(names, [&](const std::string& name) { return p.has(name); });
+    return number_map(reader, p, {found == names.end() ? std::string_view(names.back()) : *found}, asked.otherwise);
   };
-  const Value along = alpha({u, r});
+  const auto zero = [](const Value& v) {
+    const Number* n = v.as<Number>();
+    return n && n->value == 0;
+  };
+  Value u = given(asked.u), v = given(asked.v);
+  // v4 is smooth at 0, along either direction; v3's glass at 0 of both, and its other materials nowhere: 0 is 0.001 there.
+  const bool smooth = asked.glass && zero(u) && zero(v);
+  const auto alpha = [&](Value roughness) {
+    if (zero(roughness) && (!v3 || smooth)) return roughness;
+    Value result = alpha_of(reader, p.at, std::move(roughness), remap, v3);
+    if (const Number* n = result.as<Number>(); n && n->value > 1) {
+      reader.importing.inexact("a roughness beyond an alpha of 1 is an alpha of 1 here", p.at);
+      result = Value(Number{1}, p.at);
+    }
+    return result;
+  };
+  const Value along = alpha(u);
   set_map(shader, "roughness", along, p.at);
-  const Parameter* across = p.find(v);
-  if (p.has(u) || across) set_map(shader, "roughness_v", alpha({v, r}), p.at);
+  if (write_value(u) != write_value(v)) set_map(shader, "roughness_v", alpha(v), p.at);
   set_member(shader, "multiple_scattering", false, p.at);
   // pbrt's G of light that goes through is that of light that is reflected.
   const Number* n = along.as<Number>();

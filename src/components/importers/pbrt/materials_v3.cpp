@@ -21,6 +21,7 @@ double largest(const Value& v) {
 
 Value divided(Reader& reader, Value v, double by, Location at) {
   if (const Number* n = v.as<Number>()) return Value(Number{n->value / by}, at);
+  if (const Color* c = v.as<Color>()) return Value(scaled_spectrum(1 / by, *c), at);
   return Value(formula(reader, at, fmt::format("{} * map", 1 / by), {{"map", v}}), at);
 }
 
@@ -28,14 +29,14 @@ Value divided(Reader& reader, Value v, double by, Location at) {
 /// each has its colour divided by its share is the same sum, and can be made where the two together are at most 1; beyond,
 /// pbrt's surface may give back more light than it gets, and a coated one stands for it.
 /// `seen` is the index that pbrt computes the highlight with.
-Ref<Component> plastic(Reader& reader, const Parameters& p, Value kd, Value ks, double eta, double seen) {
+Ref<Component> plastic(Reader& reader, const Parameters& p, const Roughness& roughness, Value kd, Value ks, double eta,
+                       double seen) {
   const Location at = p.at;
   const double d = largest(kd), s = largest(ks);
   if (s == 0) {
     const Ref<Component> matt = reader.make("Lambertian", at);
     set_map(*matt, "color", kd, at);
-    p.ignore({"roughness"});
-    p.ignore({"remaproughness"});
+    p.ignore({"roughness", "uroughness", "vroughness", "remaproughness"});
     return matt;
   }
   if (d + s > 1.0001) {
@@ -47,14 +48,14 @@ Ref<Component> plastic(Reader& reader, const Parameters& p, Value kd, Value ks, 
     set_map(*coated, "color", kd, at);
     set_member(*coated, "ior", std::clamp(eta, 1.0, 4.0), at);
     const Ref<Component> helper = reader.make("Dielectric", at);
-    set_roughness(reader, *helper, p, 0.1, true);
+    set_roughness(reader, *helper, p, roughness);
     set_map(*coated, "roughness", get(*helper, "roughness"), at);
     return coated;
   }
   const double share = d == 0 ? 0 : d / (d + s);
   const Ref<Component> gloss = reader.make("Conductor", at);
   set_member(*gloss, "ior", complex_index(flat_spectrum(float(seen)), flat_spectrum(0)), at);
-  set_roughness(reader, *gloss, p, 0.1, true);
+  set_roughness(reader, *gloss, p, roughness);
   set_map(*gloss, "color", divided(reader, ks, 1 - share, at), at);
   if (share == 0) return gloss;
   const Ref<Component> matt = reader.make("Lambertian", at);
@@ -69,7 +70,7 @@ Ref<Component> plastic(Reader& reader, const Parameters& p, Value kd, Value ks, 
 Ref<Component> glass(Reader& reader, const Parameters& p) {
   const Ref<Component> shader = reader.make("Dielectric", p.at);
   set_index(reader, *shader, index_of(reader, p, {"eta", "index"}, 1.5), p.at);
-  set_roughness(reader, *shader, p, 0, true);
+  set_roughness(reader, *shader, p, {{"uroughness"}, {"vroughness"}, 0, true});
   if (p.has("Kr")) set_map(*shader, "reflection_tint", color_map(reader, p, {"Kr"}, 1, Use::reflectance), p.at);
   if (p.has("Kt")) set_map(*shader, "transmission_tint", color_map(reader, p, {"Kt"}, 1, Use::reflectance), p.at);
   return shader;
@@ -80,7 +81,8 @@ Ref<Component> uber(Reader& reader, const Parameters& p) {
   const Value eta = index_of(reader, p, {"eta", "index"}, 1.5);
   const Number* n = eta.as<Number>();
   const double index = n ? n->value : 1.5;
-  Ref<Component> shader = plastic(reader, p, color_map(reader, p, {"Kd"}, 0.25, Use::reflectance),
+  const Roughness roughness{{"uroughness", "roughness"}, {"vroughness", "uroughness", "roughness"}, 0.1};
+  Ref<Component> shader = plastic(reader, p, roughness, color_map(reader, p, {"Kd"}, 0.25, Use::reflectance),
                                   color_map(reader, p, {"Ks"}, 0.25, Use::reflectance), index, index);
   for (const char* name : {"Kr", "Kt"}) {
     if (!p.has(name)) continue;
@@ -93,15 +95,10 @@ Ref<Component> uber(Reader& reader, const Parameters& p) {
     const Ref<Component> mask = reader.make("MaskShader", at);
     set_member(*mask, "shader", shader, at);
     const Value opacity = color_map(reader, p, {"opacity"}, 1, Use::reflectance);
-    if (const Color* c = opacity.as<Color>()) {
-      set_member(*mask, "opacity",
-                 std::min(1.0, double(to_xyz(**c, ColorUse::reflectance, illuminant_spectrum("D65").get()).y)), at);
-      const ValueRange range = range_of(**c, ColorUse::reflectance);
-      if (range.most - range.least > 0.01f)
-        reader.importing.inexact("an opacity that differs between colours is their brightness here", p.place("opacity"));
-    } else {
+    if (const Color* c = opacity.as<Color>())
+      set_member(*mask, "opacity", brightness_of(reader, **c, "an opacity", p.place("opacity")), at);
+    else
       set_map(*mask, "opacity", opacity, at);
-    }
     shader = mask;
   }
   return shader;
@@ -148,7 +145,12 @@ Ref<Component> disney(Reader& reader, const Parameters& p) {
   const bool thin = p.boolean("thin", false);
   const Ref<Component> shader = reader.make(thin ? "DisneyThin" : "DisneyPrincipled", at);
   const auto carry = [&](const char* from, const char* to, double otherwise) {
-    set_map(*shader, to, number_map(reader, p, {from}, otherwise), at);
+    Value value = number_map(reader, p, {from}, otherwise);
+    if (const Number* n = value.as<Number>(); n && (n->value < 0 || n->value > 1)) {
+      reader.importing.inexact(fmt::format("'{}' of a Disney material is kept within 0 and 1", from), p.place(from));
+      value = Value(Number{std::clamp(n->value, 0.0, 1.0)}, at);
+    }
+    set_map(*shader, to, value, at);
   };
   set_map(*shader, "base_color", color_map(reader, p, {"color"}, 0.5, Use::reflectance), at);
   carry("roughness", "roughness", 0.5);
@@ -168,7 +170,8 @@ Ref<Component> disney(Reader& reader, const Parameters& p) {
   }
   const Value eta = index_of(reader, p, {"eta"}, 1.5);
   if (const Number* n = eta.as<Number>()) set_member(*shader, "ior", n->value, at);
-  if (p.has("scatterdistance"))
+  const Value distance = color_map(reader, p, {"scatterdistance"}, 0, Use::coefficient);
+  if (largest(distance) > 0)
     reader.importing.inexact("the scattering below a Disney material's surface is left out", p.place("scatterdistance"));
   return shader;
 }
@@ -203,7 +206,7 @@ Ref<Component> make_v3_shader(Reader& reader, const Material& m) {
   if (type == "plastic") {
     // Its highlight is that of light from within, from 1.5 to 1: all of it beyond asin(1 / 1.5).
     constexpr double index = 1.5;
-    return plastic(reader, p, color_map(reader, p, {"Kd"}, 0.25, Use::reflectance),
+    return plastic(reader, p, {{"roughness"}, {"roughness"}, 0.1}, color_map(reader, p, {"Kd"}, 0.25, Use::reflectance),
                    color_map(reader, p, {"Ks"}, 0.25, Use::reflectance), index, 1 / index);
   }
   if (type == "uber") return uber(reader, p);
@@ -211,7 +214,7 @@ Ref<Component> make_v3_shader(Reader& reader, const Material& m) {
   if (type == "metal") {
     const Ref<Component> shader = reader.make("Conductor", at);
     set_member(*shader, "ior", metal_of(reader, p), at);
-    set_roughness(reader, *shader, p, 0.01, true);
+    set_roughness(reader, *shader, p, {{"uroughness", "roughness"}, {"vroughness", "roughness"}, 0.01});
     return shader;
   }
   if (type == "substrate") return substrate(reader, p);

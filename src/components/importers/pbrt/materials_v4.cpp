@@ -45,36 +45,43 @@ void set_layer(Reader& reader, Component& shader, const Parameters& p) {
   p.ignore({"nsamples"});
 }
 
+Roughness roughness(const std::string& prefix) {
+  const std::string both = prefix + "roughness";
+  return {{prefix + "uroughness", both}, {prefix + "vroughness", both}, 0};
+}
+
 Ref<Component> dielectric(Reader& reader, const Parameters& p, const std::string& prefix = {}) {
   const Ref<Component> shader = reader.make("Dielectric", p.at);
   const std::string eta = prefix + "eta";
   set_index(reader, *shader, index_of(reader, p, {eta}, 1.5), p.at);
-  set_roughness(reader, *shader, p, 0, false, prefix);
+  set_roughness(reader, *shader, p, roughness(prefix));
   return shader;
 }
 
 Ref<Component> conductor(Reader& reader, const Parameters& p, const std::string& prefix) {
   const Ref<Component> shader = reader.make("Conductor", p.at);
-  set_roughness(reader, *shader, p, 0, false, prefix);
+  set_roughness(reader, *shader, p, roughness(prefix));
   const Parameter* reflectance = p.first_of({"reflectance", "color"});
   if (!reflectance) {
     set_member(*shader, "ior", metal_of(reader, p, prefix), p.at);
     return shader;
   }
-  // n = 1 and k = 2 sqrt(r) / sqrt(1 - r) reflect r straight on; pbrt uses them at all angles.
+  // n = 1 and k = 2 sqrt(r) / sqrt(1 - r) reflect r straight on; pbrt uses them at all angles. Of r it takes 0.9999 at most;
+  // 0.9996 is what an extinction reflects that may be asked for here.
+  constexpr float most = 0.9996f;
+  const auto extinction = [](float reflected) { return 2 * std::sqrt(reflected) / std::sqrt(1 - reflected); };
   if (reflectance->is("texture")) {
     reader.importing.inexact("a conductor's reflectance that a texture says is multiplied by that of a nearly perfect mirror",
                              reflectance->at);
     set_map(*shader, "color", color_map(reader, p, {reflectance->name}, 0.5, Use::reflectance), p.at);
-    set_member(*shader, "ior", complex_index(flat_spectrum(1), flat_spectrum(200)), p.at);
+    set_member(*shader, "ior", complex_index(flat_spectrum(1), flat_spectrum(extinction(most))), p.at);
     return shader;
   }
   const Color r = spectrum_of(reader, p, *reflectance, Use::reflectance);
   std::vector<float> wavelengths, k;
   for (int nm = 360; nm <= 830; nm += 5) {
-    const float at = std::clamp(r->at(float(nm), ColorUse::reflectance), 0.0f, 0.9999f);
     wavelengths.push_back(float(nm));
-    k.push_back(2 * std::sqrt(at) / std::sqrt(1 - at));
+    k.push_back(extinction(std::clamp(r->at(float(nm), ColorUse::reflectance), 0.0f, most)));
   }
   set_member(*shader, "ior", complex_index(flat_spectrum(1), table_spectrum(wavelengths, k)), p.at);
   return shader;
@@ -157,8 +164,9 @@ Ref<Component> subsurface(Reader& reader, const Parameters& p, bool kd) {
     reader.importing.inexact("a subsurface material is inside of its shape, also where its orientation is reversed", at);
   reader.importing.inexact("a subsurface material is a diffusion profile here, by its colour and mean free path", at);
   set_map(*shader, "ior", index_of(reader, p, {"eta"}, 1.33), at);
-  if (p.has("roughness") || p.has("uroughness") || p.has("vroughness"))
-    reader.importing.inexact("the boundary of a subsurface material is smooth here", at);
+  bool rough = false;
+  for (const char* name : {"roughness", "uroughness", "vroughness"}) rough |= p.has(name);
+  if (rough) reader.importing.inexact("the boundary of a subsurface material is smooth here", at);
   p.ignore({"remaproughness"});
   return shader;
 }

@@ -71,12 +71,20 @@ Shape triangle_mesh(Reader& reader, Parameters& p) {
   const size_t vertices = mesh.positions.size() / 3;
   if (vertices == 0) throw Error(fmt::format("{} needs vertices, 'P'", p.of), p.place("P"));
   if (mesh.indices.empty() && vertices == 3) mesh.indices = {0, 1, 2};
-  if (mesh.indices.empty() || mesh.indices.size() % 3 != 0)
-    throw Error(fmt::format("{} has {} indices, but each triangle takes 3", p.of, mesh.indices.size()), p.place("indices"));
+  if (mesh.indices.size() % 3 != 0) {
+    reader.importing.inexact(
+        fmt::format("{} has {} indices, but each triangle takes 3: the last are left out", p.of, mesh.indices.size()),
+        p.place("indices"));
+    mesh.indices.resize(mesh.indices.size() / 3 * 3);
+  }
+  if (mesh.indices.empty()) throw Error(fmt::format("{} has no triangles", p.of), p.place("indices"));
   check_indices(p, mesh.indices, vertices);
   const auto by_vertex = [&](std::vector<double> list, size_t width, const char* name) {
     if (list.empty() || list.size() == vertices * width) return list;
-    throw Error(fmt::format("{} has {} '{}' for {} vertices", p.of, list.size() / width, name, vertices), p.place(name));
+    reader.importing.inexact(
+        fmt::format("{} has {} '{}' for {} vertices: they are left out", p.of, list.size() / width, name, vertices),
+        p.place(name));
+    return std::vector<double>();
   };
   mesh.normals = by_vertex(p.take_numbers("N", 3), 3, "N");
   for (const char* name : {"uv", "st", "UV"})

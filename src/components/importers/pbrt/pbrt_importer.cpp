@@ -12,12 +12,24 @@ namespace etendue {
 
 namespace {
 
+/// Comments often keep a line of another version.
+std::string without_comments(std::string_view text) {
+  std::string kept;
+  bool quoted = false, comment = false;
+  for (const char c : text) {
+    if (c == '\n') comment = false;
+    if (c == '"' && !comment) quoted = !quoted;
+    if (c == '#' && !quoted) comment = true;
+    if (!comment) kept += c;
+  }
+  return kept;
+}
+
 /// 3 or 4, by what a file uses. The film says it in nearly every file; where it does not, words that only one of them has.
-int version_of(std::string_view text) {
-  text = text.substr(0, size_t(4) << 20);
-  const auto film = text.find("Film");
-  if (film != text.npos) {
-    const std::string_view after = text.substr(film + 4, 40);
+int version_of(std::string_view whole) {
+  const std::string text = without_comments(whole.substr(0, size_t(4) << 20));
+  for (size_t film = text.find("Film"); film != text.npos; film = text.find("Film", film + 4)) {
+    const std::string_view after = std::string_view(text).substr(film + 4, 40);
     if (after.find("\"image\"") != after.npos) return 3;
     for (const char* type : {"\"rgb\"", "\"gbuffer\"", "\"spectral\""})
       if (after.find(type) != after.npos) return 4;

@@ -110,6 +110,8 @@ class Reader {
   AnimatedTransform to_world() const { return to_world(Transform()); }
   /// Of what stands at `inner` in the present coordinates.
   AnimatedTransform to_world(const Transform& inner) const;
+  /// Where a light stands: pbrt's do not move, which is told.
+  Transform of_light(const Transform& inner, Location at);
   Ref<Component> make(const char* class_name, Location at, const std::string& name = {}) const {
     return importing.make(class_name, at, name);
   }
@@ -189,8 +191,16 @@ Ref<Component> shader_named(Reader&, const std::string& name, Location used_at);
 /// Null: it is none of v4's, or none of v3's materials.
 Ref<Component> make_v4_shader(Reader&, const Material&);
 Ref<Component> make_v3_shader(Reader&, const Material&);
+/// Which parameters say how rough a surface is along u and along v, the first that is given, and what it is where none is.
+struct Roughness {
+  std::vector<std::string> u, v;
+  double otherwise;
+  bool glass = false;  ///< v3's is smooth at 0
+};
 /// Sets the roughness of a microfacet shader by GGX's alpha from pbrt's parameters.
-void set_roughness(Reader&, Component& shader, const Parameters&, double otherwise, bool v3, const std::string& prefix = {});
+void set_roughness(Reader&, Component& shader, const Parameters&, const Roughness&);
+/// What stands for a colour where a number is needed; it is told when the colour is no grey.
+double brightness_of(Reader&, const SpectralFunction&, const std::string& what, Location at);
 double v3_alpha(double roughness);
 std::vector<std::string> material_names();
 
@@ -209,6 +219,12 @@ Shape make_revolved(Reader&, const std::string& type, const Parameters&);
 // lights.cpp, environment.cpp
 void make_light(Reader&, const std::string& type, Parameters&&);
 void make_environment(Reader&, const Parameters&);
+/// The light of a parameter, and what it is multiplied by: "scale", and what the sensor makes of it.
+struct Light {
+  Color color;
+  double scale;
+};
+Light light_of(Reader&, const Parameters&, const char* name, Use);
 Ref<Component> area_emission(Reader&, AreaLight&, bool turned, size_t pieces);
 /// The pixel that pbrt makes of a radiance of 1 at all wavelengths, which is 1 here: the integral of the observer's y over
 /// wavelengths [nm]. pbrt divides the spectra of its lights by it, but not the light of media.

@@ -117,6 +117,12 @@ Shape curve(Reader& reader, const Parameters& p) {
       const double t = spline ? (double(i) - 1) / double(points.size() - 3) : double(i) / double(points.size() - 1);
       radii.push_back(std::max(0.0, ((1 - t) * w0 + t * w1) / 2));
     }
+  const bool without_length = std::ranges::all_of(points, [&](const auto& point) { return point == points[0]; });
+  if (without_length || std::max(w0, w1) <= 0) {
+    reader.importing.inexact("a curve of no length or no width is left out", at);
+    p.forget();
+    return {};
+  }
   std::vector<double> flat;
   for (const auto& point : points) flat.insert(flat.end(), point.begin(), point.end());
   const Ref<Component> object = reader.make("Curve", at);
@@ -160,6 +166,7 @@ Shape make_shape(Reader& reader, const std::string& type, Parameters& p) {
     shape = curve(reader, p);
   else
     return make_mesh(reader, type, p);
+  if (!shape.object) return shape;
   // What is made of triangles was turned over already.
   shape.turned = reader.state.reversed && shape.object->class_info().name != "TriangleMesh";
   return shape;

@@ -36,6 +36,24 @@ Color by_sellmeier(const Glass& glass) {
   return table_spectrum(wavelengths, n);
 }
 
+/// What pbrt names beside the metals that the language has: brass (Querry 1985, at three wavelengths), magnesia and rutile
+/// (Palik 1985, n alone, as they do not absorb).
+struct Optical {
+  const char* name;
+  std::vector<float> wavelengths, n, k;
+};
+const Optical opticals[] = {
+    {"CuZn", {360, 465, 532, 630, 830}, {0.947f, 0.947f, 0.5682f, 0.445f, 0.445f}, {1.92f, 1.92f, 2.588f, 3.522f, 3.522f}},
+    {"MgO",
+     {360, 382, 436, 486, 546, 589, 633, 706, 768, 830},
+     {1.7732f, 1.7668f, 1.7547f, 1.7471f, 1.7408f, 1.7374f, 1.7346f, 1.731f, 1.7287f, 1.727f},
+     {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}},
+    {"TiO2",
+     {360, 388, 400, 420, 440, 460, 480, 500, 540, 580, 620, 660, 700, 760, 830},
+     {3.87f, 3.49f, 3.4f, 3.29f, 3.2f, 3.13f, 3.08f, 3.03f, 2.96f, 2.92f, 2.88f, 2.85f, 2.83f, 2.81f, 2.79f},
+     {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}},
+};
+
 /// From pairs of wavelength [nm] and value. v3 goes on with the first and last value, v4 with nothing.
 Color from_pairs(const Reader& reader, const Parameter& p) {
   if (p.numbers.empty() || p.numbers.size() % 2 != 0)
@@ -71,13 +89,16 @@ Color by_name(Reader& reader, const Parameters& parameters, const Parameter& p) 
   return from_file(reader, parameters, p);
 }
 
-Color components(const Parameters& parameters, const Parameter& p, Use use) {
+Color components(Reader& reader, const Parameters& parameters, const Parameter& p, Use use) {
   if (p.numbers.size() != 3) throw Error(fmt::format("'{}' must be three numbers, not {}", p.name, p.numbers.size()), p.at);
   std::array<double, 3> n{p.numbers[0], p.numbers[1], p.numbers[2]};
   if (p.is("xyz")) return xyz_color(n[0], n[1], n[2]);
   for (double& x : n) {
     if (x < 0) throw Error(fmt::format("'{}' must not be negative", p.name), p.at);
-    if (use == Use::reflectance) x = std::min(x, 1.0);
+    if (use == Use::reflectance && x > 1) {
+      reader.importing.inexact(fmt::format("'{}' is at most 1 here: more light would leave than arrives", p.name), p.at);
+      x = 1;
+    }
   }
   return rgb_color(parameters.space ? parameters.space->name : "srgb", n[0], n[1], n[2]);
 }
@@ -107,6 +128,17 @@ Color named_spectrum(const std::string& name) {
     for (const Glass& g : glasses)
       if (glass == g.name || (glass[0] == 'F' && glass == std::string(g.name).substr(1))) return by_sellmeier(g);
   }
+  // D60 as the ACES state it, of the chromaticity (0.32168, 0.33767): 0.728 of the way from D50 to D65, which comes within
+  // 0.0007.
+  if (name == "illum-acesD60") {
+    const Color d50 = illuminant_spectrum("D50"), d65 = illuminant_spectrum("D65");
+    std::vector<float> wavelengths, power;
+    for (int nm = 360; nm <= 830; nm += 5) {
+      wavelengths.push_back(float(nm));
+      power.push_back(std::lerp(d50->at(float(nm), ColorUse::radiance), d65->at(float(nm), ColorUse::radiance), 0.728f));
+    }
+    return table_spectrum(wavelengths, power);
+  }
   if (name.starts_with("stdillum-"))
     for (const std::string& known : illuminant_names())
       if (name.substr(9) == known) return illuminant_spectrum(known);
@@ -115,6 +147,10 @@ Color named_spectrum(const std::string& name) {
       if (name == "metal-" + metal + "-eta") return metal_index(metal);
       if (name == "metal-" + metal + "-k") return metal_index(metal)->imaginary();
     }
+  for (const Optical& o : opticals) {
+    if (name == fmt::format("metal-{}-eta", o.name)) return table_spectrum(o.wavelengths, o.n);
+    if (name == fmt::format("metal-{}-k", o.name)) return table_spectrum(o.wavelengths, o.k);
+  }
   for (const char* kind : {"glass-", "stdillum-", "metal-"})
     if (name.starts_with(kind)) throw Error(fmt::format("the spectrum '{}' is not known here", name));
   return nullptr;
@@ -124,7 +160,7 @@ Color spectrum_of(Reader& reader, const Parameters& parameters, const Parameter&
   return located(p, [&]() -> Color {
     const bool normalize = use == Use::light && reader.version == 4;
     Color color;
-    if (p.is("rgb") || p.is("color") || p.is("xyz")) return components(parameters, p, use);
+    if (p.is("rgb") || p.is("color") || p.is("xyz")) return components(reader, parameters, p, use);
     if (p.is("blackbody")) {
       if (p.numbers.empty() || !p.strings.empty() || p.numbers.size() > 2)
         throw Error(fmt::format("'{}' must be a temperature in kelvins", p.name), p.at);

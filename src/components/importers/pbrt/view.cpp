@@ -30,7 +30,9 @@ void set_filter(Reader& reader, Component& image) {
     const char* y = p.has("ywidth") ? "ywidth" : "yradius";
     const double across = p.number(x, otherwise), down = p.number(y, otherwise);
     if (across != down) reader.importing.inexact("a filter as wide as it is high is taken, of the mean radius", p.place(y));
-    return std::clamp((across + down) / 2, 0.5, 16.0);
+    const double mean = (across + down) / 2, kept = std::clamp(mean, 0.5, 16.0);
+    if (kept != mean) reader.importing.inexact("a filter's radius is kept within 0.5 and 16 pixels", p.place(x));
+    return kept;
   };
   Ref<Component> filter;
   const auto make = [&](const char* name, double otherwise) {
@@ -96,6 +98,13 @@ void set_output(Reader& reader, Component& job) {
   }
   const Ref<Component> written = reader.make(output, at);
   set_member(*written, "file", FilePath{path.string(), {}}, at);
+  // Its RGB are those of the colour space that was stated before the film.
+  if (p.space && p.space->name != "srgb") {
+    if (written->class_info().find("color_space"))
+      set_member(*written, "color_space", p.space->name, at);
+    else
+      reader.importing.inexact("the picture has sRGB's colours, not those of the colour space that was stated", at);
+  }
   set_member(job, "outputs", Value::List{Value(written, at)}, at);
 }
 

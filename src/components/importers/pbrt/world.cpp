@@ -55,6 +55,22 @@ Ref<Component> with_holes(Reader& reader, const Ref<Component>& emission, const 
   return own;
 }
 
+/// Whether pbrt makes no light of a shape that should emit.
+bool leaves_light_out(Reader& reader, Location at) {
+  const State& state = reader.state;
+  if (reader.version == 3) {
+    if (!reader.to_world().animated()) return false;
+    reader.importing.inexact("the light of a shape that moves is left out, as in pbrt", at);
+    return true;
+  }
+  const auto named = reader.named_materials.find(state.named_material);
+  const std::string& type = reader.materials[named == reader.named_materials.end() ? state.material : named->second].type;
+  if (!type.empty() && type != "interface" && type != "none") return false;
+  reader.importing.inexact("the light of a shape without a surface, whose material is an interface, is left out, as in pbrt",
+                           at);
+  return true;
+}
+
 /// A light whose alpha is the number 0 is in the way of none of pbrt's rays, and lights what surfaces choose it for: the lamp
 /// that is not in the picture.
 void light_unseen(Reader& reader, Component& object, const Ref<Component>& emission, Location at) {
@@ -73,7 +89,7 @@ void Reader::shape(const std::string& type, Parameters&& p) {
   const Location at = p.at;
   const Value alpha = opacity_of(*this, p);
   const Number* whole = alpha.as<Number>();
-  const bool unseen = whole && whole->value == 0 && state.light && !in_object();
+  const bool emits = state.light && !leaves_light_out(*this, at), unseen = emits && whole && whole->value == 0 && !in_object();
   const Shape made = make_shape(*this, type, p);
   if (p.has("shadowalpha"))
     importing.inexact("'shadowalpha' is left out: shadows are those of 'alpha'", p.place("shadowalpha"));
@@ -84,11 +100,14 @@ void Reader::shape(const std::string& type, Parameters&& p) {
   tell_mirrored(*this, type, at);
   Component& object = *made.object;
   const AnimatedTransform transform = to_world(made.inner);
-  if (!transform.valid()) throw Error(fmt::format("{} cannot be placed: its transform cannot be inverted", p.of), at);
+  if (!transform.valid()) {
+    importing.inexact(fmt::format("{} is left out: its transform, which cannot be inverted, leaves no body of it", p.of), at);
+    return;
+  }
   set_member(object, "transform", transform, at);
-  if (state.light && in_object())
+  if (emits && in_object())
     importing.inexact("objects that are instanced do not emit in pbrt, nor here", at);
-  else if (state.light) {
+  else if (emits) {
     const Ref<Component> emission = area_emission(*this, *state.light, made.turned, made.pieces);
     unseen ? light_unseen(*this, object, emission, at) : set_emission(object, with_holes(*this, emission, alpha, at), at);
   }

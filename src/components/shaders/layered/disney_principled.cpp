@@ -102,7 +102,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    const Shares a = shares(out);
+    const Shares a = shares(out, Near::middle);
     Spectrum sum;
     if (which & diffuse_reflection) sum += a.diffuse;
     if (which & glossy_reflection) sum += a.facets + Spectrum(a.coat);
@@ -114,7 +114,8 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
   }
 
  private:
-  /// Albedos, or bounds that are near them.
+  /// What shares are: bounds, which no albedo exceeds, or the middle between the greatest and the least.
+  enum class Near : std::uint8_t { bound, middle };
   struct Shares {
     Spectrum diffuse, facets, refracted;
     float coat = 0;
@@ -139,20 +140,25 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     return (a2 - 1) * inverse_pi / (std::log(a2) * (1 + (a2 - 1) * h.z * h.z));
   }
 
-  Shares shares(const Vector3& out) const {
+  Shares shares(const Vector3& out, Near near = Near::bound) const {
     Shares a;
-    const auto [least, dielectric] = disney::dielectric_albedo(d_.facets, out, towards(out));
-    a.refracted = root_ * (d_.glass * (1 - least));
+    const bool bound = near == Near::bound;
+    const auto of = [bound](const disney::Bounds& b) { return bound ? b.greatest : 0.5f * (b.least + b.greatest); };
+    // What is not lost to facets that are in each other's way.
+    const float kept = bound ? 1 : 1 - MultipleReflection(d_.facets).missing(out);
+    const disney::Bounds reflected = disney::dielectric_albedo(d_.facets, out, towards(out));
+    const float dielectric = of(reflected) * kept;
+    a.refracted = root_ * (d_.glass * (1 - (bound ? reflected.least : of(reflected))) * kept);
     if (out.z < 0) {
       a.facets = Spectrum(d_.glass * dielectric);
       return a;
     }
     a.facets = Spectrum((1 - d_.metallic) * (1 - d_.spec_tint) * dielectric);
     if (d_.metallic > 0 || d_.spec_tint > 0) {
-      const float whole = disney::whole_albedo(d_.facets, out).greatest,
-                  grazing = disney::grazing_albedo(d_.facets, out, d_.eta).greatest;
-      const auto of = [&](Spectrum f0) { return f0 * std::max(whole - grazing, 0.0f) + Spectrum(grazing); };
-      a.facets += of(d_.color) * d_.metallic + of(tinted_f0()) * ((1 - d_.metallic) * d_.spec_tint);
+      const float whole = of(disney::whole_albedo(d_.facets, out)),
+                  grazing = of(disney::grazing_albedo(d_.facets, out, d_.eta));
+      const auto shared = [&](Spectrum f0) { return f0 * std::max(whole - grazing, 0.0f) + Spectrum(grazing); };
+      a.facets += shared(d_.color) * d_.metallic + shared(tinted_f0()) * ((1 - d_.metallic) * d_.spec_tint);
     }
     if (d_.body > 0)
       a.diffuse = d_.color * (d_.body * disney::diffuse_albedo(out.z, d_.roughness, d_.flatness)) +
