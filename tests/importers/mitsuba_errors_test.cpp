@@ -94,7 +94,7 @@ TEST(MitsubaParameters, NamesOfOlderVersions) {
                                        "0.5.0"));
   EXPECT_EQ(i.told(), "");
   EXPECT_EQ(number(*i.job->renderer, "max_depth"), 7);
-  const Component& metal = part(i.object(0), "shader");
+  const Component& metal = part(i.object(1), "shader");
   EXPECT_EQ(*get(metal, "index").as<std::string>(), "rgb");
   EXPECT_NE(write_description(metal).find("roughness: 0.3"), std::string::npos);
 }

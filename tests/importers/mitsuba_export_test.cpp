@@ -62,6 +62,18 @@ TEST(MitsubaExport, MakesTheSamePictureWhenReadBack) {
       "0.25 } },"
       "TriangleMesh { positions: [[-3, -1, -2], [3, -1, -2], [0, 3, -2]], triangles: [0, 1, 2], shader: Lambertian { color: "
       "0.7 } }",
+      // Slides before lamps.
+      "Rectangle { corner: [-2, -2, 0] m, edge_u: [4, 0, 0] m, edge_v: [0, 4, 0] m, shader: Lambertian { color: 0.8 } },"
+      "Point { transform: translate(0.5, 0, 4) * rotate(180 deg, \"y\"), emission: SpotEmission { radiance: "
+      "illuminant(\"D65\"), edge: linear, picture: CheckerMap { first: rgb(0.9, 0.2, 0.1), second: 0.1 } } },"
+      "Point { position: [0, 0, 4] m, transform: translate(-0.5, 0, 8) * rotate(180 deg, \"y\"), emission: ProjectorEmission { "
+      "fov: 50, scale: 12, picture: CheckerMap { first: 0.1, second: 0.9 } } }",
+      // Densities on a grid.
+      "Environment { emission: DiffuseEmission {} },"
+      "Box { transform: rotate(90 deg, \"x\") * scale(2, 1, 1), shader: PassThrough {}, interior: GridVolume { resolution: [2, "
+      "1, 1], density: [1, 3], outside: cut, extinction: 2, albedo: rgb(0.9, 0.5, 0.2), placement: translate(-0.5, -0.5, "
+      "-0.5), "
+      "anisotropy: 0.3 } }",
   };
   for (const char* objects : scenes) {
     const TemporaryFolder folder;
@@ -89,6 +101,42 @@ TEST(MitsubaExport, ComponentsOfMoreThanOneAreWrittenAsMitsubaTakesThem) {
     EXPECT_NE(e.text.find(R"(<rgb name="sigma_t" value="1 0.5 0.25" />)"), std::string::npos) << e.text;
     EXPECT_NE(e.text.find(R"(value="1 0.5 0.2" />)"), std::string::npos) << e.text;
   }
+}
+
+// What is read as a MapVolume is written as the medium that it was; what Mitsuba has no words for is told.
+TEST(MitsubaExport, GridsThatAreTurned) {
+  const TemporaryFolder folder;
+  const auto exported = [&](const std::string& interior) {
+    return export_job(folder, job("Box { shader: PassThrough {}, interior: " + interior + " }"));
+  };
+  const std::string cut = "density: GridMap { outside: cut, placement: scale(2, 2, 2) }, ",
+                    grid = "first: GridMap { resolution: [2, 1, 1], values: [1, 3], placement: scale(2, 2, 2) }";
+  const Exported e = exported("MapVolume { " + cut + "extinction: MultiplyMap { " + grid + ", second: 4 }, albedo: 0.25 }");
+  EXPECT_TRUE(e.notes.empty()) << e.notes[0].what();
+  EXPECT_NE(e.text.find(R"(<float name="scale" value="4" />)"), std::string::npos) << e.text;
+  EXPECT_EQ(e.back.told(), "");
+  EXPECT_EQ(part(e.back.object(0), "interior").class_info().name, "GridVolume");
+  const Exported smaller = exported("MapVolume { density: GridMap { outside: cut }, extinction: MultiplyMap { " + grid +
+                                    ", second: 4 }, albedo: 0.25 }");
+  ASSERT_EQ(smaller.notes.size(), 1u);
+  EXPECT_STREQ(smaller.notes[0].what(), "a medium on a grid ends with the box around its densities in Mitsuba");
+  const Exported colored = exported("GridVolume { extinction: rgb(1, 2, 3), outside: cut }");
+  ASSERT_EQ(colored.notes.size(), 1u);
+  EXPECT_STREQ(colored.notes[0].what(),
+               "a medium on a grid is left out whose extinction differs from wavelength to wavelength");
+}
+
+TEST(MitsubaExport, AShiftedLensIsNot) {
+  const TemporaryFolder folder;
+  const auto notes = [&](const char* lens) {
+    std::string text = job("Sphere {}");
+    text.insert(text.find("fov: 35"), std::string("principal_point: [0.1, 0], ") + lens);
+    const Exported e = export_job(folder, text);
+    EXPECT_EQ(e.text.find("principal_point_offset") == std::string::npos, *lens != 0) << e.text;
+    return e.notes.size();
+  };
+  EXPECT_EQ(notes(""), 0u);
+  EXPECT_EQ(notes("lens_radius: 0.1 m, "), 1u);
 }
 
 TEST(MitsubaExport, PhaseFunctions) {

@@ -8,16 +8,6 @@
 
 namespace etendue::mitsuba_export {
 
-namespace {
-
-Node plugin(Node parent, const char* tag, const char* type) {
-  Node n = parent.append_child(tag);
-  n.append_attribute("type") = type;
-  return n;
-}
-
-}  // namespace
-
 void Writer::view() {
   integrator();
   const std::string& type = class_of(*job.camera);
@@ -42,10 +32,14 @@ void Writer::camera(Node n) {
     number(n, "fov", field_of_view(c));
     text(n, "fov_axis", axis == "width" ? "x" : (axis == "height" ? "y" : axis));
     const std::vector<double> middle = numbers_of(c, "principal_point");
-    if (middle[0] != 0) number(n, "principal_point_offset_x", -middle[0]);
-    if (middle[1] != 0) number(n, "principal_point_offset_y", -middle[1]);
-    const double distance = number_of(c, "focus_distance");
-    if (const double radius = number_of(c, "lens_radius"); radius > 0) {
+    const double distance = number_of(c, "focus_distance"), radius = number_of(c, "lens_radius");
+    if (radius > 0 && (middle[0] != 0 || middle[1] != 0)) {  // it refuses to load one
+      exporting.inexact("the middle of a picture through a lens is in its axis in Mitsuba", &c, "principal_point");
+    } else {
+      if (middle[0] != 0) number(n, "principal_point_offset_x", -middle[0]);
+      if (middle[1] != 0) number(n, "principal_point_offset_y", -middle[1]);
+    }
+    if (radius > 0) {
       number(n, "aperture_radius", radius);
       number(n, "focus_distance", distance > 0 ? distance : std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
     }
@@ -61,7 +55,7 @@ void Writer::camera(Node n) {
     if (!object->surrounds()) continue;
     if (part_of(*object, "shader")) exporting.inexact("the index of surroundings is left out", object.get());
     around_ = part_of(*object, "interior");
-    if (around_) medium(n, *around_, "medium");
+    if (around_) medium(n, *around_, "medium", {});
     if (around_ && number_of(*object, "reach") > 0) exporting.inexact("surroundings go on for ever in Mitsuba", object.get());
   }
 }

@@ -13,6 +13,7 @@
 #include "components/exporters/amounts.h"
 #include "components/exporters/members.h"
 #include "components/exporters/triangles/exported_mesh.h"
+#include "components/volumes/volume_grid.h"
 #include "etendue/describe/color.h"
 #include "etendue/exporter.h"
 #include "etendue/render/job.h"
@@ -20,6 +21,12 @@
 namespace etendue::mitsuba_export {
 
 using Node = pugi::xml_node;
+
+inline Node plugin(Node parent, const char* tag, const char* type) {
+  Node n = parent.append_child(tag);
+  n.append_attribute("type") = type;
+  return n;
+}
 
 /// Whether v of an object's surface coordinates is 1 - that of Mitsuba's shape.
 enum class Uv : std::uint8_t { as_is, from_top };
@@ -69,13 +76,25 @@ class Writer {
   /// The shape's node; none: Mitsuba has no such shape.
   Node shape(Node parent, const SceneObject&, const Transform& placed, Uv&);
   Node mesh(Node parent, const SceneObject&, const Transform& placed, const Transform& outer);
+  void instance(Node parent, const Component& instance, const Transform& placed);
   void emission(Node shape, const SceneObject&, const Component& emission, Uv);
   void light(Node, const char* name, const SceneObject&, const Component& emission, Uv);
+  // lamps.cpp
   bool light_source(const SceneObject&, const Transform& placed);
-  void medium(Node of, const Component& volume, const char* name);
+  void point(const SceneObject&, const Component& emission, const Transform& placed);
+  void spot(const SceneObject&, const Component& emission, const Transform& placed);
+  void projector(const SceneObject&, const Component& emission, const Transform& placed);
+
+  // media.cpp
+  /// What fills a shape that stands in the world so.
+  void medium(Node of, const Component& volume, const char* name, const Transform& placed);
+  void grid_medium(Node of, const Component& volume, const char* name, const Transform& placed);
+  /// Whether Mitsuba has such a medium.
+  bool map_medium(Node of, const Component& volume, const char* name, const Transform& placed);
+  void grid(Node medium, const char* name, const VolumeGrid&, bool by_file, const Component& volume, const Transform& placed);
+  void phase_of(Node medium, const Component& volume);
   void henyey_greenstein(Node parent, double g);
   void phase_function(Node parent, const Component&);
-  void instance(Node parent, const Component& instance, const Transform& placed);
 
   // view.cpp
   void view();

@@ -53,7 +53,7 @@ Ref<Component> Converter::default_camera(const Element& scene, const std::vector
   return camera;
 }
 
-// "This is not a particularly realistic sky": a sky twice as bright, with a sun fifteen times as large.
+// A sky twice as bright, with a sun fifteen times as large.
 Ref<SceneObject> Converter::default_sky(const Element& scene) {
   importing_.inexact("the scene has no emitter: sky and sun shine, as in Mitsuba 0.x, but not from below the horizon",
                      scene.at);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <optional>
 
 #include "components/importers/measured_media.h"
@@ -174,9 +175,10 @@ Ref<Component> Converter::homogeneous(const Element& e) {
     }
   }
   std::array<double, 3> absorbed{}, scattered{}, whole{}, albedo{};
+  const auto a_metre = [](double x) { return std::round(x * 1e11) / 1e9; };  // times 100 there, without new digits
   for (size_t i = 0; i < 3; ++i) {
-    absorbed[i] = 100 * known->absorption[i];
-    scattered[i] = 100 * known->scattering[i];
+    absorbed[i] = a_metre(known->absorption[i]);
+    scattered[i] = a_metre(known->scattering[i]);
     whole[i] = absorbed[i] + scattered[i];
     albedo[i] = scattered[i] / whole[i];
   }

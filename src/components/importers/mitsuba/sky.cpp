@@ -144,18 +144,17 @@ Ref<Component> Converter::lone_sun(const Element& e) {
     e.dismiss();
     return nullptr;
   }
-  const double across = diameter.as<Number>()->value;  // [deg]
-  Ref<Component> unscaled = make("SkyEmission", e, "");
-  const double usual = get(*unscaled, "sun_diameter").as<Number>()->value, radian = std::numbers::pi / 180;
-  const double darker = std::pow(std::sin(usual / 2 * radian) / std::sin(across / 2 * radian), 2);
+  const Value usual = get(*make("SkyEmission", e, ""), "sun_diameter");
+  const double across = diameter.as<Number>()->value;  // [rad], as what is read back is
+  const double darker = std::pow(std::sin(usual.as<Number>()->value / 2) / std::sin(across / 2), 2);
   Ref<Component> emission = make("SpotEmission", e, "");
   set_member(*emission, "radiance",
              radiance_of_sun(std::clamp(e.number("turbidity", 3), 1.0, 10.0), spectrum_of(e, "albedo", 0.2),
                              std::asin(std::min(sine, 1.0)), e.number("scale", 1) * darker),
              e.at);
   set_member(*emission, "axis", three({-d[0], -d[1], -d[2]}), e.at);
-  set_member(*emission, "inner_angle", across / 2, e.at);
-  set_member(*emission, "outer_angle", across / 2, e.at);
+  set_member(*emission, "inner_angle", across / 2 * 180 / std::numbers::pi, e.at);
+  set_member(*emission, "outer_angle", across / 2 * 180 / std::numbers::pi, e.at);
   inexact(e, "'sun' is of a model of measured skies whose brightness differs from Mitsuba's");
   e.ignore({"resolution"});
   Ref<Component> object = make("Environment", e);
