@@ -45,28 +45,49 @@ void Writer::note_left_out(const Component& s, std::initializer_list<const char*
   }
 }
 
+// Blue of one texture multiplies what is metal, and green the roughness.
+void Writer::metal_and_roughness(Json& m, const Component& s) {
+  const auto metalness = textured_amount(s, "base_metalness", "B"), roughness = textured_amount(s, "specular_roughness", "G");
+  std::optional<Json> first = metalness ? texture(*metalness->image, false) : std::nullopt,
+                      second = roughness ? texture(*roughness->image, false) : std::nullopt;
+  const auto nothing = [&](const char* member) {
+    const Ref<Component> map = part_of(s, member);
+    const Color c = map ? constant_of(*map) : nullptr;
+    return c && c->at(at_d_line, ColorUse::coefficient) == 0;
+  };
+  // A texture of one of them alone multiplies the other too, unless that is 0; of two textures there can be but one.
+  const bool both = first && second && *first == *second;
+  const bool only_first = first && !second && nothing("specular_roughness");
+  const bool only_second = second && !first && nothing("base_metalness");
+  if (!both && !only_first) first.reset();
+  if (!both && !only_second) second.reset();
+  metal(m)["metallicFactor"] = first ? metalness->factor : scalar(s, "base_metalness", 0);
+  metal(m)["roughnessFactor"] = second ? roughness->factor : scalar(s, "specular_roughness", 0.5);
+  if (first || second) metal(m)["metallicRoughnessTexture"] = first ? *first : *second;
+}
+
 // Light that goes through has the base's colour in glTF; of what is nothing but clear that is transmission_color.
 void Writer::principled_base(Json& m, const Component& s, double clear) {
-  const double metalness = scalar(s, "base_metalness", 0);
-  const bool all_clear = clear >= 1 && metalness <= 0;
-  Look base = look(s, all_clear ? "transmission_color" : "base_color", ColorUse::reflectance);
+  const Ref<Component> metalness = part_of(s, "base_metalness");
+  const Color same = metalness ? constant_of(*metalness) : nullptr;
+  const bool all_clear = clear >= 1 && same && same->at(at_d_line, ColorUse::coefficient) <= 0;
+  Look base = look(s, all_clear ? "transmission_color" : "base_color", ColorUse::reflectance, true);
   const double weight = all_clear ? 1 : scalar(s, "base_weight", 1);
   for (double& x : base.factor) x *= weight;
-  metal(m) = {{"baseColorFactor", with_alpha(clamped(base.factor))},
-              {"metallicFactor", metalness},
-              {"roughnessFactor", scalar(s, "specular_roughness", 0.5)}};
-  if (base.texture) metal(m)["baseColorTexture"] = *base.texture;
+  metal_and_roughness(m, s);
+  base_color(m, base);
   if (clear > 0 && !all_clear) {
-    const Look through = look(s, "transmission_color", ColorUse::reflectance);
+    const Look through = look(s, "transmission_color", ColorUse::reflectance, true);
     if (through.factor != base.factor || through.texture != base.texture)
       exporting.inexact("'transmission_color' of Principled is left out: light has its base's colour", &s);
   }
 }
 
 void Writer::principled(Json& m, const Component& s) {
-  const double clear = scalar(s, "transmission_weight", 0);
+  Json transmission = Json::object(), clearcoat = Json::object();
+  const double clear = number(s, "transmission_weight", 0, "R", transmission, "transmissionTexture");
   principled_base(m, s, clear);
-  const double coat = scalar(s, "coat_weight", 0);
+  const double coat = number(s, "coat_weight", 0, "R", clearcoat, "clearcoatTexture");
   double ior = number_of(s, "specular_ior");
   if (coat > 0 && !(clear > 0)) {  // in glTF coats leave the index of what they cover alone
     ior *= 1 - coat + coat / number_of(s, "coat_ior");
@@ -74,14 +95,16 @@ void Writer::principled(Json& m, const Component& s) {
   }
   if (std::abs(ior - 1.5) > 1e-6) extend(m, "KHR_materials_ior", {{"ior", ior}});
   const Look tint = look(s, "specular_color", ColorUse::reflectance);
-  const double specular = scalar(s, "specular_weight", 1);
+  Json shine{{"specularColorFactor", clamped(tint.factor)}};
+  const double specular = number(s, "specular_weight", 1, "A", shine, "specularTexture");
   if (specular > 1) exporting.inexact("a 'specular_weight' above 1 is 1 in glTF", &s);
-  Json shine{{"specularFactor", std::clamp(specular, 0.0, 1.0)}, {"specularColorFactor", clamped(tint.factor)}};
+  shine["specularFactor"] = std::clamp(specular, 0.0, 1.0);
   if (tint.texture) shine["specularColorTexture"] = *tint.texture;
   extend(m, "KHR_materials_specular", std::move(shine));
   if (clear > 0) {
     const bool thin = truth_of(s, "thin_walled");
-    extend(m, "KHR_materials_transmission", {{"transmissionFactor", clear}});
+    transmission["transmissionFactor"] = clear;
+    extend(m, "KHR_materials_transmission", std::move(transmission));
     if (!thin) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
     // KHR_materials_dispersion: 20 over the Abbe number.
     if (const double amount = number_of(s, "transmission_dispersion_scale"); amount > 0 && !thin)
@@ -89,8 +112,9 @@ void Writer::principled(Json& m, const Component& s) {
              {{"dispersion", 20 * amount / number_of(s, "transmission_dispersion_abbe_number")}});
   }
   if (coat > 0) {
-    extend(m, "KHR_materials_clearcoat",
-           {{"clearcoatFactor", coat}, {"clearcoatRoughnessFactor", scalar(s, "coat_roughness", 0)}});
+    clearcoat["clearcoatFactor"] = coat;
+    clearcoat["clearcoatRoughnessFactor"] = number(s, "coat_roughness", 0, "G", clearcoat, "clearcoatRoughnessTexture");
+    extend(m, "KHR_materials_clearcoat", std::move(clearcoat));
     if (number_of(s, "coat_ior") != 1.5) exporting.inexact("the index of a clear coat is 1.5 in glTF", &s);
     note_left_out(s, {"coat_color", "coat_roughness_anisotropy"});
     if (number_of(s, "coat_darkening") > 0) exporting.inexact("a clear coat darkens nothing in glTF", &s);

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <numbers>
 
-#include "files/regular_file.h"
 #include "writer.h"
 
 namespace etendue::gltf_export {
@@ -55,128 +52,6 @@ void Writer::extend(Json& m, const char* extension, Json content) {
   document_["extensionsUsed"][extension] = true;
 }
 
-double Writer::scalar(const Component& of, const char* member, double otherwise) {
-  const Value value = value_of(of, member);
-  if (const Number* n = value.as<Number>()) return n->value;
-  const Ref<Component> map = part_of(of, member);
-  const Color c = map ? constant_of(*map) : color_of(of, member);
-  if (c) return double(c->at(at_d_line, ColorUse::coefficient));
-  if (map) exporting.inexact(fmt::format("'{}' differs from place to place: it is {}", member, otherwise), &of);
-  return otherwise;
-}
-
-Writer::Look Writer::look(const Component& of, const char* member, ColorUse use) {
-  const Ref<Component> map = part_of(of, member);
-  if (map) return look_of(*map, use);
-  const Color c = color_of(of, member);
-  return {c ? rgb_of(c, use) : std::array<double, 3>{1, 1, 1}, std::nullopt};
-}
-
-Writer::Look Writer::look_of(const Component& map, ColorUse use) {
-  const std::string& type = class_of(map);
-  if (const Color c = constant_of(map)) return {rgb_of(c, use), std::nullopt};
-  if (type == "ImageMap") {
-    Look made{{1, 1, 1}, texture(map, 1, 1, 0, 0, 0)};
-    if (!made.texture) made.factor = {0.5, 0.5, 0.5};
-    return made;
-  }
-  if (type == "UvTransformMap") {
-    const Ref<Component> inner = part_of(map, "map");
-    const std::vector<double> scale = numbers_of(map, "scale"), shift = numbers_of(map, "shift");
-    if (inner && constant_of(*inner)) return look_of(*inner, use);
-    if (inner && class_of(*inner) == "ImageMap")
-      if (auto t = texture(*inner, scale[0], scale[1], number_of(map, "angle") * std::numbers::pi / 180, shift[0], shift[1]))
-        return {{1, 1, 1}, std::move(t)};
-  }
-  if (type == "RgbProductMap" && numbers_of(map, "offset") == std::vector<double>{0, 0, 0}) {
-    const Ref<Component> first = part_of(map, "first"), second = part_of(map, "second");
-    const Color other = second ? constant_of(*second) : nullptr;
-    if (first && other) {
-      Look made = look_of(*first, use);
-      const std::array<double, 3> more = rgb_of(other, use);
-      const std::vector<double> factor = numbers_of(map, "factor");
-      for (size_t i = 0; i < 3; ++i) made.factor[i] *= factor[i] * more[i];
-      return made;
-    }
-  }
-  if (type == "MultiplyMap" && !part_of(map, "third")) {
-    const Ref<Component> first = part_of(map, "first"), second = part_of(map, "second");
-    if (first && second) {
-      Look a = look_of(*first, use);
-      const Look b = look_of(*second, use);
-      if (!a.texture || !b.texture) {
-        for (size_t i = 0; i < 3; ++i) a.factor[i] *= b.factor[i];
-        if (b.texture) a.texture = b.texture;
-        return a;
-      }
-    }
-  }
-  exporting.inexact(fmt::format("a map like {} is a grey of 0.5", type), &map);
-  return {{0.5, 0.5, 0.5}, std::nullopt};
-}
-
-Json Writer::image_entry(const std::string& file, const std::string& ending) {
-  if (!binary_) return {{"uri", as_uri(exporting.copy_beside(file))}};
-  std::string bytes;
-  try {
-    bytes = read_regular_file(file);
-  } catch (const Error& reason) {
-    throw Error(fmt::format("cannot read '{}': {}", file, reason.what()));
-  }
-  document_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes.size()}});
-  buffer_ += bytes;
-  buffer_.resize((buffer_.size() + 3) / 4 * 4);  // the numbers that follow stay aligned
-  return {{"bufferView", document_["bufferViews"].size() - 1}, {"mimeType", ending == ".png" ? "image/png" : "image/jpeg"}};
-}
-
-// Our coordinates of a texel are shift + R(angle) (scale * uv), glTF's the same of coordinates that count v downwards, where a
-// turn has the other sense; what the two shifts differ by follows.
-std::optional<Json> Writer::texture(const Component& image, double scale_u, double scale_v, double angle, double shift_u,
-                                    double shift_v) {
-  const std::string file = word_of(image, "file");
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  if (ending != ".png" && ending != ".jpg" && ending != ".jpeg") {
-    exporting.inexact("images are PNG or JPEG files in glTF: another becomes a grey of 0.5", &image);
-    return std::nullopt;
-  }
-  if (!word_of(image, "channel").empty()) exporting.inexact("the choice of an image's channels is left out", &image);
-  if (class_of(image) == "ImageMap" && word_of(image, "transfer") == "linear")
-    exporting.inexact("the colours of an image are encoded as sRGB in glTF", &image);
-  const std::string wrap = word_of(image, "wrap"), above = word_of(image, "wrap_v");
-  const std::string wrap_v = above.empty() || above == "same" ? wrap : above;
-  if (wrap == "black" || wrap_v == "black") exporting.inexact("an image that is black outside is clamped in glTF", &image);
-  const bool nearest = word_of(image, "interpolation") == "nearest";
-  size_t& known = textures_[{file, wrap + " " + wrap_v + (nearest ? " nearest" : "")}];
-  if (known == 0) {
-    constexpr int clamp = 33071, mirror = 33648, repeated = 10497, filter_nearest = 9728, filter_linear = 9729;
-    const auto code = [](const std::string& w) {
-      return w == "mirror" ? mirror : (w == "clamp" || w == "black" ? clamp : repeated);
-    };
-    document_["images"].push_back(image_entry(file, ending));
-    document_["samplers"].push_back(
-        {{"wrapS", code(wrap)}, {"wrapT", code(wrap_v)}, {"magFilter", nearest ? filter_nearest : filter_linear}});
-    document_["textures"].push_back(
-        {{"source", document_["images"].size() - 1}, {"sampler", document_["samplers"].size() - 1}});
-    known = document_["textures"].size();
-  }
-  Json used{{"index", known - 1}};
-  const std::vector<double> repeat = numbers_of(image, "repeat");
-  // The image's own repetition comes behind the turn: an even one, or none, is the same before it.
-  if (angle != 0 && repeat[0] != repeat[1])
-    exporting.inexact("an image that is turned is laid along u and v equally often", &image);
-  const double c = std::cos(angle), s = std::sin(angle);
-  const double u = scale_u * repeat[0], v = scale_v * repeat[1];
-  shift_u *= repeat[0];
-  shift_v *= repeat[1];
-  if (u != 1 || v != 1 || angle != 0 || shift_u != 0 || shift_v != 0) {
-    Json t{{"scale", {u, v}}, {"offset", {shift_u - s * v, 1 - c * v - shift_v}}};
-    if (angle != 0) t["rotation"] = angle;
-    extend(used, "KHR_texture_transform", std::move(t));
-  }
-  return used;
-}
-
 std::optional<size_t> Writer::material(const SceneObject& o) {
   const Ref<Component> shader = part_of(o, "shader"), light = part_of(o, "emission"), inside = part_of(o, "interior");
   const std::string sides = word_of(o, "sides"), light_sides = light ? word_of(*light, "sides") : "";
@@ -185,6 +60,7 @@ std::optional<size_t> Writer::material(const SceneObject& o) {
   size_t& known =
       materials_[{shader.get(), light.get(), inside.get(), sides + (amount ? fmt::format("{}", fmt::ptr(amount)) : "")}];
   if (known > 0) return known - 1;
+  of_this_ = {};
   Json m{{"name", exporting.name_for(shader ? *shader : static_cast<const Component&>(o))}};
   if (shader) {
     surface(m, *shader);
@@ -200,22 +76,8 @@ std::optional<size_t> Writer::material(const SceneObject& o) {
     exporting.inexact("a luminaire has a surface on the sides that it shines from", &o);
   document_["materials"].push_back(std::move(m));
   known = document_["materials"].size();
+  if (of_this_.color || of_this_.alpha) from_vertices_[known - 1] = of_this_;
   return known - 1;
-}
-
-void Writer::emission(Json& m, const SceneObject& o, const Component& e) {
-  if (class_of(e) != "DiffuseEmission")
-    exporting.inexact(fmt::format("{} shines alike in all directions in glTF", class_of(e)), &e);
-  Look light = look(e, "radiance", ColorUse::radiance);
-  double most = 0;
-  for (double& x : light.factor) most = std::max(most, x = std::max(0.0, x * strength_of(o, e)));
-  // The importer takes it for a lamp, not for a bright screen, by the extension, however weak it is.
-  if (most > 0) {
-    for (double& x : light.factor) x /= most;
-    extend(m, "KHR_materials_emissive_strength", {{"emissiveStrength", most}});
-  }
-  m["emissiveFactor"] = light.factor;
-  if (light.texture) m["emissiveTexture"] = *light.texture;
 }
 
 // After the distance d so much of light is left: exp(-d absorption). The distance is where the strongest leaves 1 / e.
@@ -236,36 +98,32 @@ void Writer::absorption(Json& m, const Component& v) {
           {"attenuationColor", {std::exp(-a[0] / most), std::exp(-a[1] / most), std::exp(-a[2] / most)}}});
 }
 
-void Writer::holes(Json& m, const Component& of, const char* member) {
-  const double left = scalar(of, member, 1);
-  Json& factor = metal(m)["baseColorFactor"];
-  if (factor.is_null()) factor = with_alpha({1, 1, 1});
-  factor[3] = factor[3].get<double>() * std::clamp(left, 0.0, 1.0);
-  m["alphaMode"] = "BLEND";
+void Writer::base_color(Json& m, const Look& l) {
+  metal(m)["baseColorFactor"] = with_alpha(clamped(l.factor));
+  if (l.texture) metal(m)["baseColorTexture"] = *l.texture;
+  if (l.by_vertex) of_this_.color = l.by_vertex;
+}
+
+void Writer::normals(Json& m, const Component& s) {
+  const Ref<Component> map = word_of(s, "file").empty() ? part_of(s, "map") : nullptr;
+  const auto placed = map ? placed_of(*map) : Placed{&s};
+  if (!placed) return exporting.inexact("normals by a map, not an image, are left out", &s);
+  std::optional<Json> t = texture(*placed, false);
+  if (!t) return;
+  if (truth_of(s, "flip_y")) exporting.inexact("a map of normals whose green runs downwards is taken as if it ran upwards", &s);
+  (*t)["scale"] = number_of(s, "strength");
+  m["normalTexture"] = std::move(*t);
 }
 
 void Writer::surface(Json& m, const Component& s) {
   const std::string& type = class_of(s);
-  const auto base = [&](const char* member) {
-    const Look l = look(s, member, ColorUse::reflectance);
-    metal(m)["baseColorFactor"] = with_alpha(clamped(l.factor));
-    if (l.texture) metal(m)["baseColorTexture"] = *l.texture;
-  };
+  const auto base = [&](const char* member) { base_color(m, look(s, member, ColorUse::reflectance, true)); };
   const auto root = [&](const char* member) { return std::sqrt(std::max(0.0, scalar(s, member, 0.1))); };
   if (type == "MaskShader" || type == "NormalMapShader" || type == "BumpShader") {
     if (const Ref<Component> inner = part_of(s, "shader")) surface(m, *inner);
     if (type == "MaskShader") holes(m, s, "opacity");
     if (type == "BumpShader") exporting.inexact("bumps by heights are left out: glTF has maps of normals", &s);
-    if (type == "NormalMapShader") {
-      Json t;
-      if (part_of(s, "map")) exporting.inexact("normals by a map, not an image, are left out", &s);
-      if (const auto map = part_of(s, "map") ? std::nullopt : texture(s, 1, 1, 0, 0, 0)) t = *map;
-      if (t.is_null()) return;
-      if (truth_of(s, "flip_y"))
-        exporting.inexact("a map of normals whose green runs downwards is taken as if it ran upwards", &s);
-      t["scale"] = number_of(s, "strength");
-      m["normalTexture"] = std::move(t);
-    }
+    if (type == "NormalMapShader") normals(m, s);
     return;
   }
   if (s.class_info().find("roughness_v") && part_of(s, "roughness_v"))

@@ -61,11 +61,14 @@ std::optional<size_t> Writer::mesh(const SceneObject& o, bool& placed) {
     for (size_t i = 1; i < downwards.size(); i += 2) downwards[i] = 1 - downwards[i];
     attributes["TEXCOORD_0"] = numbers(downwards, "VEC2");
   }
+  const std::optional<size_t> surface = material(o);
+  if (const auto colors = surface ? vertex_colors(o, vertices, *surface) : std::nullopt)
+    attributes["COLOR_0"] = numbers(*colors, colors->size() == 4 * vertices ? "VEC4" : "VEC3");
   Json primitive{{"attributes", std::move(attributes)}};
   const auto& indices = triangles->indices;
   primitive["indices"] =
       accessor(indices.data(), indices.size() * sizeof indices[0], indices.size(), unsigned_int_type, "SCALAR", element_buffer);
-  if (const auto m = material(o)) primitive["material"] = *m;
+  if (surface) primitive["material"] = *surface;
   Json& meshes = document_["meshes"];
   meshes.push_back({{"name", exporting.name_for(o)}, {"primitives", Json::array({std::move(primitive)})}});
   entry.first = meshes.size() - 1;

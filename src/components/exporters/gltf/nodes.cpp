@@ -109,12 +109,15 @@ std::optional<size_t> Writer::light_node(const SceneObject& o, bool& is_light) {
   const bool spot = class_of(*e) == "SpotEmission";
   if ((!spot && class_of(*e) != "DiffuseEmission") || (spot && part_of(*e, "picture")))
     exporting.inexact(fmt::format("{} shines alike in all directions that it shines in", class_of(*e)), e.get());
-  const Ref<Component> map = part_of(*e, "radiance");
-  const Color c = map ? constant_of(*map) : nullptr;
-  if (!c) exporting.inexact("light that is no constant is white of 1", e.get());
-  std::array<double, 3> rgb = c ? rgb_of(c, ColorUse::radiance) : std::array<double, 3>{1, 1, 1};
+  const bool named = e->class_info().find("radiance") && !e->class_info().find("file");
+  const Ref<Component> map = named ? part_of(*e, "radiance") : nullptr;
+  Color c = map ? constant_of(*map) : nullptr;
+  const double strength = c ? strength_of(o, *e) : 1;
+  if (!c) c = mean_radiance(o, *e);
+  if (!c) return std::nullopt;
+  std::array<double, 3> rgb = rgb_of(c, ColorUse::radiance);
   double most = 0;
-  for (double& x : rgb) most = std::max(most, x = std::max(0.0, x * strength_of(o, *e)));
+  for (double& x : rgb) most = std::max(most, x = std::max(0.0, x * strength));
   for (double& x : rgb) x = most > 0 ? x / most : 1;
   Json light{{"type", type == "Distant" ? "directional" : (spot ? "spot" : "point")}, {"color", rgb}, {"intensity", most}};
   DoubleVector3 way{0, 0, -1};

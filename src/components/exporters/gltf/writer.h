@@ -55,6 +55,8 @@ class Writer {
   // meshes.cpp
   /// The index of the mesh of an object; `placed`: with the object's transform done. Nothing: it has no triangles.
   std::optional<size_t> mesh(const SceneObject&, bool& placed);
+  /// COLOR_0 of an object's vertices; see vertex_colors.cpp.
+  std::optional<std::vector<float>> vertex_colors(const SceneObject&, size_t vertices, size_t material);
   size_t accessor(const void* data, size_t bytes, size_t count, int component_type, const char* type, int target);
 
   // bodies.cpp
@@ -67,22 +69,53 @@ class Writer {
   /// The index of what an object's shader, emission, sides and interior are in one.
   std::optional<size_t> material(const SceneObject&);
   void surface(Json& m, const Component& shader);
+  void metal_and_roughness(Json& m, const Component& principled);
+  void normals(Json& m, const Component& shader);
+  void absorption(Json& m, const Component& interior);
+
+  // light.cpp
   void holes(Json& m, const Component& of, const char* member);
   void emission(Json& m, const SceneObject&, const Component& emission);
-  void absorption(Json& m, const Component& interior);
+  /// What an emission sends out, as if it did so alike in all directions; nothing and a note: it cannot be told.
+  Color mean_radiance(const SceneObject&, const Component& emission);
+
+  // textures.cpp
+  /// An image as it lies on a surface: coordinates are scaled, turned, shifted.
+  struct Placed {
+    const Component* image = nullptr;
+    std::array<double, 2> scale{1, 1}, shift{0, 0};
+    double angle = 0;  ///< [rad]
+  };
+  static std::optional<Placed> placed_of(const Component& map);
+  /// A number, times a channel of an image, times what vertices have.
+  struct Amount {
+    double factor = 1;
+    std::optional<Placed> image = {};
+    std::string channel = {}, of_vertices = {};
+    bool grey = false;  ///< the image: its red, green and blue are the same
+  };
+  /// Nothing: the map is more than that.
+  static std::optional<Amount> amount_of(const Component& map);
+  /// Of a member, where it is an image of which glTF reads this channel.
+  std::optional<Amount> textured_amount(const Component& of, const char* member, const char* channel);
+  /// A factor, and the texture it multiplies under `key`.
+  double number(const Component& of, const char* member, double otherwise, const char* channel, Json& to, const char* key);
   /// The mean over wavelengths as a number; what is no constant is noted, and `otherwise`.
   double scalar(const Component& of, const char* member, double otherwise);
-  /// A colour as factor and texture.
+  /// A colour as factor, texture, and colours of vertices (which are such where a mesh has none).
   struct Look {
     std::array<double, 3> factor{1, 1, 1};
-    std::optional<Json> texture;
+    std::optional<Json> texture = {};
+    std::optional<std::array<double, 3>> by_vertex = {};
   };
-  Look look(const Component& of, const char* member, ColorUse);
+  /// `base`: vertices may have colours of it.
+  Look look(const Component& of, const char* member, ColorUse, bool base = false);
   Look look_of(const Component& map, ColorUse);
+  void base_color(Json& m, const Look&);
   /// An image's entry: in a .glb its bytes are in the buffer, otherwise its file is named.
   Json image_entry(const std::string& file, const std::string& ending);
-  std::optional<Json> texture(const Component& image, double scale_u, double scale_v, double angle, double shift_u,
-                              double shift_v);
+  /// `colors`: the image is of colours, not of numbers.
+  std::optional<Json> texture(const Placed&, bool colors);
   void extend(Json& m, const char* extension, Json content);
 
   const Job& job;
@@ -94,6 +127,13 @@ class Writer {
   std::map<const SceneObject*, std::pair<std::optional<size_t>, bool>> meshes_;
   std::map<std::tuple<const Component*, const Component*, const Component*, std::string>, size_t> materials_;
   std::map<std::pair<std::string, std::string>, size_t> textures_;
+  /// What a material takes from vertices.
+  struct FromVertices {
+    std::optional<std::array<double, 3>> color;  ///< where there is none
+    bool alpha = false;
+  };
+  std::map<size_t, FromVertices> from_vertices_;  // of materials
+  FromVertices of_this_;                          // of the one that is being written
 };
 
 }  // namespace etendue::gltf_export
