@@ -11,16 +11,17 @@ using Names = std::map<std::string, size_t>;
 
 class SceneWriter {
  public:
-  SceneWriter(const aiScene& scene, Glb& glb) : scene_(scene), glb_(glb) {}
+  SceneWriter(const aiScene& scene, Glb& glb, const std::string& ending) : scene_(scene), glb_(glb), ending_(ending) {}
 
   void write() {
-    convert_materials(scene_, glb_);
+    convert_materials(scene_, glb_, ending_);
     for (unsigned i = 0; i < scene_.mNumMeshes; ++i) mesh(*scene_.mMeshes[i]);
     const size_t root = node(*scene_.mRootNode, 0);
     for (const auto& [at, mesh_index] : skinned_) skin(at, mesh_index);
-    convert_lights(scene_, glb_, find, &names_);
+    convert_lights(scene_, glb_, find, &names_, unit());
     glb_.json["scenes"] = Json::array({{{"nodes", {outer(root)}}}});
     glb_.json["scene"] = 0;
+    if (ending_ == "3mf") glb_.note("lengths of this format are taken for millimetres, whatever unit its file states");
     if (scene_.mNumAnimations > 0) glb_.note("animations of this format are not read: it is as it was saved");
     if (glb_.json.contains("nodes") && glb_.json["extensionsUsed"].empty()) glb_.json.erase("extensionsUsed");
   }
@@ -120,22 +121,31 @@ class SceneWriter {
   /// A node around all that brings what the file says of its units and axes to metres and y upwards.
   size_t outer(size_t root) {
     int up = 1, sign = 1;
-    double unit = 0;
-    float unit_float = 0;
-    if (!scene_.mMetaData) return root;
-    scene_.mMetaData->Get("UpAxis", up);
-    scene_.mMetaData->Get("UpAxisSign", sign);
-    if (!scene_.mMetaData->Get("UnitScaleFactor", unit) && scene_.mMetaData->Get("UnitScaleFactor", unit_float))
-      unit = double(unit_float);
-    const double scale = unit > 0 && std::isfinite(unit) ? unit / 100 : 1;  // it is in centimetres
+    if (ending_ == "3mf") up = 2;  // its core specification, 3.1: the build platform is the xy plane, z points upwards
+    if (scene_.mMetaData) {
+      scene_.mMetaData->Get("UpAxis", up);
+      scene_.mMetaData->Get("UpAxisSign", sign);
+    }
+    const double scale = unit();
     Json made = {{"children", {root}}, {"scale", {scale, scale, scale}}};
     if (up == 2) made["rotation"] = {sign * -std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
     if (scale == 1 && up != 2) return root;
     return glb_.add("nodes", made);
   }
 
+  /// Of lengths in the file [m].
+  double unit() const {
+    double unit = 0;
+    float unit_float = 0;
+    if (scene_.mMetaData && !scene_.mMetaData->Get("UnitScaleFactor", unit) &&
+        scene_.mMetaData->Get("UnitScaleFactor", unit_float))
+      unit = double(unit_float);
+    return unit > 0 && std::isfinite(unit) ? unit / 100 : (ending_ == "3mf" ? 1e-3 : 1);  // FBX has it in centimetres
+  }
+
   const aiScene& scene_;
   Glb& glb_;
+  const std::string& ending_;
   std::vector<size_t> meshes_;  // their places in the .glb
   std::vector<std::pair<size_t, unsigned>> skinned_;
   Names names_;
@@ -150,6 +160,6 @@ Json matrix_json(const aiMatrix4x4& m) {
   return columns;
 }
 
-void convert(const aiScene& scene, Glb& glb) { SceneWriter(scene, glb).write(); }
+void convert(const aiScene& scene, Glb& glb, const std::string& ending) { SceneWriter(scene, glb, ending).write(); }
 
 }  // namespace etendue::assimp_helper

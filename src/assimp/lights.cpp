@@ -50,7 +50,7 @@ void add_below(Glb& glb, size_t parent, Json node) {
 
 // These formats do not say how strong lights are. Their colour is taken for what they give to the middle of the model:
 // so much that a white surface there would be of that colour.
-void add_light(const aiScene& scene, Glb& glb, const aiLight& light, size_t parent, const aiVector3D& middle) {
+void add_light(const aiScene& scene, Glb& glb, const aiLight& light, size_t parent, const aiVector3D& middle, double unit) {
   const std::string name = clean(light.mName.C_Str());
   if (light.mType == aiLightSource_AMBIENT) return glb.note("light that comes from everywhere ('ambient') is left out");
   const bool distant = light.mType == aiLightSource_DIRECTIONAL, spot = light.mType == aiLightSource_SPOT;
@@ -60,7 +60,7 @@ void add_light(const aiScene& scene, Glb& glb, const aiLight& light, size_t pare
   made["color"] = {light.mColorDiffuse.r / most, light.mColorDiffuse.g / most, light.mColorDiffuse.b / most};
   most = std::min(most, 1.0);
   const aiVector3D place = global(scene.mRootNode->FindNode(light.mName)) * light.mPosition;
-  const double distance = std::max(double((place - middle).Length()), 1e-6);
+  const double distance = unit * std::max(double((place - middle).Length()), 1e-6);  // [m]
   made["intensity"] = pi * most * (distant ? 1 : distance * distance);
   if (!distant)
     glb.note("lights fall off with the square of the distance, and are so strong that the middle is lit as the file says");
@@ -112,12 +112,13 @@ void add_camera(Glb& glb, const aiCamera& camera, size_t parent) {
 
 }  // namespace
 
-void convert_lights(const aiScene& scene, Glb& glb, size_t (*node_of)(const void*, const char*), const void* names) {
+void convert_lights(const aiScene& scene, Glb& glb, size_t (*node_of)(const void*, const char*), const void* names,
+                    double unit) {
   aiVector3D low(1e30f, 1e30f, 1e30f), high(-1e30f, -1e30f, -1e30f);
   bounds(scene, *scene.mRootNode, aiMatrix4x4(), low, high);
   const aiVector3D middle = low.x <= high.x ? (low + high) * 0.5f : aiVector3D();
   for (unsigned i = 0; i < scene.mNumLights; ++i)
-    add_light(scene, glb, *scene.mLights[i], node_of(names, scene.mLights[i]->mName.C_Str()), middle);
+    add_light(scene, glb, *scene.mLights[i], node_of(names, scene.mLights[i]->mName.C_Str()), middle, unit);
   for (unsigned i = 0; i < scene.mNumCameras; ++i)
     if (sees_nothing(scene, *scene.mCameras[i], low, high))
       glb.note("a camera that sees nothing of the model is left out");

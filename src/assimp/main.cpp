@@ -48,7 +48,9 @@ int run(const std::string& path, std::vector<std::string> folders) {
     return 1;
   }
   Glb glb;
-  convert(*scene, glb);
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  convert(*scene, glb, ending.empty() ? ending : ending.substr(1));
   const std::uint64_t digest = glb.digest();
   if (second.here()) {
     second.tell(digest);

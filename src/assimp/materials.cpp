@@ -30,9 +30,11 @@ std::string encoded(const std::string& path) {
 
 double clamped(double x, double otherwise = 0) { return std::isfinite(x) ? std::clamp(x, 0.0, 1.0) : otherwise; }
 
+constexpr int repeat_code = 10497, clamp_code = 33071, mirror_code = 33648;  // glTF's ways to lay images beyond their edges
+
 class MaterialWriter {
  public:
-  MaterialWriter(const aiScene& scene, Glb& glb) : scene_(scene), glb_(glb) {}
+  MaterialWriter(const aiScene& scene, Glb& glb, const std::string& ending) : scene_(scene), glb_(glb), ending_(ending) {}
 
   void write(const aiMaterial& m) {
     Json material = {{"name", clean(m.GetName().C_Str())}};
@@ -48,11 +50,15 @@ class MaterialWriter {
       phong(m, base, base_texture, metalness, roughness, extensions);
     } else {
       metalness = metalness < 0 ? (metal_texture.is_null() ? 0 : 1) : metalness;
-      roughness = roughness < 0 ? (rough_texture.is_null() ? 0.5 : 1) : roughness;
-      if (!metal_texture.is_null() && metal_texture == rough_texture)
+      if (roughness < 0) roughness = rough_texture.is_null() ? roughness_of_exponent(m, 0.5) : 1;
+      if (!metal_texture.is_null() && metal_texture == rough_texture) {
         pbr["metallicRoughnessTexture"] = metal_texture;
-      else if (!metal_texture.is_null() || !rough_texture.is_null())
-        glb_.note("textures of metalness and roughness that are not in one image are left out");
+      } else {
+        Json own = Json::object();  // images of one number each, which glTF has no place for (importers/gltf/described.h)
+        if (!metal_texture.is_null()) own["metalness"] = image_of_numbers(metal_texture, metalness, 0);
+        if (!rough_texture.is_null()) own["roughness"] = image_of_numbers(rough_texture, roughness, 0.5);
+        if (!own.empty()) extensions["ETENDUE_surface"] = own;
+      }
     }
     const double opacity = opacity_of(m);
     pbr["baseColorFactor"] = {base[0], base[1], base[2], opacity};
@@ -86,16 +92,46 @@ class MaterialWriter {
     return {usable(c.r), usable(c.g), usable(c.b)};
   }
 
+  /// An image whose numbers are a factor times its grey; where it cannot be read, `without`.
+  Json image_of_numbers(const Json& texture, double factor, double without) const {
+    const Json& t = glb_.json["textures"][texture["index"].get<size_t>()];
+    const Json& sampler = glb_.json["samplers"][t["sampler"].get<size_t>()];
+    const auto wrap = [&](const char* key) {
+      return sampler[key] == clamp_code ? "clamp" : (sampler[key] == mirror_code ? "mirror" : "repeat");
+    };
+    return {{"value", clamped(factor, 1)},
+            {"without", without},
+            {"texture",
+             {{"image", t["source"]},
+              {"uv_set", texture.value("texCoord", 0)},
+              {"transfer", "linear"},
+              {"wrap", {wrap("wrapS"), wrap("wrapT")}}}}};
+  }
+
   // The exponent of a highlight as a roughness: alpha^2 = 2 / (n + 2) (Walter et al. 2007), and alpha is the roughness squared.
+  static double roughness_of_exponent(const aiMaterial& m, double otherwise) {
+    const double exponent = number(m, AI_MATKEY_SHININESS, -1);
+    return exponent > 0 ? std::pow(2 / (exponent + 2), 0.25) : otherwise;
+  }
+
+  /// Whether a file says that a surface has no highlights, whatever colour of them the library makes up.
+  bool is_matt(const aiMaterial& m) const {
+    int model = 0;
+    return (ending_ == "dae" || ending_ == "fbx") && m.Get(AI_MATKEY_SHADING_MODEL, model) == aiReturn_SUCCESS &&
+           model == aiShadingMode_Gouraud;
+  }
+
   // A strength of 0.5 is what programs write for the four percent that most things reflect.
-  static void phong(const aiMaterial& m, std::array<double, 3>& base, const Json& base_texture, double& metalness,
-                    double& roughness, Json& extensions) {
-    const std::array<double, 3> reflected = color(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0});
-    const double exponent = std::max(number(m, AI_MATKEY_SHININESS, 0), 0.0);
+  void phong(const aiMaterial& m, std::array<double, 3>& base, const Json& base_texture, double& metalness, double& roughness,
+             Json& extensions) const {
+    const std::array<double, 3> none{0, 0, 0};
+    const bool matt = is_matt(m);
+    const std::array<double, 3> reflected = matt ? none : color(m, AI_MATKEY_COLOR_SPECULAR, none);
+    const double exponent = matt ? 0 : std::max(number(m, AI_MATKEY_SHININESS, 0), 0.0);
     const double strength = number(m, AI_MATKEY_SHININESS_STRENGTH, 1);
     const double most = *std::ranges::max_element(reflected) * (strength > 0 ? std::min(strength, 1.0) : 1);
     metalness = 0;
-    roughness = std::pow(2 / (exponent + 2), 0.25);
+    roughness = matt ? 1 : roughness_of_exponent(m, 1);
     if (most > 0.3 && base_texture.is_null() && *std::ranges::max_element(base) < 0.05) {
       metalness = 1;
       base = reflected;
@@ -117,7 +153,9 @@ class MaterialWriter {
       material["emissiveTexture"] = map;
       if (*std::ranges::max_element(light) <= 0) light = {1, 1, 1};
     }
-    const double most = std::max(*std::ranges::max_element(light), number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1));
+    const double intensity = std::max(number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1), 0.0);
+    for (double& x : light) x *= intensity;
+    const double most = *std::ranges::max_element(light);
     if (most > 1) {
       for (double& x : light) x /= most;
       extensions["KHR_materials_emissive_strength"] = {{"emissiveStrength", most}};
@@ -133,7 +171,8 @@ class MaterialWriter {
     for (const auto& [type, what] : {std::pair{aiTextureType_HEIGHT, "bumps"},
                                      {aiTextureType_DISPLACEMENT, "displacement"},
                                      {aiTextureType_REFLECTION, "reflections"},
-                                     {aiTextureType_SPECULAR, "the strength of highlights"}})
+                                     {aiTextureType_SPECULAR, "the strength of highlights"},
+                                     {aiTextureType_SHININESS, "the exponent of highlights"}})
       if (m.GetTextureCount(type) > 0) glb_.note(std::string("textures of ") + what + " are left out");
   }
 
@@ -155,9 +194,8 @@ class MaterialWriter {
       unsigned uv = 0;
       if (m.GetTexture(type, 0, &path, nullptr, &uv, nullptr, nullptr, modes) != aiReturn_SUCCESS || path.length == 0) continue;
       m.Get(AI_MATKEY_UVWSRC(type, 0), uv);
-      constexpr int repeat = 10497, clamp = 33071, mirror = 33648;
-      const auto wrap = [&](aiTextureMapMode mode) {
-        return mode == aiTextureMapMode_Mirror ? mirror : (mode == aiTextureMapMode_Wrap ? repeat : clamp);
+      const auto wrap = [](aiTextureMapMode mode) {
+        return mode == aiTextureMapMode_Mirror ? mirror_code : (mode == aiTextureMapMode_Wrap ? repeat_code : clamp_code);
       };
       const Json sampler = {{"wrapS", wrap(modes[0])}, {"wrapT", wrap(modes[1])}};
       const Json made = {{"source", image(path.C_Str())}, {"sampler", same("samplers", sampler)}};
@@ -209,13 +247,14 @@ class MaterialWriter {
 
   const aiScene& scene_;
   Glb& glb_;
+  const std::string& ending_;
   std::map<std::string, size_t> images_;
 };
 
 }  // namespace
 
-void convert_materials(const aiScene& scene, Glb& glb) {
-  MaterialWriter writer(scene, glb);
+void convert_materials(const aiScene& scene, Glb& glb, const std::string& ending) {
+  MaterialWriter writer(scene, glb, ending);
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) writer.write(*scene.mMaterials[i]);
 }
 

@@ -12,9 +12,11 @@
 #include <sstream>
 
 #include "components/objects/meshes/mesh_data.h"
+#include "etendue/describe/color.h"
 #include "etendue/importer.h"
 #include "etendue/render/job.h"
 #include "etendue/scene.h"
+#include "files/regular_file.h"
 #include "support/process.h"
 #include "support/render_support.h"
 
@@ -145,6 +147,8 @@ def Mesh "p" {
 }
 )";
 
+fs::path data() { return fs::path(ETENDUE_SOURCE_DIR) / "../shared/validation/import"; }
+
 void expect_pyramid(const Model& m) {
   ASSERT_EQ(m.error, "");
   EXPECT_EQ(triangles(*m.scene), 4u);
@@ -172,6 +176,59 @@ TEST(ForeignModels, AColourIsTheBaseColour) {
   const std::string written = write_description(*m.scene);
   EXPECT_NE(written.find("base_color: rgb(0.800000011920929, 0.20000000298023224, 0.10000000149011612)"), std::string::npos)
       << written;
+}
+
+// Of a Lambertian surface the library makes up highlights.
+TEST(ForeignModels, LambertianSurfacesDoNotShine) {
+  const TemporaryFolder folder;
+  const Model m = model(folder.write("p.dae", collada));
+  ASSERT_EQ(m.error, "");
+  const std::string written = write_description(*m.scene);
+  EXPECT_NE(written.find("specular_weight: 0"), std::string::npos) << written;
+}
+
+/// A box of FBX, as text, with more in it and another unit.
+std::string box_of_fbx(double unit, const std::string& objects, const std::string& connections) {
+  std::string text = read_regular_file((data() / "fbx/embedded_ascii/box.FBX").string());
+  const std::string stated = "\"UnitScaleFactor\", \"double\", \"Number\", \"\",100";
+  text.replace(text.find(stated) + stated.size() - 3, 3, std::to_string(unit));
+  text.insert(text.find("\tMaterial: 2669981279872"), objects);
+  return text.insert(text.find("Connections:  {") + 15, connections);
+}
+
+// Lights have no unit there: the middle is lit as the colour says, however long a unit is.
+TEST(ForeignModels, LightsOfFbxDoNotDependOnTheUnit) {
+  if (!fs::exists(data() / "fbx/embedded_ascii/box.FBX")) GTEST_SKIP() << "no validation data";
+  const std::string light =
+      "\tNodeAttribute: 111, \"NodeAttribute::Lamp\", \"Light\" {\n\t\tTypeFlags: \"Light\"\n\t\tProperties70:  {\n\t\t\tP: "
+      "\"Color\", \"Color\", \"\", \"A\",1,1,1\n\t\t}\n\t}\n\tModel: 222, \"Model::Lamp\", \"Light\" {\n\t\tVersion: "
+      "232\n\t\tProperties70:  {\n\t\t\tP: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\",0,300,0\n\t\t}\n\t}\n";
+  const auto intensity = [&](double unit) {
+    const TemporaryFolder folder;
+    const Model m = model(folder.write("box.fbx", box_of_fbx(unit, light, "\n\tC: \"OO\",222,0\n\tC: \"OO\",111,222\n")));
+    EXPECT_EQ(m.error, "");
+    for (const Ref<SceneObject>& object : m.scene->objects)
+      if (object->class_info().name == "Point") {
+        const Value emission = get(*object, "emission"), map = get(**emission.as<Ref<Component>>(), "radiance");
+        const Value value = get(**map.as<Ref<Component>>(), "value");
+        if (const Color* c = value.as<Color>()) return double((*c)->at(550, ColorUse::radiance));
+      }
+    return 0.0;
+  };
+  const double metres = intensity(100);
+  EXPECT_GT(metres, 0);
+  EXPECT_NEAR(intensity(1) / metres, 1e-4, 1e-7);
+}
+
+// An image of metal alone, which glTF has no place for, is kept, and makes nothing metal where it cannot be read.
+TEST(ForeignModels, ImagesOfMetalOfFbx) {
+  if (!fs::exists(data() / "fbx/embedded_ascii/box.FBX")) GTEST_SKIP() << "no validation data";
+  const std::string line = "\n\tC: \"OP\",2669981291872,2669981279872, \"ReflectionFactor\"\n";
+  const TemporaryFolder folder;
+  const Model m = model(folder.write("box.fbx", box_of_fbx(100, "", line)));
+  ASSERT_EQ(m.error, "");
+  const std::string written = write_description(*m.scene);
+  EXPECT_EQ(written.find("base_metalness: 1"), std::string::npos) << written;
 }
 
 TEST(ForeignModels, WhatIsDamagedIsRefusedByName) {
@@ -237,8 +294,6 @@ TEST(ForeignModels, ImportedInADescriptionAsOnTheirOwn) {
 }
 
 // ---- the validation data --------------------------------------------------------------------------------------------------
-
-fs::path data() { return fs::path(ETENDUE_SOURCE_DIR) / "../shared/validation/import"; }
 
 TEST(ForeignModels, HaveTheTrianglesThatTheirFilesHold) {
   if (!fs::exists(data() / "expected.csv")) GTEST_SKIP() << "no validation data";
