@@ -84,6 +84,12 @@ class Principled final : public Shader {
   static constexpr float thickest_film = 1e5f, highest_specular_weight = 1000;
 
   static bool always(const Ref<ObjectMap>& map, float value) { return map->constant() && map->scalar(SurfacePoint()) == value; }
+  /// Whether facets of such a roughness, stretched or not, are taken for a smooth surface anywhere.
+  static bool may_be_smooth(const Ref<ObjectMap>& roughness) {
+    if (!roughness->constant()) return true;
+    constexpr float rounding = 1.001f;
+    return square(roughness->scalar(SurfacePoint())) <= rounding * MicrofacetDistribution::smooth_below;
+  }
   /// Cauchy's formula for the index at 587.6 nm and Abbe's number, (n - 1) / (n(486.1 nm) - n(656.3 nm)).
   Spectrum index_at(float index, const Wavelengths& w) const {
     if (!(transmission_dispersion_scale > 0)) return Spectrum(index);
@@ -229,9 +235,13 @@ void Principled::prepare() {
   weight_in_index_ = specular_weight->constant() != nullptr;
   inside_index_ = weight_in_index_ ? with_weight(specular_ior, specular_weight->scalar(SurfacePoint())) : specular_ior;
 
-  possible_lobes_ = Lobes(glossy_reflection | specular_reflection);
+  // What lies on the base, and anisotropy, makes it rougher alone: its own roughness decides.
+  const bool smooth = may_be_smooth(specular_roughness), smooth_coat = !always(coat_weight, 0) && may_be_smooth(coat_roughness);
+  possible_lobes_ = glossy_reflection;
+  if (smooth || smooth_coat) possible_lobes_ |= specular_reflection;
   if (matt) possible_lobes_ |= diffuse_reflection;
-  if (clear) possible_lobes_ |= glossy_transmission | specular_transmission;
+  if (clear) possible_lobes_ |= glossy_transmission;
+  if (clear && smooth) possible_lobes_ |= specular_transmission;
   if (matt && thin_walled && !always(subsurface_weight, 0)) possible_lobes_ |= diffuse_transmission;
   if (!always(geometry_opacity, 1)) possible_lobes_ |= pass_through;
 
