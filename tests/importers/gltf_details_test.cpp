@@ -33,8 +33,8 @@ TEST(GltfDetails, TangentsThatCoordinatesDoNotGiveAreTold) {
     return notes;
   };
   EXPECT_EQ(told(1, 0, 1, true), "");
-  EXPECT_NE(told(1, 0, -1, true).find("100 % of its TANGENT"), std::string::npos);
-  EXPECT_NE(told(0.7071f, 0.7071f, 1, true).find("100 % of its TANGENT"), std::string::npos);
+  EXPECT_NE(told(1, 0, -1, true).find("TANGENT vectors lie otherwise"), std::string::npos);
+  EXPECT_NE(told(0.7071f, 0.7071f, 1, true).find("TANGENT vectors lie otherwise"), std::string::npos);
   EXPECT_EQ(told(0, 1, 1, false), "") << "nothing follows them";
 }
 

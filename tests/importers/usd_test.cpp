@@ -1,5 +1,6 @@
 // Objects and cameras of USD, and files that may not be read.
 
+#include "support/image_file.h"
 #include "usd_support.h"
 
 namespace etendue {
@@ -223,6 +224,63 @@ TEST_F(UsdObjects, WhatIsDamagedIsRefusedByItsPlace) {
   // What is not there is told, and the rest shown.
   EXPECT_TRUE(scene(y_up + "def Sphere \"s\" {}\ndef \"w\" ( prepend references = @gone.usda@ ) {}\n")) << error_;
   EXPECT_TRUE(told("gone.usda"));
+}
+
+// Hydra shows prototypes that are defined below an 'over'.
+TEST_F(UsdObjects, PrototypesMayStandBelowAnOver) {
+  const auto instanced = [&](const std::string& around) {
+    return scene(y_up +
+                 "def PointInstancer \"i\" {\nrel prototypes = [</i/all/p>]\nint[] protoIndices = [0, 0]\npoint3f[] "
+                 "positions = [(0, 0, 0), (3, 0, 0)]\n" +
+                 around +
+                 " \"all\" {\ndef Mesh \"p\" { int[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]\npoint3f[] "
+                 "points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\nuniform token subdivisionScheme = \"none\"\n}\n}\n}\n");
+  };
+  const Ref<Scene> below = instanced("over");
+  ASSERT_TRUE(below) << error_;
+  EXPECT_EQ(below->objects.size(), 2u);
+  const Ref<Scene> in_class = instanced("class");
+  ASSERT_TRUE(in_class) << error_;
+  EXPECT_TRUE(in_class->objects.empty());
+  EXPECT_TRUE(told("are classes"));
+}
+
+TEST_F(UsdObjects, ConcavePolygonsKeepTheirShape) {
+  for (const char* corners : {"0, 1, 2, 3, 4", "3, 4, 0, 1, 2", "1, 2, 3, 4, 0"}) {
+    const Ref<Scene> s = scene(y_up + "def Mesh \"p\" { int[] faceVertexCounts = [5]\nint[] faceVertexIndices = [" + corners +
+                               "]\npoint3f[] points = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (2, 1, 0), (0, 4, 0)]\nuniform token "
+                               "subdivisionScheme = \"none\"\n}\n");
+    ASSERT_TRUE(s) << error_;
+    const MeshData mesh = mesh_of(*s->objects.at(0));
+    ASSERT_EQ(mesh.triangles.size(), 3u);
+    float area = 0;
+    for (const auto& t : mesh.triangles)
+      area += length(cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]])) / 2;
+    EXPECT_NEAR(area, 10, 1e-4) << corners;
+  }
+}
+
+TEST_F(UsdObjects, ImagesInSeveralFiles) {
+  test::write_image(folder_ / "t.1001.png", {1, 1, 3, NumberType::uint8}, {1, 0, 0});
+  test::write_image(folder_ / "t.1002.png", {1, 1, 3, NumberType::uint8}, {0, 1, 0});
+  const Ref<Scene> s = scene(
+      y_up +
+      "def Mesh \"p\" (prepend apiSchemas = [\"MaterialBindingAPI\"]) { int[] faceVertexCounts = [4]\nint[] faceVertexIndices "
+      "= "
+      "[0, 1, 2, 3]\npoint3f[] points = [(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0)]\nuniform token subdivisionScheme = "
+      "\"none\"\ntexCoord2f[] primvars:st = [(0, 0), (2, 0), (2, 1), (0, 1)] (interpolation = \"vertex\")\nrel "
+      "material:binding = </m>\n}\n"
+      "def Material \"m\" {\ntoken outputs:surface.connect = </m/s.outputs:surface>\ndef Shader \"s\" {\nuniform token info:id "
+      "= "
+      "\"UsdPreviewSurface\"\ncolor3f inputs:diffuseColor.connect = </m/t.outputs:rgb>\ntoken outputs:surface\n}\ndef Shader "
+      "\"t\" {\nuniform token info:id = \"UsdUVTexture\"\nasset inputs:file = @t.<UDIM>.png@\ncolor3f outputs:rgb\n}\n}\n");
+  ASSERT_TRUE(s) << error_;
+  EXPECT_TRUE(notes_.empty()) << notes_[0];
+  const Image seen = picture(s, "OrthographicCamera { from: [1, 0.5, 2], to: [1, 0.5, 0], width: 2 }", 8, 16,
+                             "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: rgb(1, 1, 1) } }");
+  const std::array<double, 3> left = rgb(seen, 1, 4), right = rgb(seen, 6, 4);
+  EXPECT_GT(left[0], 5 * left[1]);
+  EXPECT_GT(right[1], 5 * right[0]);
 }
 
 }  // namespace

@@ -43,7 +43,12 @@ const Material& Materials::get(std::optional<size_t> material, bool colored, boo
   made.by_tangents = surface.normals || surface.anisotropy.value > 0;
   // A strength is given to lamps alone; without it what shines no more than white may be a screen.
   const bool strong = material && has_extension(document_.element("materials", *material), "KHR_materials_emissive_strength");
-  made.lamp = !surface.unlit && std::ranges::any_of(surface.emission.value, [&](double x) { return x > (strong ? 0.0 : 1.0); });
+  const std::array<double, 3>& light = surface.emission.value;
+  if (!surface.unlit && std::ranges::any_of(light, [&](double x) { return x > (strong ? 0.0 : 1.0); })) {
+    std::array<double, 3> mean{1, 1, 1};
+    if (surface.emission.texture) mean = mean_of_image(surface.emission.texture->file).value_or(mean);
+    made.glow = 0.2126 * light[0] * mean[0] + 0.7152 * light[1] * mean[1] + 0.0722 * light[2] * mean[2];
+  }
   return made_[key] = std::move(made);
 }
 
@@ -114,9 +119,14 @@ void Materials::read_specular_glossiness(const Json& old, Surface& s) {
   }
 }
 
+/// Whether 'extensionsUsed' has it: what of that is not read is told once.
+bool Materials::is_listed(const std::string& extension) const {
+  return std::ranges::any_of(list_in(document_.json(), "extensionsUsed"), [&](const Json& x) { return x == Json(extension); });
+}
+
 void Materials::note_unknown(const Json& extensions) {
   for (const auto& [name, value] : extensions.items())
-    if (!is_known_material_extension(name) && !(document_.converted() && name == "ETENDUE_surface"))
+    if (!is_known_material_extension(name) && !(document_.converted() && name == "ETENDUE_surface") && !is_listed(name))
       importing_.inexact(fmt::format("the extension {} of materials is not known", name), at());
 }
 
@@ -191,7 +201,7 @@ const Materials::Image& Materials::image(size_t index) {
   const std::string inner = document_.inner_image(index);
   std::optional<std::string> file;
   if (inner.empty())
-    file = importing_.optional_file(decode_percents(text(document_.element("images", index), "uri")), at());
+    file = optional_image(importing_, decode_percents(text(document_.element("images", index), "uri")), at());
   else
     file = importing_.path() + "#" + inner;
   if (file) made.texture = readable_texture(importing_, *file, at(), &made.has_alpha);

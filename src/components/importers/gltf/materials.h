@@ -13,7 +13,7 @@ struct Material {
   MadeSurface made;
   size_t uv_set = 0;
   bool by_tangents = false;  ///< an image of normals or stretched highlights
-  bool lamp = false;         ///< it shines more than a display's white, or has a strength
+  double glow = 0;           ///< mean luminance, when it is more than a display's white or has a strength
 };
 
 /// Whether an extension of materials is read, or changes nothing that a path tracer shows.
@@ -51,6 +51,7 @@ class Materials {
   SurfaceNumber number(const Json& object, const char* factor, double otherwise, const char* texture_key, const char* channel);
   const Image& image(size_t index);
   void note_unknown(const Json& extensions);
+  bool is_listed(const std::string& extension) const;
   std::optional<SurfaceTexture> described_texture(const Json&, bool* has_alpha);
   SurfaceNumber described_number(const Json&);
   void read_described(const Json&, Surface&);

@@ -97,9 +97,10 @@ bool has_animation(const Document& document) { return document.count("animations
 Pose::Pose(const Document& document, const Moment& moment) : document_(document) {
   const size_t n = document.count("nodes");
   animated_.resize(n);
-  if (moment.animation)
-    within(fmt::format("animations[{}]", *moment.animation),
-           [&] { animate(document.element("animations", *moment.animation), moment.time); });
+  for (size_t i = 0; moment.animation && i < document.count("animations"); ++i)
+    if (*moment.animation == i || *moment.animation == every_animation)
+      within(fmt::format("animations[{}]", i), [&] { animate(document.element("animations", i), moment.time); });
+  if (moment.animation && *moment.animation != every_animation) document.element("animations", *moment.animation);
   constexpr size_t nobody = SIZE_MAX;
   std::vector<size_t> parents(n, nobody), order;
   std::vector<std::vector<size_t>> children(n);

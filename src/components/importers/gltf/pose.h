@@ -6,6 +6,8 @@
 
 namespace etendue::gltf {
 
+/// All animations at once.
+constexpr size_t every_animation = SIZE_MAX;
 /// What of a file is shown: the time and the animation.
 struct Moment {
   double time = 0;                  ///< [s]

@@ -157,7 +157,10 @@ double differing_tangents(const Document& document, const Json& primitive, size_
 
 std::string PartName::text() const {
   std::string all = fmt::format("{}[{}].primitives[{}]", of_node ? "nodes" : "meshes", owner, primitive);
-  if (of_node && moment.animation) all += fmt::format(" at {} of animation {}", moment.time, *moment.animation);
+  if (of_node && moment.animation == every_animation)
+    all += fmt::format(" at {} of all animations", moment.time);
+  else if (of_node && moment.animation)
+    all += fmt::format(" at {} of animation {}", moment.time, *moment.animation);
   if (uv_set != 0) all += fmt::format(" with TEXCOORD_{}", uv_set);
   if (converted_at != 0) all += fmt::format(" at second {}", converted_at);
   return all;
@@ -173,6 +176,10 @@ PartName PartName::parse(const std::string& text) {
     int more = 0;
     if (std::sscanf(text.c_str() + end, " at %lf of animation %zu%n", &part.moment.time, &animation, &more) == 2 && more > 0) {
       part.moment.animation = animation;
+      end += more;
+    } else if (more = 0;
+               std::sscanf(text.c_str() + end, " at %lf of all animations%n", &part.moment.time, &more) == 1 && more > 0) {
+      part.moment.animation = every_animation;
       end += more;
     }
     more = 0;

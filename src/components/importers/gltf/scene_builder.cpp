@@ -4,9 +4,15 @@
 
 #include "accessor.h"
 #include "described.h"
+#include "thickness.h"
 #include "variants.h"
 
 namespace etendue::gltf {
+namespace {
+
+constexpr const char* scaled_to_nothing = "what is scaled to nothing, or to a line, is left out";
+
+}  // namespace
 
 SceneBuilder::SceneBuilder(Importing& importing, const Document& document)
     : importing_(importing),
@@ -15,7 +21,9 @@ SceneBuilder::SceneBuilder(Importing& importing, const Document& document)
       pose_(document, moment_),
       variant_(chosen_variant(importing, document)),
       materials_(importing, document),
-      scene_(ref_cast<Scene>(importing.make(imported_structure, importing.at()))) {}
+      scene_(ref_cast<Scene>(importing.make(imported_structure, importing.at()))),
+      glow_(document),
+      own_file_(text(object_in(document.json(), "asset"), "generator") == "Etendue") {}
 
 /// What `-D camera=name` chooses from a list, by name or number.
 size_t SceneBuilder::chosen(const char* parameter, const char* list, size_t otherwise) {
@@ -32,16 +40,19 @@ size_t SceneBuilder::chosen(const char* parameter, const char* list, size_t othe
 Moment SceneBuilder::moment() {
   Moment moment{importing_.options().time, std::nullopt};
   if (!has_animation(document_)) return moment;
-  moment.animation = chosen("animation", "animations", 0);
+  const auto said = importing_.parameter("animation");
+  moment.animation = said == "all" ? every_animation : chosen("animation", "animations", 0);
   if (const auto time = importing_.parameter("time")) {
     char* end = nullptr;
     moment.time = std::strtod(time->c_str(), &end);
     if (end == time->c_str() || *end != 0 || !std::isfinite(moment.time))
       throw Error("'" + *time + "' is no time in seconds", at());
   }
-  if (document_.count("animations") > 1)
+  if (document_.count("animations") > 1 && !said)
     importing_.inexact(
-        fmt::format("of its {} animations one is shown; -D animation=NAME chooses another", document_.count("animations")),
+        fmt::format("of its {} animations the first is shown; -D animation=NAME chooses another, and all of them "
+                    "with NAME all",
+                    document_.count("animations")),
         at());
   return moment;
 }
@@ -59,7 +70,8 @@ std::vector<size_t> SceneBuilder::roots() {
     return all;
   }
   const size_t scene = chosen("scene", "scenes", whole(document_.json(), "scene").value_or(0));
-  if (scenes > 1) importing_.inexact(fmt::format("of its {} scenes one is shown; -D scene=NAME chooses another", scenes), at());
+  if (scenes > 1 && !importing_.parameter("scene"))
+    importing_.inexact(fmt::format("of its {} scenes one is shown; -D scene=NAME chooses another", scenes), at());
   return within(fmt::format("scenes[{}]", scene), [&] { return places(document_.element("scenes", scene), "nodes", nodes); });
 }
 
@@ -109,11 +121,12 @@ void SceneBuilder::add_node(size_t node) {
 /// What a converter of ours describes itself.
 void SceneBuilder::add_described(const Json& json, const std::string& name, const Transform& place) {
   const Ref<Component> object = described_part(importing_, document_, materials_, json, name);
-  if (!place.valid()) {
-    importing_.inexact("what is scaled to nothing is left out", at());
+  const std::optional<Transform> thick = with_thickness(place);
+  if (!thick) {
+    importing_.inexact(scaled_to_nothing, at());
     return;
   }
-  const Transform stands = truth(json, "rigid", false) ? without_stretch(place) : place;
+  const Transform stands = truth(json, "rigid", false) ? without_stretch(*thick) : *thick;
   if (!stands.identity()) set(*object, "transform", Value(stands, at()));
   if (truth(json, "lamp", false)) has_lights_ = true;
   if (const Json* material = find(json, "material")) {
@@ -121,7 +134,7 @@ void SceneBuilder::add_described(const Json& json, const std::string& name, cons
     set(*object, "shader", Value(made.made.shader, at()));
     if (made.made.emission) set(*object, "emission", Value(made.made.emission, at()));
     if (made.made.interior) set(*object, "interior", Value(made.made.interior, at()));
-    if (made.lamp) has_lights_ = true;
+    if (made.glow > 0) has_lights_ = true;
   }
   add(ref_cast<SceneObject>(object));
 }
@@ -131,16 +144,19 @@ void SceneBuilder::add_mesh(size_t node, size_t mesh) {
   const Json& n = document_.element("nodes", node);
   const bool skinned = find(n, "skin") != nullptr, bent = skinned || !pose_.weights(node).empty();
   const std::string name = plain_name(text(n, "name"));
-  std::vector<Transform> placed = places_of(node);
-  std::erase_if(placed, [&](const Transform& t) {
-    if (!t.valid()) importing_.inexact("what is scaled to nothing is left out", at());
-    return !t.valid();
-  });
+  std::vector<Transform> placed;
+  for (const Transform& t : places_of(node))
+    if (const std::optional<Transform> thick = with_thickness(t); thick && !skinned)
+      placed.push_back(*thick);
+    else if (!skinned)
+      importing_.inexact(scaled_to_nothing, at());
   if (skinned) placed = {Transform()};
   if (placed.empty()) return;
   if (placed.size() == 1 && (bent || uses_[mesh] == 1)) {
     PartName whose{bent, bent ? node : mesh, 0, bent ? moment_ : Moment{}, 0};
-    for (const Ref<SceneObject>& object : primitives(mesh, whose)) {
+    const std::vector<Ref<SceneObject>> objects = primitives(mesh, whose);
+    glow_.stand(mesh, placed[0], glow_.taken());
+    for (const Ref<SceneObject>& object : objects) {
       if (!placed[0].identity()) set(*object, "transform", Value(placed[0], at()));
       if (!name.empty()) object->origin->name = name;
       add(object);
@@ -149,9 +165,10 @@ void SceneBuilder::add_mesh(size_t node, size_t mesh) {
   }
   if (std::ranges::any_of(pose_.weights(node), [](double w) { return w != 0; }))
     importing_.inexact("a mesh that EXT_mesh_gpu_instancing repeats is without what its morph targets add", at());
-  const Ref<Scene> scene = shared(mesh);
+  const auto& [scene, shining] = shared(mesh);
   if (!scene) return;
   for (const Transform& t : placed) {
+    glow_.stand(mesh, t, shining);
     Ref<Component> instance = importing_.make("Instance", at(), name);
     set(*instance, "scene", Value(Ref<Component>(scene), at()));
     set(*instance, "transform", Value(t, at()));
@@ -191,15 +208,16 @@ std::vector<Transform> SceneBuilder::places_of(size_t node) {
   });
 }
 
-Ref<Scene> SceneBuilder::shared(size_t mesh) {
+const SceneBuilder::Shared& SceneBuilder::shared(size_t mesh) {
   if (const auto known = shared_.find(mesh); known != shared_.end()) return known->second;
-  Ref<Scene>& scene = shared_[mesh];
+  Shared& made = shared_[mesh];
   const std::vector<Ref<SceneObject>> objects = primitives(mesh, PartName{false, mesh, 0, {}, 0});
-  if (objects.empty()) return scene;
-  scene =
+  made.shining = glow_.taken();
+  if (objects.empty()) return made;
+  made.scene =
       ref_cast<Scene>(importing_.make(imported_structure, at(), plain_name(text(document_.element("meshes", mesh), "name"))));
-  scene->objects = objects;
-  return scene;
+  made.scene->objects = objects;
+  return made;
 }
 
 std::vector<Ref<SceneObject>> SceneBuilder::primitives(size_t mesh, const PartName& whose) {
@@ -211,14 +229,18 @@ std::vector<Ref<SceneObject>> SceneBuilder::primitives(size_t mesh, const PartNa
     PartName part = whose;
     part.primitive = i;
     within(fmt::format("meshes[{}].primitives[{}]", mesh, i), [&] {
-      if (Ref<SceneObject> object = primitive(list[i], part, name)) all.push_back(object);
+      if (Ref<SceneObject> object = primitive(mesh, list[i], part, name)) all.push_back(object);
     });
   }
   return all;
 }
 
-Ref<SceneObject> SceneBuilder::primitive(const Json& p, PartName part, const std::string& name) {
+Ref<SceneObject> SceneBuilder::primitive(size_t mesh, const Json& p, PartName part, const std::string& name) {
   require_uncompressed(document_, p);
+  if (!find(object_in(p, "attributes"), "POSITION")) {  // glTF 2.0, 3.7.2.1: then an extension says where, or nothing
+    importing_.inexact("a primitive without POSITION is left out", at());
+    return nullptr;
+  }
   if (!is_triangles(p)) {
     importing_.inexact("points and lines are not shown", at());
     return nullptr;
@@ -238,19 +260,20 @@ Ref<SceneObject> SceneBuilder::primitive(const Json& p, PartName part, const std
   if (colored) faded = Accessor(document_, needed_whole(attributes, "COLOR_0")).width == 4;
   const Material& material = materials_.get(material_of(p, variant_), colored, faded);
   part.uv_set = material.uv_set;
-  if (material.by_tangents && find(attributes, "TANGENT"))
-    if (const double share = differing_tangents(document_, p, part.uv_set); share > 0.05)
-      importing_.inexact(
-          fmt::format("{:.0f} % of its TANGENT vectors lie otherwise than its surface coordinates run, which images of normals "
-                      "and stretched highlights follow here",
-                      100 * share),
-          at());
+  if (material.by_tangents && find(attributes, "TANGENT") && differing_tangents(document_, p, part.uv_set) > 0.05)
+    importing_.inexact(
+        "TANGENT vectors lie otherwise than the surface coordinates run, which images of normals and stretched "
+        "highlights follow here",
+        at());
   part.converted_at = document_.time();
   Ref<Component> object = importing_.make("TriangleMesh", at(), name);
   set_member(*object, "file", FilePath{importing_.path(), {}}, at());
   set_member(*object, "part", part.text(), at());
   set(*object, "shader", Value(material.made.shader, at()));
-  if (material.lamp) has_lights_ = true;
+  if (own_file_)
+    has_lights_ = has_lights_ || material.glow > 0;
+  else if (!has_lights_)
+    glow_.shine(mesh, part.primitive, material.glow);
   if (material.made.emission) set(*object, "emission", Value(material.made.emission, at()));
   if (material.made.interior) set(*object, "interior", Value(material.made.interior, at()));
   return ref_cast<SceneObject>(object);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "etendue/render/job.h"
+#include "glow.h"
 #include "lights.h"
 #include "materials.h"
 #include "primitive.h"
@@ -19,9 +20,13 @@ class SceneBuilder {
   /// The camera to look through, when the scene has one; after `build`.
   std::optional<MadeCamera> camera();
   /// Whether there are lamps; after `build`. What merely glows does not light a scene.
-  bool has_lights() const { return has_lights_; }
+  bool has_lights() const { return has_lights_ || glow_.lights(); }
 
  private:
+  struct Shared {
+    Ref<Scene> scene;
+    Glow::Areas shining;
+  };
   size_t chosen(const char* parameter, const char* list, size_t otherwise);
   Moment moment();
   std::vector<size_t> roots();
@@ -31,8 +36,8 @@ class SceneBuilder {
   void add_mesh(size_t node, size_t mesh);
   std::vector<Transform> places_of(size_t node);
   std::vector<Ref<SceneObject>> primitives(size_t mesh, const PartName& whose);
-  Ref<SceneObject> primitive(const Json& primitive, PartName, const std::string& name);
-  Ref<Scene> shared(size_t mesh);
+  Ref<SceneObject> primitive(size_t mesh, const Json& primitive, PartName, const std::string& name);
+  const Shared& shared(size_t mesh);
   void add(const Ref<SceneObject>&);
   Location at() const { return importing_.at(); }
 
@@ -45,8 +50,10 @@ class SceneBuilder {
   Ref<Scene> scene_;
   std::set<size_t> hidden_;        // nodes: all but their cameras (KHR_node_visibility)
   std::map<size_t, size_t> uses_;  // of meshes, by nodes
-  std::map<size_t, Ref<Scene>> shared_;
+  std::map<size_t, Shared> shared_;
   std::vector<std::pair<size_t, Transform>> cameras_;
+  Glow glow_;
+  bool own_file_ = false;  // Étendue wrote it
   double triangles_ = 0;
   bool has_lights_ = false;
 };

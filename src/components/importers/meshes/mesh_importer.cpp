@@ -20,23 +20,31 @@ class MeshImporter final : public Importer {
   Ref<Component> import(Importing& importing) const override {
     const Location at = importing.at();
     bool of_faces = false;  // colours
+    std::optional<SurfaceTexture> texture;
     try {
       const MeshData read = read_mesh(importing.path());  // what is wrong with it is told now, and not when it is rendered
       const auto has = [](const std::vector<VertexAttribute>& list, const char* name) {
         return std::ranges::any_of(list, [&](const VertexAttribute& a) { return a.name == name; });
       };
+      if (!read.texture.empty() && read.uvs.empty())
+        importing.inexact("the image that it names is left out: its vertices have no surface coordinates", at);
+      else if (!read.texture.empty())
+        if (const auto file = importing.optional_file(read.texture, at)) texture = readable_texture(importing, *file, at);
       of_faces = has(read.face_attributes, "face_color") && !has(read.attributes, "color");
     } catch (const Error& error) {
       throw Error(error.what(), at);
     }
     Surface surface;
-    surface.base_color = 0.7;
+    surface.base_color = texture ? 1 : 0.7;
+    surface.base_color.texture = texture;
     surface.roughness = 0.5;
     const MadeSurface made = make_surface(importing, surface, at);
-    Ref<Component> colors = importing.make("AttributeMap", at);
-    if (of_faces) set_member(*colors, "name", "face_color", at);
-    set_member(*colors, "otherwise", 0.7, at);
-    set(*made.shader, "base_color", Value(colors, at));
+    if (!texture) {
+      Ref<Component> colors = importing.make("AttributeMap", at);
+      if (of_faces) set_member(*colors, "name", "face_color", at);
+      set_member(*colors, "otherwise", 0.7, at);
+      set(*made.shader, "base_color", Value(colors, at));
+    }
     Ref<Component> mesh = importing.make("TriangleMesh", at);
     set_member(*mesh, "file", FilePath{importing.path(), {}}, at);
     set(*mesh, "shader", Value(made.shader, at));

@@ -149,13 +149,17 @@ class MtlReader {
       lines.at_end();
     }
     const std::string name(lines.rest());
-    const auto file = importing_.optional_file(name, at, folder_);
+    const auto file = optional_image(importing_, name, at, folder_);
     if (!file) return std::nullopt;
     const auto found = readable_texture(importing_, *file, at, &texture.has_alpha);
     if (!found) return std::nullopt;
+    if (texture.channel == "A" && !texture.has_alpha) {
+      importing_.inexact("the image has no alpha for '-imfchan m': its colours are used", at);
+      texture.channel.clear();
+    }
     placed.file = found->file;
     texture.image = placed;
-    texture.has_colors = importing_.image_channels(*file).size() >= 3;
+    texture.has_colors = channels_of_image(importing_, *file).size() >= 3;
     return texture;
   }
 

@@ -42,20 +42,24 @@ class ObjImporter final : public Importer {
   static Ref<Component> read(Importing& importing) {
     const std::vector<std::string> parts = obj_parts(importing.path());
     std::map<std::string, MtlMaterial> materials;
-    const std::map<std::string, int> used = read_libraries(importing, materials);
+    const Used used = read_libraries(importing, materials);
     const Ref<Scene> scene = ref_cast<Scene>(importing.make(imported_structure, importing.at()));
     for (const std::string& name : parts) {
-      const auto line = used.find(name);
-      const Location at = importing.at(line == used.end() ? 0 : line->second);
+      const auto line = used.lines.find(name);
+      const Location at = importing.at(line == used.lines.end() ? 0 : line->second);
       const auto material = materials.find(name);
       Surface plain;
-      plain.base_color = 0.7;
+      plain.base_color = used.colored ? 1 : 0.7;
+      plain.base_color.by_vertex = used.colored;
       plain.roughness = 0.5;
       if (material == materials.end() && !name.empty())
         importing.inexact(fmt::format("no material file says what '{}' is like: it is grey", name), at);
-      const MadeSurface made = material == materials.end()
-                                   ? make_surface(importing, plain, at)
-                                   : make_surface(importing, material->second.surface, material->second.at);
+      if (material != materials.end()) {
+        plain = material->second.surface;
+        plain.base_color.by_vertex = used.colored;
+        if (used.colored) importing.inexact("colours of vertices multiply those of materials", importing.at());
+      }
+      const MadeSurface made = make_surface(importing, plain, material == materials.end() ? at : material->second.at);
       Ref<Component> mesh = importing.make("TriangleMesh", at);
       set_member(*mesh, "file", FilePath{importing.path(), {}}, at);
       if (parts.size() > 1) set_member(*mesh, "part", "usemtl " + name, at);
@@ -67,22 +71,35 @@ class ObjImporter final : public Importer {
     return scene;
   }
 
-  /// Reads the material files it names; returns the lines at which materials are used first.
-  static std::map<std::string, int> read_libraries(Importing& importing, std::map<std::string, MtlMaterial>& materials) {
+  struct Used {
+    std::map<std::string, int> lines;  // at which materials are used first
+    bool colored = false;              // vertices
+  };
+  /// What is neither a triangle nor of its looks.
+  static const char* not_shown(std::string_view word) {
+    if (word == "l" || word == "p") return "points and lines are not shown";
+    if (word == "curv" || word == "curv2" || word == "surf" || word == "cstype")
+      return "curves and curved surfaces are not shown";
+    return nullptr;
+  }
+  /// Reads the material files it names.
+  static Used read_libraries(Importing& importing, std::map<std::string, MtlMaterial>& materials) {
     const FileContents contents(importing.path());
     const bool marked = has_byte_order_mark(contents.text());
     const std::string plain = marked ? as_utf8(contents.text()) : std::string();
-    std::map<std::string, int> used;
+    Used used;
     bool looked = false;
     for (Lines lines(marked ? std::string_view(plain) : contents.text()); lines.next();) {
       const std::string_view word = lines.keyword();
       if (word == "v" && !looked) {
         looked = true;
         int count = 0;
-        for (; count < 5 && !lines.at_end(); ++count) lines.number();
-        if (count == 5) importing.inexact("colours of vertices are not read", importing.at(int(lines.line())));
+        for (; count < 7 && !lines.at_end(); ++count) lines.number();
+        used.colored = used.colored || count == 6;
       }
-      if (word == "usemtl") used.try_emplace(std::string(lines.rest()), int(lines.line()));
+      used.colored = used.colored || word == "#MRGB";
+      if (const char* what = not_shown(word)) importing.inexact(what, importing.at(int(lines.line())));
+      if (word == "usemtl") used.lines.try_emplace(std::string(lines.rest()), int(lines.line()));
       if (word != "mtllib") continue;
       const Location at = importing.at(int(lines.line()));
       for (const std::string& path : library_files(importing, std::string(lines.rest()), at))
@@ -101,13 +118,19 @@ class ObjImporter final : public Importer {
         return {};
       }
     }
-    std::vector<std::string> all;
+    std::vector<std::string> all, lost;
     for (size_t begin = 0; begin < names.size();) {
       const size_t end = std::min(names.find(' ', begin), names.size());
-      if (end > begin)
-        if (auto path = importing.optional_file(names.substr(begin, end - begin), at)) all.push_back(*path);
+      const std::string name = names.substr(begin, end - begin);
+      try {
+        if (!name.empty()) all.push_back(importing.file(name, at));
+      } catch (const Error&) {
+        lost.push_back(name);
+      }
       begin = end + 1;
     }
+    if (all.empty()) lost = {names};  // one name, which holds spaces
+    for (const std::string& name : lost) (void)importing.optional_file(name, at);
     return all;
   }
 };

@@ -6,6 +6,7 @@
 #include "components/shaders/layered/sheen.h"
 #include "etendue/describe/color.h"
 #include "language/writer.h"
+#include "surface_maps.h"
 
 namespace etendue {
 namespace {
@@ -15,10 +16,13 @@ constexpr double sharpest_fibres = double(SheenLobe::sharpest);
 
 class SurfaceMaker {
  public:
-  SurfaceMaker(Importing& importing, const Surface& surface, Location at) : importing_(importing), s_(surface), at_(at) {}
+  SurfaceMaker(Importing& importing, const Surface& surface, Location at)
+      : importing_(importing), s_(surface), at_(at), maps_(importing, at) {}
 
   MadeSurface make() {
     MadeSurface made;
+    const bool partly = s_.opacity.texture || !s_.opacity.attribute.empty() || s_.opacity.value < 1;
+    if (partly) opacity_ = maps_.opacity(s_);
     if (s_.unlit) {
       made.shader = part("Lambertian", s_.name);
       set_member(*made.shader, "color", 0.0, at_);
@@ -31,32 +35,8 @@ class SurfaceMaker {
     }
     if (s_.normals) made.shader = with_normals(made.shader);
     if (s_.bumps && s_.bump_height != 0) made.shader = with_bumps(made.shader);
-    if (s_.opacity.texture || !s_.opacity.attribute.empty() || s_.opacity.value < 1) {
-      made.shader = with_holes(made.shader);
-      if (made.emission) importing_.inexact("the light of a surface does not become less where it is transparent", at_);
-    }
+    if (partly) made.shader = with_holes(made.shader);
     return made;
-  }
-
-  /// None: it is the same everywhere.
-  Ref<Component> color_map(const SurfaceColor& c) const {
-    const std::array<double, 3> none{0, 0, 0}, one{1, 1, 1};
-    Ref<Component> texture, vertices;
-    if (c.texture && (!c.black() || c.offset != none)) texture = image(*c.texture, {}, false);
-    if (c.by_vertex) {
-      vertices = part("AttributeMap");
-      set_member(*vertices, "otherwise", 1.0, at_);
-    }
-    const Ref<Component> map = texture ? texture : vertices;
-    const bool moved = texture && c.offset != none;
-    if (!map || (c.value == one && !moved && !(texture && vertices))) return map;
-    Ref<Component> all = part("RgbProductMap");
-    put(*all, "first", map, at_);
-    if (texture && vertices) put(*all, "second", vertices, at_);
-    const auto three = [](const std::array<double, 3>& x) { return Numbers{{x[0], x[1], x[2]}, 1, Dimension::none}; };
-    if (c.value != one) set_member(*all, "factor", three(c.value), at_);
-    if (moved) set_member(*all, "offset", three(c.offset), at_);
-    return all;
   }
 
  private:
@@ -67,89 +47,19 @@ class SurfaceMaker {
     set(to, member, Value(value, at));
   }
 
-  Ref<Component> image(const SurfaceTexture& t, const std::string& channel, bool linear) const {
-    Ref<Component> map = part("ImageMap");
-    set_member(*map, "file", FilePath{t.file, {}}, at_);
-    if (!channel.empty()) set_member(*map, "channel", channel, at_);
-    if (!t.transfer.empty())
-      set_member(*map, "transfer", t.transfer, at_);
-    else if (linear)
-      set_member(*map, "transfer", "linear", at_);
-    set_member(*map, "wrap", t.wrap, at_);
-    const bool differ = !t.wrap_v.empty() && t.wrap_v != t.wrap;
-    if (differ) set_member(*map, "wrap_v", t.wrap_v, at_);
-    if (t.nearest) set_member(*map, "interpolation", "nearest", at_);
-    const auto pair = [](const std::array<double, 2>& p) { return Numbers{{p[0], p[1]}, 1, Dimension::none}; };
-    std::array<double, 2> shift = t.shift;
-    if (t.wrap == "repeat" && !differ && std::abs(t.angle) < 1e-9)
-      for (double& x : shift)
-        if (std::abs(x - std::round(x)) < 1e-9) x = 0;
-    if (std::abs(t.angle) < 1e-9 && shift[0] == 0 && shift[1] == 0) {
-      if (t.scale[0] != 1 || t.scale[1] != 1) set_member(*map, "repeat", pair(t.scale), at_);
-      return map;
-    }
-    Ref<Component> moved = part("UvTransformMap");
-    put(*moved, "map", map, at_);
-    if (t.scale[0] != 1 || t.scale[1] != 1) set_member(*moved, "scale", pair(t.scale), at_);
-    if (t.angle != 0) set_member(*moved, "angle", Number{t.angle, Dimension::angle}, at_);
-    set_member(*moved, "shift", pair(shift), at_);
-    return moved;
-  }
-
-  Ref<Component> product(const Ref<Component>& first, const Value& second) const {
-    Ref<Component> map = part("MultiplyMap");
-    put(*map, "first", first, at_);
-    set(*map, "second", second);
-    return map;
-  }
-
   /// Sets a member that is a number or a map of numbers; when it is the default nothing is written.
   void number(Component& to, std::string_view member, const SurfaceNumber& n) const {
     const double said = std::isfinite(n.value) ? n.value : 0, value = n.squared ? said * said : said;
-    if (Ref<Component> map = number_map(n))
+    if (Ref<Component> map = maps_.number(n))
       put(to, member, map, at_);
     else
       set_member(to, member, value, at_);
   }
 
-  /// None: it is the same everywhere.
-  Ref<Component> number_map(const SurfaceNumber& n) const {
-    Ref<Component> map;
-    if (n.texture && n.value != 0) {
-      map = image(*n.texture, n.channel, n.channel != "A");
-      if (n.inverted) {
-        Ref<Component> turned = part("RemapMap");
-        put(*turned, "input", map, at_);
-        set_member(*turned, "to", Numbers{{1, 1 - n.inverted_share}, 1, Dimension::none}, at_);
-        map = turned;
-      }
-    }
-    if (!n.attribute.empty()) {
-      Ref<Component> vertices = part("AttributeMap");
-      set_member(*vertices, "name", n.attribute, at_);
-      set_member(*vertices, "otherwise", 1.0, at_);
-      map = map ? product(map, Value(vertices, at_)) : vertices;
-    }
-    if (map && n.offset != 0) {
-      Ref<Component> moved = part("RemapMap");
-      put(*moved, "input", map, at_);
-      set_member(*moved, "to", Numbers{{n.offset, n.offset + n.value}, 1, Dimension::none}, at_);
-      return moved;
-    }
-    if (map && n.value != 1) map = product(map, Value(Number{n.value}, at_));
-    if (map && n.squared) {
-      Ref<Component> square = part("PowerMap");
-      put(*square, "base", map, at_);
-      set_member(*square, "exponent", 2.0, at_);
-      return square;
-    }
-    return map;
-  }
-
   void color(Component& to, std::string_view member, const SurfaceColor& c) const {
-    if (std::ranges::any_of(c.value, [](double x) { return x > 1; }) && member != "radiance")
+    if (std::ranges::any_of(c.value, [](double x) { return x > 1; }))
       importing_.inexact("a surface cannot reflect more light than it gets: colours above 1 become 1", at_);
-    if (Ref<Component> map = color_map(c))
+    if (Ref<Component> map = maps_.color(c))
       put(to, member, map, at_);
     else
       set(to, member, color_value(c.value, at_));
@@ -157,7 +67,8 @@ class SurfaceMaker {
 
   double within(double value, double low, double high, const char* what) const {
     const double kept = std::clamp(std::isfinite(value) ? value : low, low, high);
-    if (kept != value) importing_.inexact(fmt::format("{} of {} becomes {}", what, value, kept), at_);
+    if (kept != value)
+      importing_.inexact(fmt::format("{} outside of {} to {} becomes the nearer of them", what, low, high), at_);
     return kept;
   }
 
@@ -230,7 +141,7 @@ class SurfaceMaker {
       importing_.inexact("fibres whose colour is an image's hide as much everywhere as where it is white", at_);
     const SurfaceNumber& r = s_.sheen_roughness;
     if (const double least = r.squared ? std::sqrt(sharpest_fibres) : sharpest_fibres; !r.texture && r.value < least)
-      importing_.inexact(fmt::format("a roughness of fibres of {} becomes {:.2f}", r.value, least), at_);
+      importing_.inexact(fmt::format("a roughness of fibres below {0:.2f} becomes {0:.2f}", least), at_);
     set_member(p, "fuzz_weight", weight, at_);
     color(p, "fuzz_color", fibres);
     number(p, "fuzz_roughness", s_.sheen_roughness);
@@ -240,7 +151,15 @@ class SurfaceMaker {
 
   Ref<Component> emission(const SurfaceColor& c) const {
     Ref<Component> emission = part("DiffuseEmission");
-    color(*emission, "radiance", c);
+    std::array<double, 3> same = c.value;
+    if (!opacity_)
+      for (double& x : same) x *= SurfaceMaps::same_opacity(s_);
+    SurfaceColor light = c;
+    light.value = same;
+    if (Ref<Component> map = maps_.emitted(light, opacity_))
+      put(*emission, "radiance", map, at_);
+    else
+      set(*emission, "radiance", color_value(same, at_));
     if (s_.emits_backwards) set_member(*emission, "sides", "both", at_);
     return emission;
   }
@@ -290,7 +209,7 @@ class SurfaceMaker {
       if (t.scale[0] != 1 || t.scale[1] != 1)
         set_member(*tilted, "repeat", Numbers{{t.scale[0], t.scale[1]}, 1, Dimension::none}, at_);
     } else {
-      put(*tilted, "map", image(t, {}, true), at_);
+      put(*tilted, "map", maps_.image(t, {}, true), at_);
     }
     if (const double strength = s_.normals->strength; std::isfinite(strength) && strength != 1)
       set_member(*tilted, "strength", strength, at_);
@@ -301,7 +220,7 @@ class SurfaceMaker {
   Ref<Component> with_bumps(const Ref<Component>& shader) const {
     Ref<Component> bumpy = part("BumpShader");
     put(*bumpy, "shader", shader, at_);
-    put(*bumpy, "height", image(*s_.bumps, {}, true), at_);
+    put(*bumpy, "height", maps_.image(*s_.bumps, {}, true), at_);
     set_member(*bumpy, "scale", s_.bump_height, at_);
     return bumpy;
   }
@@ -309,23 +228,18 @@ class SurfaceMaker {
   Ref<Component> with_holes(const Ref<Component>& shader) const {
     Ref<Component> mask = part("MaskShader");
     put(*mask, "shader", shader, at_);
-    Ref<Component> map = number_map(s_.opacity);
-    if (!s_.opacity_cutoff) {
-      number(*mask, "opacity", s_.opacity);
-    } else if (!map) {
-      set_member(*mask, "opacity", s_.opacity.value >= *s_.opacity_cutoff ? 1.0 : 0.0, at_);
-    } else {
-      Ref<Component> step = part("RemapMap");
-      put(*step, "input", map, at_);
-      set_member(*step, "from", Numbers{{*s_.opacity_cutoff - 1e-3, *s_.opacity_cutoff}, 1, Dimension::none}, at_);
-      put(*mask, "opacity", step, at_);
-    }
+    if (opacity_)
+      put(*mask, "opacity", opacity_, at_);
+    else
+      set_member(*mask, "opacity", SurfaceMaps::same_opacity(s_), at_);
     return mask;
   }
 
   Importing& importing_;
   const Surface& s_;
   Location at_;
+  SurfaceMaps maps_;
+  Ref<Component> opacity_;  // none: it is the same everywhere
 };
 
 }  // namespace
@@ -335,8 +249,7 @@ MadeSurface make_surface(Importing& importing, const Surface& surface, Location 
 }
 
 Ref<Component> surface_color_map(Importing& importing, const SurfaceColor& c, Location at) {
-  const Surface none;
-  return SurfaceMaker(importing, none, at).color_map(c);
+  return SurfaceMaps(importing, at).color(c);
 }
 
 Value color_value(const std::array<double, 3>& rgb, Location at) {

@@ -90,10 +90,17 @@ struct MadeSurface {
 };
 MadeSurface make_surface(Importing&, const Surface&, Location at);
 
+/// Importing::optional_file of an image; of one with <UDIM> in its name, which stands for several, that name with its folder.
+std::optional<std::string> optional_image(Importing&, const std::string& named, Location at, const std::string& beside = {});
+/// The names of an image's channels; of one in several files those of its first. Throws Error where it cannot be read.
+const std::vector<std::string>& channels_of_image(Importing&, const std::string& file);
 /// An image that can be read, or nothing and a note. `has_alpha` is told when asked for.
 std::optional<SurfaceTexture> readable_texture(Importing&, const std::string& file, Location at, bool* has_alpha = nullptr);
 /// Whether an image is blue all over, as one of normals is: many programs write that where one of heights belongs.
 bool looks_like_normals(const std::string& file);
+
+/// Red, green and blue of an image on the average, linear, encoded as colours are; nothing: it cannot be read.
+std::optional<std::array<double, 3>> mean_of_image(const std::string& file);
 
 /// A map of such a colour; none: it is the same everywhere.
 Ref<Component> surface_color_map(Importing&, const SurfaceColor&, Location at);

@@ -56,9 +56,9 @@ class Converter:
         self.glb.json["scenes"] = [{"nodes": [self.glb.add("nodes", root)] if self.nodes else []}]
         return self.glb
 
-    def walk(self, root, convert):
+    def walk(self, root, convert, predicate=Usd.PrimDefaultPredicate):
         """All that is shown below a prim, but for what stands below an instancer, which shows it itself."""
-        prims = iter(Usd.PrimRange(root, Usd.TraverseInstanceProxies()))
+        prims = iter(Usd.PrimRange(root, Usd.TraverseInstanceProxies(predicate)))
         for prim in prims:
             imageable = UsdGeom.Imageable(prim)
             if imageable:
@@ -162,7 +162,10 @@ class Converter:
             for what, inner in self.shown(prim):
                 found.append((prim.GetName(), what, inner * self.places.GetLocalToWorldTransform(prim) * back))
 
-        self.walk(root, take)
+        # As Hydra has it: a prototype may stand below an 'over', which by itself defines nothing.
+        self.walk(root, take, Usd.PrimIsActive & Usd.PrimIsLoaded & Usd.PrimHasDefiningSpecifier & ~Usd.PrimIsAbstract)
+        if root.IsAbstract():
+            self.glb.note("prototypes of instancers that are classes, or below one, are left out")
         return found
 
     def together(self, name, what, matrices, place):

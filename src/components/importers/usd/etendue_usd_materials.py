@@ -162,7 +162,7 @@ class Materials:
             self.glb.note("a UsdUVTexture without a file has its fallback's colour")
             return {"texture": {"image": self.missing()}, "channel": output, "scale4": scale, "bias4": bias, "without": without}
         space = {"raw": "linear", "sRGB": "srgb"}.get(str(self.value(reader, "sourceColorSpace", "auto")), "auto")
-        texture = {"image": self.image(asset), "transfer": space,
+        texture = {"image": self.image(asset, reader.GetInput("file").GetAttr()), "transfer": space,
                    "wrap": [WRAPS.get(str(self.value(reader, key, "useMetadata")), "repeat") for key in ("wrapS", "wrapT")]}
         if output == "a":
             texture["transfer"] = "linear"
@@ -207,14 +207,27 @@ class Materials:
                 attribute = prim.GetAttribute("inputs:file") if prim.GetTypeName() == "Shader" else None
                 value = attribute.Get(self.time) if attribute else None
                 if isinstance(value, Sdf.AssetPath) and value.path:
-                    found[value.resolvedPath or value.path] = value
+                    found[value.resolvedPath or value.path] = value, attribute
         for path in sorted(found):
-            self.image(found[path])
+            self.image(*found[path])
 
-    def image(self, asset):
-        path = asset.resolvedPath or asset.path
+    @staticmethod
+    def path_of(asset, attribute):
+        """Where a file is; of one with <UDIM> in its name, which stands for several, that name with its folder."""
+        if "<UDIM>" in asset.path and attribute:
+            for given in attribute.GetPropertyStack(Usd.TimeCode.Default()):
+                path = UsdShade.UdimUtils.ResolveUdimPath(asset.path, given.layer)
+                if path:
+                    return path
+        return asset.resolvedPath or asset.path
+
+    def image(self, asset, attribute=None):
+        path = self.path_of(asset, attribute)
         if path not in self.images:
-            if Ar.IsPackageRelativePath(path):
+            if Ar.IsPackageRelativePath(path) and "<UDIM>" in path:
+                self.glb.note("images in several files (<UDIM>) within a package are left out")
+                image = {"uri": "missing"}
+            elif Ar.IsPackageRelativePath(path):
                 self.files.require(path, asset.path)
                 data = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(path))
                 if not data:

@@ -2,6 +2,8 @@
 import numpy
 from pxr import UsdGeom, UsdShade
 
+from etendue_usd_polygons import triangulated
+
 
 def array(values, kind, width=None):
     """Numbers of an attribute, which may have none."""
@@ -52,7 +54,7 @@ class Meshes:
         for name in sorted(names, key=lambda n: self.materials.uv_sets[n]):
             each[f"TEXCOORD_{self.materials.uv_sets[name]}"] = self.uvs(prim, name)
         attributes, by_corner = self.attributes(each, points, counts, corners)
-        faces, triangles = self.fans(counts)
+        faces, triangles = triangulated(points[corners].astype("f8"), counts)
         kept = numpy.ones(len(counts), bool)
         holes = array(mesh.GetHoleIndicesAttr().Get(self.time), "i8")
         kept[holes[(holes >= 0) & (holes < len(counts))]] = False
@@ -105,16 +107,6 @@ class Meshes:
             else:
                 attributes[name] = self.glb.vectors(numpy.nan_to_num(spread, posinf=0, neginf=0))
         return attributes, by_corner
-
-    @staticmethod
-    def fans(counts):
-        """The face of each triangle, and its corners' places in the list of corners."""
-        starts = numpy.concatenate(([0], numpy.cumsum(counts)[:-1]))
-        per = numpy.maximum(counts - 2, 0)
-        faces = numpy.repeat(numpy.arange(len(counts)), per)
-        within = numpy.arange(per.sum()) - numpy.repeat(numpy.cumsum(per) - per, per)
-        first = starts[faces]
-        return faces, numpy.stack((first, first + within + 1, first + within + 2), axis=1)
 
     def cage(self, prim, mesh, points, counts, corners):
         material = self.materials.bound(prim)

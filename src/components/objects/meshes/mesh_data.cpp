@@ -19,7 +19,7 @@ std::map<std::string, ReadPart>& formats() {
   return *all;
 }
 
-MeshData read_whole(const std::string& path, const std::string& ending) {
+MeshData read_text(const std::string& path, const std::string& ending) {
   const FileContents file(path);
   const bool marked = has_byte_order_mark(file.text());
   const std::string plain = marked ? as_utf8(file.text()) : std::string();
@@ -32,7 +32,17 @@ MeshData read_whole(const std::string& path, const std::string& ending) {
   throw Error("this is no mesh format that is known here (PLY, OBJ, STL and OFF are, and those of importers)");
 }
 
+MeshData read_whole(const std::string& path, const std::string& ending) {
+  MeshData mesh = read_text(path, ending);
+  tell_remarks(mesh, path);
+  return mesh;
+}
+
 }  // namespace
+
+void tell_remarks(const MeshData& mesh, const std::string& path) {
+  for (const std::string& remark : mesh.remarks) warn("'" + path + "': " + remark);
+}
 
 bool register_mesh_format(const std::vector<std::string>& endings, ReadPart read) {
   for (const std::string& ending : endings) formats()[ending] = read;
@@ -95,7 +105,7 @@ bool without_height(const Point3& a, const Point3& b, const Point3& c) {
 
 }  // namespace
 
-void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Point3> later) {
+void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Point3> later, bool counted) {
   size_t kept = 0, not_finite = 0, without_area = 0;
   const size_t vertices = mesh.positions.size();
   for (const auto& t : mesh.triangles) {
@@ -122,9 +132,11 @@ void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Poi
                 " without area)");
   mesh.triangles.resize(kept);
   for (VertexAttribute& a : mesh.face_attributes) a.values.resize(kept * size_t(a.width));
-  if (not_finite > 0)
-    warn(whose + ": left out " + std::to_string(not_finite) + " triangles with coordinates that are not finite");
-  if (without_area > 0) warn(whose + ": left out " + std::to_string(without_area) + " triangles without area");
+  const auto tell = [&](size_t count, const char* which) {
+    if (count > 0) warn(whose + ": left out " + (counted ? std::to_string(count) + " triangles " : "triangles ") + which);
+  };
+  tell(not_finite, "with coordinates that are not finite");
+  tell(without_area, "without area");
 }
 
 namespace {

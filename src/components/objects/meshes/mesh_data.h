@@ -31,6 +31,8 @@ struct MeshData {
   std::vector<std::string> materials;            ///< names of those that the file uses, each once; nothing more is read of them
   bool faceted = false;                          ///< the file says that it is to look so, not smooth
   std::vector<std::uint32_t> triangle_materials;  ///< for each triangle, by their places in `materials`; or empty
+  std::string texture;                            ///< the image that a PLY file names for its surface coordinates
+  std::vector<std::string> remarks;               ///< what of the file is not read; read_mesh tells it
   static constexpr std::uint32_t no_material = 0xffffffffu;
 };
 
@@ -48,6 +50,9 @@ MeshData read_mesh(const std::string& path, const std::string& part = {});
 
 /// Reads a part of a file of a format that is not known here; throws Error with the reason alone.
 using ReadPart = MeshData (*)(const std::string& path, const std::string& part);
+/// Tells once for each text what a reader remarked on a file.
+void tell_remarks(const MeshData&, const std::string& path);
+
 /// Says who reads files with these endings (without dots, small letters). At the program's start.
 bool register_mesh_format(const std::vector<std::string>& endings, ReadPart);
 
@@ -61,7 +66,8 @@ void smooth_normals(MeshData&);
 /// Removes triangles with a corner that is not finite and triangles without area, with one warning for each kind that
 /// names `whose`. Throws Error when nothing is left. Of a mesh that changes its shape, `later` holds all positions at the
 /// second key, then those at the third, and so on: triangles go only when they have no area at any key.
-void drop_unusable(MeshData&, const std::string& whose, std::span<const Point3> later = {});
+/// `counted`: the warnings say how many; of the many parts of a file they are told once instead.
+void drop_unusable(MeshData&, const std::string& whose, std::span<const Point3> later = {}, bool counted = true);
 
 /// Appends the triangles of a polygon given by its corners' indices: a fan when it is convex, else by cutting ears.
 void append_polygon(MeshData&, const std::uint32_t* corners, size_t count);

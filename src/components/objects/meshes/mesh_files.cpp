@@ -14,7 +14,7 @@ std::shared_ptr<const MeshData> mesh_from_file(const std::string& path, const st
   const Version version(std::filesystem::last_write_time(path, none), std::filesystem::file_size(path, none));
   return all.get({path, part, whole}, version, [&] {
     MeshData mesh = read_mesh(path, part);
-    if (!whole) drop_unusable(mesh, "'" + path + "'");
+    if (!whole) drop_unusable(mesh, "'" + path + "'", {}, part.empty());
     make_shareable(mesh);
     return std::make_shared<const MeshData>(std::move(mesh));
   });

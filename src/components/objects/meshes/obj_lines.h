@@ -74,6 +74,11 @@ class Lines {
     ++cursor_;
     return true;
   }
+  void skip_space() {
+    while (cursor_ < line_end_ && space(*cursor_)) ++cursor_;
+  }
+  /// What is left of the line, spaces at its end and comments too.
+  std::string_view left() const { return {cursor_, size_t(line_end_ - cursor_)}; }
   /// What is left of the line.
   std::string_view rest() {
     if (at_end()) return {};
@@ -89,9 +94,6 @@ class Lines {
 
  private:
   static bool space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\\'; }
-  void skip_space() {
-    while (cursor_ < line_end_ && space(*cursor_)) ++cursor_;
-  }
 
   const char *at_, *end_, *begin_ = nullptr, *line_end_ = nullptr, *cursor_ = nullptr;
   std::int64_t number_ = 0, continued_ = 0;

@@ -22,6 +22,7 @@ MeshData taken_out(const MeshData& mesh, std::span<const std::uint32_t> triangle
   MeshData part;
   part.centre = mesh.centre;
   part.triangles.reserve(triangles.size());
+  for (const VertexAttribute& a : mesh.attributes) part.attributes.push_back({a.name, a.width, {}});
   for (const std::uint32_t i : triangles) {
     std::array<std::uint32_t, 3> t{};
     for (size_t k = 0; k < 3; ++k) {
@@ -31,6 +32,10 @@ MeshData taken_out(const MeshData& mesh, std::span<const std::uint32_t> triangle
         part.positions.push_back(mesh.positions[vertex]);
         if (!mesh.normals.empty()) part.normals.push_back(mesh.normals[vertex]);
         if (!mesh.uvs.empty()) part.uvs.push_back(mesh.uvs[vertex]);
+        for (size_t k = 0; k < mesh.attributes.size(); ++k) {
+          const auto from = mesh.attributes[k].values.begin() + std::ptrdiff_t(vertex) * mesh.attributes[k].width;
+          part.attributes[k].values.insert(part.attributes[k].values.end(), from, from + mesh.attributes[k].width);
+        }
       }
       t[k] = now[vertex];
     }
@@ -62,6 +67,7 @@ ReadFile read_parts(const std::string& path) {
   const FileContents contents(path);
   if (contents.text().empty()) throw Error("the file is empty");
   MeshData mesh = has_byte_order_mark(contents.text()) ? read_obj(as_utf8(contents.text())) : read_obj(contents.text());
+  tell_remarks(mesh, path);
   if (mesh.triangle_materials.empty()) {
     file.names = {""};
     file.parts[""] = std::move(mesh);

@@ -1,12 +1,14 @@
-// Wavefront OBJ files: v, vt, vn, f, s and usemtl. Of materials the names are kept and which triangle has which: ObjImporter
-// makes shaders of them. Everything else (groups, curves) says nothing about triangles.
+// Wavefront OBJ files: v, vt, vn, f, s and usemtl, and colours of vertices (obj_colors.h). Of materials the names are kept and
+// which triangle has which: ObjImporter makes shaders of them. Everything else (groups, curves) says nothing about triangles.
 
 #include <unordered_map>
 
 #include "geometry/own_centre.h"
 #include "geometry/triangle_test.h"
 #include "mesh_data.h"
+#include "obj_colors.h"
 #include "obj_lines.h"
+#include "obj_vertices.h"
 #include "polygon_mesh.h"
 
 namespace etendue {
@@ -40,39 +42,6 @@ Counts count(std::string_view file) {
   return c;
 }
 
-/// Vertices by (position, uv, normal): those of one position form a chain, mostly of length one.
-class Vertices {
- public:
-  static constexpr std::uint32_t none = 0xffffffffu;
-  explicit Vertices(size_t positions) : first_(positions, none) {}
-
-  std::uint32_t find(std::uint32_t position, std::uint32_t uv, std::uint32_t normal) {
-    for (std::uint32_t i = first_[position]; i != none; i = corners_[i].next)
-      if (corners_[i].uv == uv && corners_[i].normal == normal) return i;
-    corners_.push_back({position, uv, normal, first_[position]});
-    return first_[position] = std::uint32_t(corners_.size() - 1);
-  }
-
-  struct Corner {
-    std::uint32_t position, uv, normal, next;
-  };
-  const std::vector<Corner>& corners() const { return corners_; }
-
- private:
-  std::vector<std::uint32_t> first_;
-  std::vector<Corner> corners_;
-};
-
-std::uint32_t read_index(Lines& lines, size_t so_far, size_t all, const char* what) {
-  const std::int64_t given = lines.integer();
-  const std::int64_t index = given < 0 ? std::int64_t(so_far) + given : given - 1;
-  if (given == 0) lines.error(std::string("the index of a ") + what + " is 0; they count from 1");
-  if (index < 0 || index >= std::int64_t(all))
-    lines.error(std::string("refers to ") + what + " " + std::to_string(given) + " of " +
-                std::to_string(given < 0 ? so_far : all));
-  return std::uint32_t(index);
-}
-
 /// Corners that are numbered by vertex get their position and their uv. One without uv gets the origin.
 void name_corners(const std::vector<Vertices::Corner>& list, PolygonMesh& mesh) {
   if (!mesh.uvs.empty()) {
@@ -84,8 +53,23 @@ void name_corners(const std::vector<Vertices::Corner>& list, PolygonMesh& mesh) 
   for (std::uint32_t& c : mesh.corners) c = list[c].position;
 }
 
+/// Three numbers. What Microsoft's C library wrote for a number that is none ("-1.#IND") is none here.
+template <class Number>
+std::array<Number, 3> three(Lines& lines) {
+  const std::string_view rest = lines.rest();
+  constexpr Number none = std::numeric_limits<Number>::quiet_NaN();
+  try {
+    const Number x = lines.number<Number>(), y = lines.number<Number>(), z = lines.number<Number>();
+    return {x, y, z};
+  } catch (const Error&) {
+    for (const char* written : {".#IND", ".#QNAN", ".#SNAN", ".#INF"})
+      if (rest.find(written) != std::string_view::npos) return {none, none, none};
+    throw;
+  }
+}
+
 DoublePoint3 read_place(Lines& lines) {
-  const double x = lines.number<double>(), y = lines.number<double>(), z = lines.number<double>();
+  const auto [x, y, z] = three<double>(lines);
   return {x, y, z};
 }
 
@@ -159,6 +143,12 @@ MeshData by_vertex(MeshData mesh, const Vertices& vertices, bool smoothed) {
     result.normals.reserve(list.size());
     for (const auto& c : list) result.normals.push_back(c.normal == Vertices::none ? Normal3{} : mesh.normals[c.normal]);
   }
+  for (VertexAttribute& a : mesh.attributes) {
+    VertexAttribute& made = result.attributes.emplace_back(VertexAttribute{a.name, a.width, {}});
+    for (const auto& c : list)
+      for (int k = 0; k < a.width; ++k) made.values.push_back(a.values[size_t(c.position) * size_t(a.width) + size_t(k)]);
+  }
+  result.remarks = std::move(mesh.remarks);
   result.triangles = std::move(mesh.triangles);
   result.materials = std::move(mesh.materials);
   result.triangle_materials = std::move(mesh.triangle_materials);
@@ -230,18 +220,27 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   std::vector<std::uint32_t> corners, positions;
   std::vector<Face> late;  // faces that stand before their vertices and have more than three corners
   FaceCutter cutter;
+  ObjColors colors(all.positions);
+  size_t not_faces = 0, not_normals = 0;
   std::unordered_map<std::string, std::uint32_t> materials;
   std::uint32_t material = MeshData::no_material, group = 0;
   for (Lines lines(file); lines.next();) {
     const std::string_view word = lines.keyword();
     if (word == "v") {
       mesh.positions.push_back(Point3(DoublePoint3{} + (read_place(lines) - mesh.centre)));
+      colors.vertex(lines, mesh.positions.size() - 1);
+    } else if (word == "#MRGB") {
+      colors.painted(lines);
     } else if (word == "vt") {
       const float u = lines.number();
       mesh.uvs.push_back({u, lines.at_end() ? 0 : lines.number()});
     } else if (word == "vn") {
-      const float x = lines.number(), y = lines.number(), z = lines.number();
-      mesh.normals.push_back({x, y, z});
+      const auto [x, y, z] = three<float>(lines);
+      const Normal3 normal{x, y, z};
+      const bool sound = std::isfinite(x) && std::isfinite(y) && std::isfinite(z);
+      if (!sound && not_normals++ == 0)
+        mesh.remarks.push_back("line " + std::to_string(lines.line()) + ": a normal that is no number is none");
+      mesh.normals.push_back(sound ? normal : Normal3{});
     } else if (word == "usemtl") {
       const auto [place, fresh] = materials.try_emplace(std::string(lines.rest()), std::uint32_t(materials.size()));
       if (fresh) mesh.materials.push_back(place->first);
@@ -259,8 +258,10 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
         positions.push_back(c.position);
         corners.push_back(plain ? c.position : vertices.find(c.position, c.uv, c.normal));
       }
-      if (corners.size() < 3) lines.error("a face needs at least three vertices");
-      if (polygons) {
+      if (corners.size() < 3) {
+        if (not_faces++ == 0)
+          mesh.remarks.push_back("line " + std::to_string(lines.line()) + ": a face of fewer than three vertices is left out");
+      } else if (polygons) {
         polygons->face_sizes.push_back(std::uint32_t(corners.size()));
         polygons->corners.insert(polygons->corners.end(), corners.begin(), corners.end());
       } else if (corners.size() == 3) {
@@ -273,6 +274,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
       }
     }
   }
+  if (not_faces == all.faces) throw Error("it has no faces of three or more vertices");
   if (polygons) {
     polygons->positions = std::move(mesh.positions);
     polygons->centre = mesh.centre;
@@ -282,6 +284,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   }
   for (const Face& polygon : late) cutter.cut(polygon, mesh);
   if (mesh.materials.empty()) mesh.triangle_materials = {};
+  colors.give(mesh);
   if (plain) return mesh;
   return by_vertex(std::move(mesh), vertices, all.smoothed);
 }

@@ -1,7 +1,10 @@
 // OFF files (Geomview's object file format), as text: vertices, which may have normals (N), colours (C) and texture coordinates
-// (ST), and polygons.
+// (ST), and polygons, which may have colours: numbers from 0 to 1 that are linear, or bytes that are encoded as sRGB.
+
+#include <algorithm>
 
 #include "etendue/core/error.h"
+#include "etendue/describe/color.h"
 #include "mesh_data.h"
 #include "obj_lines.h"
 
@@ -45,6 +48,43 @@ size_t count(Lines& lines, std::string_view file, const char* what) {
   return size_t(n);
 }
 
+/// Bytes are those of which one is above 1.
+void decode(std::vector<float>& colors) {
+  if (std::ranges::none_of(colors, [](float x) { return x > 1; })) return;
+  for (float& x : colors) x = float(decode_transfer("srgb", std::clamp(double(x) / 255, 0.0, 1.0)));
+}
+
+/// What follows the corners of a face: nothing, the place in a list of colours that is not in the file, or red, green, blue and
+/// perhaps alpha. The triangles of the face, those from `first` on, get it.
+class FaceColors {
+ public:
+  void read(Lines& lines, const MeshData& mesh, size_t first) {
+    float rgb[4] = {};
+    int count = 0;
+    for (; count < 4 && !lines.at_end(); ++count) rgb[count] = lines.number();
+    listed_ = listed_ || (count > 0 && count < 3);
+    values_.resize(3 * first, grey);
+    given_ = given_ || count >= 3;
+    for (size_t i = first; i < mesh.triangles.size(); ++i)
+      for (int c = 0; c < 3; ++c) values_.push_back(count >= 3 ? rgb[c] : grey);
+    unset_.resize(mesh.triangles.size(), count < 3);
+  }
+  void give(MeshData& mesh) {
+    if (listed_) mesh.remarks.emplace_back("colours of faces that are places in a list are left out");
+    if (!given_) return;
+    decode(values_);
+    for (size_t i = 0; i < unset_.size(); ++i)
+      if (unset_[i]) std::fill_n(values_.begin() + std::ptrdiff_t(3 * i), 3, grey);
+    mesh.face_attributes.push_back({"face_color", 3, std::move(values_)});
+  }
+
+ private:
+  static constexpr float grey = 0.7f;
+  std::vector<float> values_;
+  std::vector<bool> unset_;
+  bool given_ = false, listed_ = false;
+};
+
 }  // namespace
 
 MeshData read_off(std::string_view file) {
@@ -75,8 +115,10 @@ MeshData read_off(std::string_view file) {
       mesh.uvs.push_back({u, lines.number()});
     }
   }
+  decode(colors.values);
   if (columns.colors) mesh.attributes.push_back(std::move(colors));
   std::vector<std::uint32_t> corners;
+  FaceColors face_colors;
   for (size_t i = 0; i < faces; ++i) {
     if (!next(lines)) throw Error("it ends after " + std::to_string(i) + " of " + std::to_string(faces) + " faces");
     const size_t n = count(lines, file, "corners");
@@ -88,8 +130,11 @@ MeshData read_off(std::string_view file) {
         lines.error("refers to vertex " + std::to_string(vertex) + " of " + std::to_string(vertices) + " (counting from 0)");
       corners.push_back(std::uint32_t(vertex));
     }
+    const size_t first = mesh.triangles.size();
     append_polygon(mesh, corners.data(), corners.size());
+    face_colors.read(lines, mesh, first);
   }
+  face_colors.give(mesh);
   if (mesh.triangles.empty()) throw Error("it has no faces");
   return mesh;
 }

@@ -56,6 +56,8 @@ Header read_header(std::string_view file) {
       if (words.size() != 1 || words[0] != "ply") fail("a PLY file must begin with 'ply'");
       continue;
     }
+    if (words.size() > 2 && words[0] == "comment" && words[1] == "TextureFile" && header.texture.empty())
+      header.texture = line.substr(size_t(words[2].data() - line.data()));
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "end_header") break;
     if (words[0] == "format") {

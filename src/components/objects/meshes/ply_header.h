@@ -47,7 +47,8 @@ struct Element {
 struct Header {
   bool text = false, swap = false;
   std::vector<Element> elements;
-  size_t size = 0;  // bytes up to the body
+  std::string texture;  // "comment TextureFile name", as MeshLab and others write
+  size_t size = 0;      // bytes up to the body
 };
 
 /// Throws Error with the line.

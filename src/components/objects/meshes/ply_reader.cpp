@@ -2,110 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstring>
 
 #include "etendue/core/error.h"
 #include "geometry/own_centre.h"
 #include "mesh_data.h"
 #include "ply_attributes.h"
+#include "ply_body.h"
 #include "polygon_mesh.h"
 
 namespace etendue {
 namespace {
 
 using namespace ply;
-
-template <class T>
-T load(const char* at, bool swap) {
-  T value;
-  if (swap) {
-    char bytes[sizeof(T)];
-    for (size_t i = 0; i < sizeof(T); ++i) bytes[i] = at[sizeof(T) - 1 - i];
-    std::memcpy(&value, bytes, sizeof(T));
-  } else {
-    std::memcpy(&value, at, sizeof(T));
-  }
-  return value;
-}
-
-double load_number(const char* at, Type type, bool swap) {
-  switch (type) {
-    case Type::int8: return load<std::int8_t>(at, swap);
-    case Type::uint8: return load<std::uint8_t>(at, swap);
-    case Type::int16: return load<std::int16_t>(at, swap);
-    case Type::uint16: return load<std::uint16_t>(at, swap);
-    case Type::int32: return load<std::int32_t>(at, swap);
-    case Type::uint32: return load<std::uint32_t>(at, swap);
-    case Type::float32: return double(load<float>(at, swap));
-    case Type::float64: return load<double>(at, swap);
-  }
-  return 0;
-}
-
-/// Numbers of a PLY body, one after another.
-class Body {
- public:
-  Body(std::string_view file, size_t start, bool text, bool swap)
-      : begin_(file.data()), at_(file.data() + start), end_(file.data() + file.size()), text_(text), swap_(swap) {}
-
-  size_t left() const { return size_t(end_ - at_); }
-  const char* at() const { return at_; }
-  void advance(size_t bytes) { at_ += bytes; }
-  bool text() const { return text_; }
-  bool swap() const { return swap_; }
-
-  double number(Type type) {
-    if (text_) return text_number();
-    const size_t size = size_of(type);
-    if (left() < size) truncated();
-    const double value = load_number(at_, type, swap_);
-    at_ += size;
-    return value;
-  }
-
-  std::uint64_t count(const Property& p) {
-    const double n = number(p.count_type);
-    if (!(n >= 0 && n <= 4294967295.0) || n != std::floor(n)) error("a list of " + p.name + " has no valid length");
-    const std::uint64_t needed = std::uint64_t(n) * (text_ ? 1 : size_of(p.type));
-    if (needed > left())
-      error("a list of " + p.name + " claims " + std::to_string(std::uint64_t(n)) + " entries, more than the file holds");
-    return std::uint64_t(n);
-  }
-
-  void skip(const Property& p) {
-    const std::uint64_t n = p.list ? count(p) : 1;
-    if (text_) {
-      for (std::uint64_t i = 0; i < n; ++i) text_number();
-    } else {
-      if (n * size_of(p.type) > left()) truncated();
-      at_ += n * size_of(p.type);
-    }
-  }
-
-  [[noreturn]] void truncated() const { error("the file ends too early"); }
-  [[noreturn]] void error(const std::string& message) const {
-    if (!text_) throw Error(message);
-    throw Error("line " + std::to_string(1 + std::count(begin_, std::min(at_, end_), '\n')) + ": " + message);
-  }
-
- private:
-  double text_number() {
-    while (at_ < end_ && (*at_ == ' ' || *at_ == '\n' || *at_ == '\r' || *at_ == '\t')) ++at_;
-    if (at_ == end_) truncated();
-    if (*at_ == '+') ++at_;
-    double value = 0;
-    const auto [stop, code] = std::from_chars(at_, end_, value);
-    if (code == std::errc::invalid_argument) error("a number is expected");
-    if (code == std::errc::result_out_of_range) value = std::numeric_limits<double>::infinity();  // its triangles are dropped
-    at_ = stop;
-    if (at_ < end_ && static_cast<unsigned char>(*at_) > ' ') error("a number is expected");
-    return value;
-  }
-
-  const char *begin_, *at_, *end_;
-  bool text_, swap_;
-};
 
 void read_vertices(const Element& e, Body& body, MeshData& mesh) {
   const int x = e.find({"x"}), y = e.find({"y"}), z = e.find({"z"});
@@ -243,6 +152,43 @@ void read_faces(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polyg
   if (!polygons) attributes.finish();
 }
 
+/// Triangles in strips: each corner from the third on makes one with the two before it, every other one the other way round;
+/// -1 begins a new strip (Stanford's scans).
+void read_strips(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polygons) {
+  const int indices = e.find({"vertex_indices", "vertex_index"});
+  if (indices < 0 || !e.properties[size_t(indices)].list) throw Error("the strips have no list 'vertex_indices'");
+  const double vertices = double(mesh.positions.size());
+  for (std::uint64_t i = 0; i < e.count; ++i)
+    for (const Property& p : e.properties) {
+      if (&p != &e.properties[size_t(indices)]) {
+        body.skip(p);
+        continue;
+      }
+      std::array<std::uint32_t, 2> last{};
+      size_t length = 0;
+      for (std::uint64_t left = body.count(p); left > 0; --left) {
+        const double index = body.number(p.type);
+        if (index == -1) {
+          length = 0;
+          continue;
+        }
+        if (!(index >= 0 && index < vertices))
+          body.error(fmt::format("a strip refers to vertex {:.12g} of {:.12g} (counting from 0)", index, vertices));
+        const auto corner = std::uint32_t(index);
+        if (++length > 2) {
+          const std::array<std::uint32_t, 3> t{last[length % 2 == 1 ? 0 : 1], last[length % 2 == 1 ? 1 : 0], corner};
+          if (!polygons) {
+            mesh.triangles.push_back(t);
+          } else {
+            polygons->face_sizes.push_back(3);
+            polygons->corners.insert(polygons->corners.end(), t.begin(), t.end());
+          }
+        }
+        last = {last[1], corner};
+      }
+    }
+}
+
 MeshData parse(std::string_view file, PolygonMesh* polygons) {
   const Header header = read_header(file);
   Body body(file, header.size, header.text, header.swap);
@@ -261,7 +207,12 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
       vertices = true;
     } else if (e.name == "face") {
       if (!vertices) throw Error("faces come before the vertices they refer to");
+      if (e.find({"texcoord"}) >= 0) mesh.remarks.emplace_back("surface coordinates of the corners of faces are left out");
       read_faces(e, body, mesh, polygons);
+      faces = true;
+    } else if (e.name == "tristrips") {
+      if (!vertices) throw Error("strips come before the vertices they refer to");
+      read_strips(e, body, mesh, polygons);
       faces = true;
     } else {
       for (std::uint64_t i = 0; i < e.count; ++i)
@@ -269,6 +220,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
     }
     if (vertices && faces) break;
   }
+  mesh.texture = header.texture;
   if (!vertices) throw Error("it has no vertices");
   if (polygons ? polygons->face_sizes.empty() : mesh.triangles.empty()) throw Error("it has no faces");
   return mesh;

@@ -1,0 +1,34 @@
+#pragma once
+// Numbers and colours of surfaces as maps.
+
+#include "surface.h"
+
+namespace etendue {
+
+class SurfaceMaps {
+ public:
+  SurfaceMaps(Importing& importing, Location at) : importing_(importing), at_(at) {}
+
+  /// None: it is the same everywhere.
+  Ref<Component> color(const SurfaceColor&) const;
+  Ref<Component> number(const SurfaceNumber&) const;
+  /// A surface's opacity, above and below its cutoff.
+  Ref<Component> opacity(const Surface&) const;
+  /// The opacity where it is the same everywhere.
+  static double same_opacity(const Surface&);
+  /// A colour as light that becomes less where there is less of the surface; none: it is the same everywhere.
+  Ref<Component> emitted(const SurfaceColor&, const Ref<Component>& opacity) const;
+  /// A channel of an image, or its colours ("").
+  Ref<Component> image(const SurfaceTexture&, const std::string& channel, bool linear) const;
+
+ private:
+  Ref<Component> part(const char* class_name) const { return importing_.make(class_name, at_); }
+  void put(Component& to, std::string_view member, const Ref<Component>& value) const { set(to, member, Value(value, at_)); }
+  Ref<Component> product(const Ref<Component>& first, const Value& second) const;
+  std::string channel_there(const std::string& file, const std::string& channel) const;
+
+  Importing& importing_;
+  Location at_;
+};
+
+}  // namespace etendue
