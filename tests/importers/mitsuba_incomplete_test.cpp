@@ -41,6 +41,8 @@ TEST(MitsubaIncomplete, WhatAnIntegratorAroundAnotherAddsIsTold) {
   EXPECT_EQ(adaptive.job->renderer->class_info().name, "AdaptiveSampling");
   EXPECT_EQ(part(*adaptive.job->renderer, "inner").class_info().name, "PathTracer");
   EXPECT_EQ(number(*adaptive.job->renderer, "samples"), 4096);
+  const std::string cached = "<integrator type=\"irrcache\">" + path + "</integrator>";
+  EXPECT_EQ(part(*around("adaptive", cached).job->renderer, "inner").class_info().name, "PathTracer");
   EXPECT_EQ(around("adaptive", "<integrator type=\"bdpt\"/></integrator>").job->renderer->class_info().name,
             "BidirectionalPathTracer");
 }

@@ -12,6 +12,9 @@ struct MeasuredMedium {
   std::array<double, 3> scattering, absorption;
 };
 
+/// What pbrt takes where nothing is said.
+inline constexpr MeasuredMedium whole_milk{"Wholemilk", {2.55, 3.21, 3.77}, {0.0011, 0.0024, 0.014}};
+
 std::span<const MeasuredMedium> measured_media();
 
 }  // namespace etendue

@@ -109,8 +109,8 @@ Ref<Component> Converter::around(const Element& e, const std::vector<const Eleme
     inexact(e, fmt::format("'{}' around another integrator is left out", t));
   Ref<Component> made = light_transport(*inner.front());
   if (t == "adaptive") {
-    static const std::vector<std::string> plain = {"path", "volpath", "volpath_simple", "direct"};
-    if (std::ranges::find(plain, inner.front()->type) != plain.end()) {
+    // Others than these spread a sample over the picture.
+    if (const std::string& of = made->class_info().name; of == "PathTracer" || of == "DirectRenderer") {
       inexact(e, "'adaptive' becomes AdaptiveSampling: samples are the mean over all pixels, whatever the error");
       Ref<Component> outer = make("AdaptiveSampling", e);
       set_member(*outer, "inner", made, e.at);
@@ -174,7 +174,8 @@ Ref<Component> Converter::light_transport(const Element& e) {
   if (t == "direct" || t == "direct_projective") {
     made = make("DirectRenderer", e);
     const std::int64_t both = e.integer("shading_samples", 1);
-    const std::int64_t lights = e.integer("emitter_samples", both), bsdfs = e.integer("bsdf_samples", both);
+    const std::int64_t lights = e.integer("emitter_samples", e.integer("luminaire_samples", both)),
+                       bsdfs = e.integer("bsdf_samples", both);
     set_member(*made, "strategy", bsdfs == 0 ? "light" : (lights == 0 ? "shader" : "both"), e.location_of("bsdf_samples"));
     set_member(*made, "light_samples", double(std::max<std::int64_t>(lights, 1)), e.location_of("emitter_samples"));
     set_member(*made, "shader_samples", double(std::max<std::int64_t>(bsdfs, 1)), e.location_of("bsdf_samples"));

@@ -140,8 +140,8 @@ Ref<Component> subsurface(Reader& reader, const Parameters& p, bool kd) {
     const Color mfp = constant("mfp", flat_spectrum(1));
     set_member(*shader, "mean_free_path", scale == 1 ? mfp : scaled_spectrum(scale, mfp), at);
   } else {
-    const Measured* const named = measured_medium(reader, p, "name");
-    const Measured& known = named ? *named : whole_milk;
+    const MeasuredMedium* const named = measured_medium(reader, p, "name");
+    const MeasuredMedium& known = named ? *named : whole_milk;
     const auto coefficient = [&](const char* name, const std::array<double, 3>& otherwise) {
       const Color color = rgb_color("srgb", otherwise[0], otherwise[1], otherwise[2]);
       return named ? color : constant(name, color);

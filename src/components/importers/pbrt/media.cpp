@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "components/importers/measured_media.h"
 #include "media.h"
 
 namespace etendue::pbrt {
@@ -14,20 +13,20 @@ namespace {
 void homogeneous(Reader& reader, const std::string& name, const Parameters& p) {
   const Location at = p.at;
   const Ref<Component> medium = reader.make("HomogeneousVolume", at, name);
-  const Measured* const found = measured_medium(reader, p, "preset");
+  const MeasuredMedium* const found = measured_medium(reader, p, "preset");
   // Where nothing is said v3 takes whole milk, v4 the number 1; what is said beside a preset counts in v3 alone.
-  const Measured* const otherwise = found ? found : reader.version == 3 ? &whole_milk : nullptr;
+  const MeasuredMedium* const otherwise = found ? found : reader.version == 3 ? &whole_milk : nullptr;
   const double scale = p.number("scale", 1);
-  const auto coefficient = [&](const char* parameter, const std::array<double, 3> Measured::* part) {
+  const auto coefficient = [&](const char* parameter, const std::array<double, 3> MeasuredMedium::* part) {
     const Parameter* given = found && reader.version != 3 ? nullptr : p.find(parameter);
     const Color color = given       ? spectrum_of(reader, p, *given, Use::coefficient)
                         : otherwise ? rgb_color("srgb", (otherwise->*part)[0], (otherwise->*part)[1], (otherwise->*part)[2])
                                     : flat_spectrum(1);
     return scale == 1 ? color : scaled_spectrum(scale, color);
   };
-  const Color absorption = coefficient("sigma_a", &Measured::absorption);
+  const Color absorption = coefficient("sigma_a", &MeasuredMedium::absorption);
   set_member(*medium, "absorption", absorption, at);
-  set_member(*medium, "scattering", coefficient("sigma_s", &Measured::scattering), at);
+  set_member(*medium, "scattering", coefficient("sigma_s", &MeasuredMedium::scattering), at);
   set_member(*medium, "anisotropy", p.number("g", 0), at);
   set_emission_of_medium(reader, *medium, p, absorption);
   reader.media[name] = medium;
@@ -65,16 +64,11 @@ void place_medium(Reader& reader, const std::string& name, const Ref<Component>&
   reader.media[name] = medium;
 }
 
-const Measured* measured_medium(Reader& reader, const Parameters& p, const char* parameter) {
+const MeasuredMedium* measured_medium(Reader& reader, const Parameters& p, const char* parameter) {
   const std::string name = p.text(parameter);
   if (name.empty()) return nullptr;
-  static const std::vector<Measured> all = [] {
-    std::vector<Measured> here;
-    for (const MeasuredMedium& m : measured_media()) here.push_back({m.name, m.scattering, m.absorption});
-    return here;
-  }();
   std::vector<std::string> known;
-  for (const Measured& m : all) {
+  for (const MeasuredMedium& m : measured_media()) {
     if (name == m.name) return &m;
     known.emplace_back(m.name);
   }

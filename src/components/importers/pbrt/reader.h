@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "components/importers/measured_media.h"
 #include "etendue/emission_shader.h"
 #include "etendue/importer.h"
 #include "etendue/object_map.h"
@@ -235,14 +236,8 @@ void set_emission(Component& object, const Ref<Component>& emission, Location at
 
 // media.cpp
 void make_medium(Reader&, const std::string& name, Parameters&&);
-/// A measured medium, in 1/mm: the reduced scattering coefficient and absorption of red, green and blue.
-struct Measured {
-  const char* name;
-  std::array<double, 3> scattering, absorption;
-};
-inline constexpr Measured whole_milk{"Wholemilk", {2.55, 3.21, 3.77}, {0.0011, 0.0024, 0.014}};
 /// The one that a parameter names; null: it names none, or (told) one that is not known.
-const Measured* measured_medium(Reader&, const Parameters&, const char* parameter);
+const MeasuredMedium* measured_medium(Reader&, const Parameters&, const char* parameter);
 /// The medium of a name for an object that stands in the world so; null: it was left out.
 Ref<Component> medium_for(Reader&, const std::string& name, const AnimatedTransform& object, Location at);
 
