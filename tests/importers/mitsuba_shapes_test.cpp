@@ -50,6 +50,15 @@ TEST(MitsubaCurve, RadiiAreNotScaled) {
   EXPECT_NEAR(seen(import_text(folder, scene(camera + integrator() + curve + sky)), 16384).y, 0.8, 0.01);
 }
 
+TEST(MitsubaCurve, HairsThatAreLeftOutThereAreTold) {
+  const TemporaryFolder folder;
+  folder.write("strands.hair", "0 0 0\n0 1 0\n");
+  const Imported i = import_text(folder, scene(sensor() + integrator() + sky +
+                                               "<shape type=\"hair\"><string name=\"filename\" value=\"strands.hair\"/><float "
+                                               "name=\"reduction\" value=\"0.5\"/></shape>"));
+  EXPECT_NE(i.told().find("all hairs are there"), std::string::npos) << i.told();
+}
+
 TEST(MitsubaCurve, BinaryHair) {
   const TemporaryFolder folder;
   std::string bytes = "BINARY_HAIR";

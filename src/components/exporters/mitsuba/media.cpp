@@ -196,9 +196,10 @@ bool Writer::map_medium(Node of, const Component& v, const char* name, const Tra
   const Ref<Component> extinction = part_of(v, "extinction"), density = part_of(v, "density"), albedo = part_of(v, "albedo");
   double scale = 1;
   const Ref<Component> map = extinction ? grid_of_product(*extinction, scale) : nullptr;
-  if (!map || !density || !albedo || truth_of(v, "limited")) return false;
+  if (!map || !density || !albedo) return false;
+  const bool limited = truth_of(v, "limited");
   const Color even = constant_of(*albedo), everywhere = constant_of(*density);
-  const bool boxed = class_of(*density) == "GridMap" && word_of(*density, "outside") == "cut" &&
+  const bool boxed = !limited && class_of(*density) == "GridMap" && word_of(*density, "outside") == "cut" &&
                      word_of(*density, "file").empty() && numbers_of(*density, "values") == std::vector<double>{1};
   if ((!even && class_of(*albedo) != "GridMap") || (!boxed && !(everywhere && same_everywhere(everywhere) == 1))) return false;
   VolumeGrid densities, albedos;
@@ -223,13 +224,17 @@ bool Writer::map_medium(Node of, const Component& v, const char* name, const Tra
   Bounds3 ends{{0, 0, 0}, {1, 1, 1}}, there = ends;
   if (by_file(*map)) ends = there = {densities.low, densities.high};
   there = (placed * still(transform_of(*map, "placement"), *map))(there);
-  if (boxed) {
-    const Transform box = placed * still(transform_of(*density, "placement"), *density);
-    ends = along_axes(box) ? box(Bounds3{{0, 0, 0}, {1, 1, 1}}) : Bounds3{};
+  if (boxed || limited) {
+    const Transform box = boxed ? placed * still(transform_of(*density, "placement"), *density) : placed;
+    const std::vector<double> low = numbers_of(v, "low"), high = numbers_of(v, "high");
+    const Bounds3 own = boxed ? Bounds3{{0, 0, 0}, {1, 1, 1}}
+                              : Bounds3{{float(low[0]), float(low[1]), float(low[2])},  //
+                                        {float(high[0]), float(high[1]), float(high[2])}};
+    ends = along_axes(box) ? box(own) : Bounds3{};
   }
   const float far = 1e-4f * length(there.diagonal());
-  if ((!boxed && word_of(*map, "outside") != "cut") || ends.empty() ||
-      (boxed && (length(ends.low - there.low) > far || length(ends.high - there.high) > far)))
+  if ((!boxed && !limited && word_of(*map, "outside") != "cut") || ends.empty() ||
+      ((boxed || limited) && (length(ends.low - there.low) > far || length(ends.high - there.high) > far)))
     exporting.inexact("a medium on a grid ends with the box around its densities in Mitsuba", &v);
   return true;
 }

@@ -12,7 +12,7 @@
 
 namespace etendue::mitsuba {
 
-Ref<Component> Converter::heterogeneous(const Element& e, const Component& object, const Element* glow) {
+Ref<Component> Converter::heterogeneous(const Element& e, const Component& body, const Element* glow) {
   const char* const name = e.has("sigma_t") ? "sigma_t" : "density";  // the latter in 0.5
   const Element *const volume = e.nested(name), *albedo = e.nested("albedo");
   if (albedo && albedo->tag != "volume") albedo = nullptr;
@@ -35,10 +35,19 @@ Ref<Component> Converter::heterogeneous(const Element& e, const Component& objec
   const bool boxed = !even || !e.old;  // before version 2 a constant volume had no bounds
   const Location at = e.location_of(name);
   if (!boxed && !of_maps) return even_everywhere(e, all_of_it, albedo);
+  // A box that the cells do not fill limits the medium, whose maps are then in its coordinates.
+  const Ref<Component> frame = apart ? make("Box", e, "") : nullptr;
+  if (frame) set_member(*frame, "transform", place->box, at);
+  const Component& object = frame ? *frame : body;
   Ref<Component> medium = make(of_maps ? "MapVolume" : "GridVolume", e);
   if (of_maps) {
     // What shines ends with the box, too, which is therefore the density; a file's box is known to the grid alone.
-    if (boxed && (even || apart || !place->by_file)) set_member(*medium, "density", box_of(e, volume, object), at);
+    if (apart) {
+      set_member(*medium, "limited", true, at);
+      set_member(*medium, "placement", to_world_of(body).inverse() * place->box, at);
+    } else if (boxed && (even || !place->by_file)) {
+      set_member(*medium, "density", box_of(e, volume, object), at);
+    }
     Ref<Component> extinction;
     if (!even) {
       const Ref<Component> grid = make("GridMap", *volume);
