@@ -11,7 +11,8 @@ using Names = std::map<std::string, size_t>;
 
 class SceneWriter {
  public:
-  SceneWriter(const aiScene& scene, Glb& glb, const std::string& ending) : scene_(scene), glb_(glb), ending_(ending) {}
+  SceneWriter(const aiScene& scene, Glb& glb, const std::string& ending, double unit)
+      : scene_(scene), glb_(glb), ending_(ending), unit_(unit) {}
 
   void write() {
     convert_materials(scene_, glb_, ending_);
@@ -21,7 +22,6 @@ class SceneWriter {
     convert_lights(scene_, glb_, find, &names_, unit());
     glb_.json["scenes"] = Json::array({{{"nodes", {outer(root)}}}});
     glb_.json["scene"] = 0;
-    if (ending_ == "3mf") glb_.note("lengths of this format are taken for millimetres, whatever unit its file states");
     if (scene_.mNumAnimations > 0) glb_.note("animations of this format are not read: it is as it was saved");
     if (glb_.json.contains("nodes") && glb_.json["extensionsUsed"].empty()) glb_.json.erase("extensionsUsed");
   }
@@ -140,12 +140,13 @@ class SceneWriter {
     if (scene_.mMetaData && !scene_.mMetaData->Get("UnitScaleFactor", unit) &&
         scene_.mMetaData->Get("UnitScaleFactor", unit_float))
       unit = double(unit_float);
-    return unit > 0 && std::isfinite(unit) ? unit / 100 : (ending_ == "3mf" ? 1e-3 : 1);  // FBX has it in centimetres
+    return unit > 0 && std::isfinite(unit) ? unit / 100 : (unit_ > 0 ? unit_ : 1);  // FBX has it in centimetres
   }
 
   const aiScene& scene_;
   Glb& glb_;
   const std::string& ending_;
+  double unit_;
   std::vector<size_t> meshes_;  // their places in the .glb
   std::vector<std::pair<size_t, unsigned>> skinned_;
   Names names_;
@@ -160,6 +161,8 @@ Json matrix_json(const aiMatrix4x4& m) {
   return columns;
 }
 
-void convert(const aiScene& scene, Glb& glb, const std::string& ending) { SceneWriter(scene, glb, ending).write(); }
+void convert(const aiScene& scene, Glb& glb, const std::string& ending, double unit) {
+  SceneWriter(scene, glb, ending, unit).write();
+}
 
 }  // namespace etendue::assimp_helper

@@ -7,8 +7,9 @@
 
 namespace etendue::assimp_helper {
 
-/// The whole scene of a file with this ending (small letters, without a dot).
-void convert(const aiScene&, Glb&, const std::string& ending);
+/// The whole scene of a file with this ending (small letters, without a dot). `unit` is that of its lengths [m], where the
+/// library does not tell it; 0: it does.
+void convert(const aiScene&, Glb&, const std::string& ending, double unit);
 
 /// The materials; their places are those in the scene. See materials.cpp.
 void convert_materials(const aiScene&, Glb&, const std::string& ending);

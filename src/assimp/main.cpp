@@ -1,12 +1,13 @@
-// etendue_assimp FILE [FOLDER ...]: reads a model of one of the many formats that Assimp knows and writes it as .glb to
-// standard output; what is wrong goes to standard error. It is a program of its own, so that a fault in the library ends
-// nothing else, and it may open only what lies in the file's folder and those that are named.
+// etendue_assimp FILE [--unit=METRES] [FOLDER ...]: reads a model of one of the many formats that Assimp knows and writes it as
+// .glb to standard output; what is wrong goes to standard error. It is a program of its own, so that a fault in the library
+// ends nothing else, and it may open only what lies in the file's folder and those that are named.
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 
 #include <assimp/Importer.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -23,6 +24,12 @@ namespace {
 using namespace etendue::assimp_helper;
 
 int run(const std::string& path, std::vector<std::string> folders) {
+  double unit = 0;
+  constexpr std::string_view unit_option = "--unit=";
+  if (!folders.empty() && folders[0].starts_with(unit_option)) {
+    unit = std::strtod(folders[0].c_str() + unit_option.size(), nullptr);
+    folders.erase(folders.begin());
+  }
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(path, error);
   const std::string folder = std::filesystem::path(path).parent_path().string();
@@ -50,7 +57,7 @@ int run(const std::string& path, std::vector<std::string> folders) {
   Glb glb;
   std::string ending = std::filesystem::path(path).extension().string();
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-  convert(*scene, glb, ending.empty() ? ending : ending.substr(1));
+  convert(*scene, glb, ending.empty() ? ending : ending.substr(1), unit);
   const std::uint64_t digest = glb.digest();
   if (second.here()) {
     second.tell(digest);
@@ -67,7 +74,7 @@ int run(const std::string& path, std::vector<std::string> folders) {
 
 int main(int count, char** arguments) {
   if (count < 2) {
-    std::fprintf(stderr, "etendue_assimp FILE [FOLDER ...]\n");
+    std::fprintf(stderr, "etendue_assimp FILE [--unit=METRES] [FOLDER ...]\n");
     return 2;
   }
   try {

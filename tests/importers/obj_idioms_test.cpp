@@ -38,6 +38,7 @@ TEST(ObjIdioms, OddLinesDoNotRefuseTheFile) {
   EXPECT_NE(said.find("line 8: a face of fewer than three vertices"), std::string::npos) << said;
   EXPECT_NE(said.find("line 5: a normal that is no number"), std::string::npos) << said;
   for (const Normal3& n : mesh.normals) EXPECT_TRUE(std::isfinite(n.x));
+  EXPECT_EQ(read_mesh(folder.write("more.obj", "v 1e+2 2.e+1 3.1+e2\n" + square + "f 1 2 3\n")).triangles.size(), 1u);
   EXPECT_THROW(read_mesh(folder.write("none.obj", square + "f 1 2\n")), Error);
   EXPECT_THROW(read_mesh(folder.write("bad.obj", square + "vn a 0 0\nf 1 2 3\n")), Error);
 }

@@ -1,10 +1,14 @@
 // AssimpImporter: the many formats that the library Assimp reads. It does so in a process of its own (src/assimp), which gives
 // a .glb: what is read here is always glTF, and checked as such.
 
+#include <fmt/format.h>
+
 #include "components/importers/gltf/document.h"
 #include "components/importers/gltf/import_document.h"
 #include "components/objects/meshes/mesh_data.h"
+#include "files/gzip.h"
 #include "helper_process.h"
+#include "unit_of_3mf.h"
 
 namespace etendue {
 namespace {
@@ -17,6 +21,7 @@ const std::vector<std::string>& endings() {
 
 std::string convert(const std::string& path, const Importing& importing) {
   std::vector<std::string> arguments{path};
+  if (ending_of_contents(path) == "3mf") arguments.push_back(fmt::format("--unit={}", unit_of_3mf(path)));
   for (const std::string& folder : importing.options().allowed_folders) arguments.push_back(folder);
   return run_helper("etendue_assimp", arguments);
 }

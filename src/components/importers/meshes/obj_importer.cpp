@@ -94,7 +94,10 @@ class ObjImporter final : public Importer {
       if (word == "v" && !looked) {
         looked = true;
         int count = 0;
-        for (; count < 7 && !lines.at_end(); ++count) lines.number();
+        try {
+          for (; count < 7 && !lines.at_end(); ++count) lines.number();
+        } catch (const Error&) {  // the reader tells
+        }
         used.colored = used.colored || count == 6;
       }
       used.colored = used.colored || word == "#MRGB";

@@ -17,10 +17,14 @@ class ObjColors {
 
   /// What stands behind the place of a vertex: three numbers are its colour, one is a weight that only curves have.
   void vertex(Lines& lines, size_t index) {
+    if (lines.at_end()) return;
     float rgb[3] = {};
-    int count = 0;
-    for (; count < 3 && !lines.at_end(); ++count) rgb[count] = lines.number();
-    if (count < 3 || !lines.at_end()) return;
+    try {
+      for (float& x : rgb) x = lines.number();
+    } catch (const Error&) {
+      return;  // fewer numbers, or something else
+    }
+    if (!lines.at_end()) return;
     resize();
     for (size_t c = 0; c < 3; ++c) {
       values_[3 * index + c] = rgb[c];
