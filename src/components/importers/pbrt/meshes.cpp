@@ -41,9 +41,23 @@ void face_normals(const std::vector<double>& positions, const std::vector<double
   }
 }
 
+/// Whether any triangle has an area.
+bool has_area(const Mesh& mesh) {
+  for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+    const size_t a = size_t(mesh.indices[t]), b = size_t(mesh.indices[t + 1]), c = size_t(mesh.indices[t + 2]);
+    const Vertex face = across(difference(mesh.positions, b, a), difference(mesh.positions, c, a));
+    if (face != Vertex{}) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Shape object_of(Reader& reader, Mesh&& mesh, Location at) {
+  if (!has_area(mesh)) {
+    reader.importing.inexact("a mesh whose triangles have no area is left out", at);
+    return {};
+  }
   if (!mesh.normals.empty()) face_normals(mesh.positions, mesh.normals, mesh.indices);
   if (reader.state.reversed) {
     for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);

@@ -16,6 +16,7 @@ namespace {
 struct DisneyParts {
   Spectrum color, tint = Spectrum(1.0f);
   float roughness, metallic, spec_tint, sheen, sheen_tint, flatness, clearcoat, coat_alpha, eta, body, glass;
+  bool opaque;  ///< no light goes through anywhere on the surface
   MicrofacetDistribution facets;
 };
 
@@ -36,6 +37,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
 
   ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (out.z == 0 || in.z == 0) return {};
+    if (turned(out)) return local_value_and_density(mirrored(out), mirrored(in), which);
     const Chances chances = chances_of(out, which);
     const bool front = out.z > 0;
     if (!front && !(d_.glass > 0)) return {};
@@ -66,6 +68,11 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
   }
 
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+    if (turned(out)) {
+      const bool drawn = local_sample(mirrored(out), choice, u, which, s);
+      s.in = mirrored(s.in);
+      return drawn;
+    }
     if (out.z == 0 || (out.z < 0 && !(d_.glass > 0))) return false;
     const Chances chances = chances_of(out, which);
     s.lobe = glossy_reflection;
@@ -102,6 +109,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+    if (turned(out)) return local_albedo(mirrored(out), which);
     const Shares a = shares(out, Near::middle);
     Spectrum sum;
     if (which & diffuse_reflection) sum += a.diffuse;
@@ -124,6 +132,9 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     float diffuse = 0, coat = 0, facets = 0;
   };
 
+  /// What lets no light through looks the same from both sides; of glass the back is the way out.
+  bool turned(const Vector3& out) const { return d_.opaque && out.z < 0; }
+  static Vector3 mirrored(const Vector3& v) { return {v.x, v.y, -v.z}; }
   float towards(const Vector3& out) const { return out.z > 0 ? d_.eta : 1 / d_.eta; }
   Spectrum sheen() const { return disney::mix(d_.sheen_tint, Spectrum(1.0f), d_.tint) * (d_.sheen * (1 - d_.metallic)); }
   /// Of a facet that a dielectric's F is f for.
@@ -262,6 +273,7 @@ class DisneyPrincipled final : public Shader {
         {"sheen", sheen},         {"sheen_tint", sheen_tint},
         {"clearcoat", clearcoat}, {"clearcoat_gloss", clearcoat_gloss}};
     for (const auto& [name, map] : numbers) require_scalar(*this, name, map);
+    opaque_ = everywhere(spec_trans, 0);
   }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
@@ -278,6 +290,7 @@ class DisneyPrincipled final : public Shader {
     const float glass = scalar_at(*spec_trans, p);
     d.body = (1 - d.metallic) * (1 - glass);
     d.glass = (1 - d.metallic) * glass;
+    d.opaque = opaque_;
     d.eta = ior;
     if (const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
       d.eta /= MediumStack::index(outside, w).average();
@@ -297,6 +310,9 @@ class DisneyPrincipled final : public Shader {
                  sheen = constant(0.0f), sheen_tint = constant(0.0f), clearcoat = constant(0.0f),
                  clearcoat_gloss = constant(0.0f);
   float ior = 1.5f;
+
+ private:
+  bool opaque_ = true;
 };
 
 const Register<DisneyPrincipled> registered;
