@@ -238,10 +238,10 @@ void Principled::prepare() {
   // What lies on the base, and anisotropy, makes it rougher alone: its own roughness decides.
   const bool smooth = may_be_smooth(specular_roughness), smooth_coat = !always(coat_weight, 0) && may_be_smooth(coat_roughness);
   possible_lobes_ = glossy_reflection;
-  possible_lobes_ |= specular_reflection;
+  if (smooth || smooth_coat) possible_lobes_ |= specular_reflection;
   if (matt) possible_lobes_ |= diffuse_reflection;
   if (clear) possible_lobes_ |= glossy_transmission;
-  if (clear) possible_lobes_ |= specular_transmission;
+  if (clear && smooth) possible_lobes_ |= specular_transmission;
   if (matt && thin_walled && !always(subsurface_weight, 0)) possible_lobes_ |= diffuse_transmission;
   if (!always(geometry_opacity, 1)) possible_lobes_ |= pass_through;
 
