@@ -184,7 +184,7 @@ TEST(ForeignModels, LambertianSurfacesDoNotShine) {
   const Model m = model(folder.write("p.dae", collada));
   ASSERT_EQ(m.error, "");
   const std::string written = write_description(*m.scene);
-  EXPECT_NE(written.find("specular_weight: 0"), std::string::npos) << written;
+  EXPECT_NE(written.find("specular_weight: 0\n"), std::string::npos) << written;
 }
 
 /// A box of FBX, as text, with more in it and another unit.

@@ -119,6 +119,7 @@ TEST(GltfExportMaps, CardsWithHoles) {
   EXPECT_NEAR(m["alphaCutoff"].get<double>(), 0.25, 1e-6);
   EXPECT_TRUE(m.contains("emissiveTexture")) << m;
   EXPECT_EQ(m["emissiveFactor"], Json({1.0, 1.0, 1.0}));
+  EXPECT_NEAR(m["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"].get<double>(), 1, 1e-6);
 }
 
 // A lamp of a shape that glTF has no word for keeps its power.

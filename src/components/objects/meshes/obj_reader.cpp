@@ -1,12 +1,12 @@
-// Wavefront OBJ files: v, vt, vn, f, s and usemtl, and colours of vertices (obj_colors.h). Of materials the names are kept and
-// which triangle has which: ObjImporter makes shaders of them. Everything else (groups, curves) says nothing about triangles.
+// Wavefront OBJ files: v, vt, vn, f, s and usemtl, and colours of vertices (obj_vertices.h). Of materials the names are kept
+// and which triangle has which: ObjImporter makes shaders of them. Everything else (groups, curves) says nothing about
+// triangles.
 
 #include <unordered_map>
 
 #include "geometry/own_centre.h"
 #include "geometry/triangle_test.h"
 #include "mesh_data.h"
-#include "obj_colors.h"
 #include "obj_lines.h"
 #include "obj_vertices.h"
 #include "polygon_mesh.h"

@@ -8,7 +8,6 @@
 #include "geometry/own_centre.h"
 #include "mesh_data.h"
 #include "ply_attributes.h"
-#include "ply_body.h"
 #include "polygon_mesh.h"
 
 namespace etendue {
