@@ -3,12 +3,17 @@
 #include <fstream>
 #include <sstream>
 
+#include "utf16.h"
+
 namespace etendue::assimp_helper {
 
 std::string wrong_ase_index(const std::string& path) {
-  const std::string ending = path.size() > 4 ? path.substr(path.size() - 4) : std::string();
-  if (ending != ".ase" && ending != ".ASE") return {};
-  std::ifstream file(path);
+  if (!is_ase(path)) return {};
+  std::ifstream plain(path);
+  std::istringstream decoded;
+  const std::optional<std::string> wide = utf16_text(path);
+  if (wide) decoded.str(*wide);
+  std::istream& file = wide ? static_cast<std::istream&>(decoded) : plain;
   unsigned long corners[2] = {0, 0};  // of textures, of colours: how many the list has that stands before the faces
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);

@@ -1,5 +1,6 @@
 #include "limits.h"
 
+#include <assimp/MemoryIOWrapper.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
@@ -15,6 +16,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+
+#include "utf16.h"
 
 namespace etendue::assimp_helper {
 namespace {
@@ -94,6 +98,12 @@ bool FilesWithin::Exists(const char* path) const { return !allowed(path).empty()
 
 Assimp::IOStream* FilesWithin::Open(const char* path, const char*) {
   const std::string found = allowed(path);
+  if (!found.empty() && is_ase(found))
+    if (const std::optional<std::string> text = utf16_text(found)) {
+      auto* const bytes = new std::uint8_t[text->size() + 1];
+      std::copy_n(text->c_str(), text->size() + 1, bytes);
+      return new Assimp::MemoryIOStream(bytes, text->size(), true);
+    }
   std::FILE* file = found.empty() ? nullptr : std::fopen(found.c_str(), "rb");
   return file ? new File(file) : nullptr;
 }

@@ -178,6 +178,13 @@ TEST(ForeignModels, AColourIsTheBaseColour) {
       << written;
 }
 
+TEST(ForeignModels, AseInUtf16) {
+  const TemporaryFolder folder;
+  std::string wide = "\xff\xfe";
+  for (const char c : ase()) wide += {c, '\0'};
+  expect_pyramid(model(folder.write("p.ase", wide)));
+}
+
 // Of a Lambertian surface the library makes up highlights.
 TEST(ForeignModels, LambertianSurfacesDoNotShine) {
   const TemporaryFolder folder;
