@@ -167,6 +167,10 @@ TEST(PbrtAsFound, PlasticKeepsItsColour) {
   const Imported i = import_text(v3("Material \"plastic\" \"rgb Kd\" [.8 .1 .1] \"rgb Ks\" [.1 .1 .1]" + sphere));
   const Value color = get(part(shader(i), "first"), "color");
   EXPECT_EQ((*color.as<Ref<Component>>())->class_info().name, "ConstantMap");  // which exporters can write
+  // Shares of 2/3 and 1/3: a spectrum times 1.5 would exceed 1 in the red, where that of a colour of 0.9 does not.
+  const Imported red = import_text(v3("Material \"plastic\" \"rgb Kd\" [.6 .1 .1] \"rgb Ks\" [.3 .3 .3]" + sphere));
+  ASSERT_TRUE(red.job) << red.told();
+  EXPECT_NO_THROW(prepare_tree(*red.job));
 }
 
 }  // namespace

@@ -21,7 +21,16 @@ double largest(const Value& v) {
 
 Value divided(Reader& reader, Value v, double by, Location at) {
   if (const Number* n = v.as<Number>()) return Value(Number{n->value / by}, at);
-  if (const Color* c = v.as<Color>()) return Value(scaled_spectrum(1 / by, *c), at);
+  if (const Color* c = v.as<Color>()) {
+    if (!((*c)->largest_component() > 0)) return Value(scaled_spectrum(1 / by, *c), at);
+    // Of RGB the numbers are divided, and their spectrum made anew: divided itself it would exceed 1 at the ends.
+    const Xyz xyz = to_xyz(**c, ColorUse::reflectance, illuminant_spectrum("D65").get());
+    const auto& m = rgb_space("srgb").from_xyz;
+    const auto component = [&](size_t i) {
+      return std::clamp((m[i] * double(xyz.x) + m[i + 1] * double(xyz.y) + m[i + 2] * double(xyz.z)) / by, 0.0, 1.0);
+    };
+    return Value(rgb_color("srgb", component(0), component(3), component(6)), at);
+  }
   return Value(formula(reader, at, fmt::format("{} * map", 1 / by), {{"map", v}}), at);
 }
 
