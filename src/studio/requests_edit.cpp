@@ -7,7 +7,8 @@
 namespace etendue::studio {
 
 void require_no_draft(const Document& document) {
-  if (document.draft()) throw RequestError("draft", "the text has errors: mend it, or drop what was typed, before other edits");
+  if (document.draft())
+    throw RequestError("draft", "the text has errors: correct it, or discard what was typed, before other edits");
 }
 
 Json tell(const Call& call, const Applied& applied) {

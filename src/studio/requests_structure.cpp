@@ -111,7 +111,7 @@ Json share(const Call& call) {
   const Slot s = slot_of(call);
   const Ref<Component> with = call.component("with");
   editor.set(s, editor.name_of(with));
-  return apply(call, editor, "share " + s.member->name);
+  return apply(call, editor, "use an existing " + s.member->name);
 }
 
 Json unshare(const Call& call) {
@@ -123,7 +123,7 @@ Json unshare(const Call& call) {
       list && s.index && *s.index < list->size() ? (*list)[*s.index].as<Ref<Component>>() : value.as<Ref<Component>>();
   if (!part || !*part || editor.name_in(s).empty()) throw Error("what stands there is not shared by a name");
   editor.set(s, editor.written_out(**part));
-  const Json reply = apply(call, editor, "unshare " + s.member->name);
+  const Json reply = apply(call, editor, "make " + s.member->name + " independent");
   return with_component(reply, part_in(call.studio.document(), s, s.index.value_or(0)));
 }
 
@@ -137,7 +137,7 @@ Json rename(const Call& call) {
     old = editor.name_of(part);
   }
   editor.rename(old, now);
-  return apply(call, editor, now.empty() ? "take the name " + old : "name " + now);
+  return apply(call, editor, now.empty() ? "remove the name " + old : "rename to " + now);
 }
 
 }  // namespace

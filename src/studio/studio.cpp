@@ -29,11 +29,6 @@ const Request* find_request(const std::string& name) {
                      fmt::format("there is no request '{}'{}", name.substr(0, largest_echo), suggestion(name, known)));
 }
 
-/// Texts from files may hold bytes that are not UTF-8.
-std::shared_ptr<const std::string> written(const Json& json) {
-  return std::make_shared<const std::string>(json.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
-
 }  // namespace
 
 Studio::Studio(StudioSettings settings)
@@ -67,73 +62,39 @@ std::string Studio::end() {
   viewer_.join();
   sides_.clear();
   runner_.set(nullptr);
-  return settings_.read_only || discarded_ || !document_.changed() ? std::string() : document_.save_aside();
+  const bool nothing = settings_.read_only || discarded_ || !document_.begun() || !document_.changed();
+  return nothing ? std::string() : document_.save_aside();
 }
 
 void Studio::begin(const std::string& file) {
-  if (file.empty())
+  if (file.empty()) {
     document_.create(std::filesystem::current_path().string());
-  else
-    document_.open(std::filesystem::absolute(file).string());
-  text_units_ = document_.places().size();
-  runner_.set(document_.render());
-  if (!file.empty()) runner_.start();
-}
-
-// ---- browsers ---------------------------------------------------------------------------------------------------------------
-
-void Studio::join(const std::shared_ptr<Browser>& browser) {
-  const std::lock_guard lock(browsers_guard_);
-  browser->number = next_browser_++;
-  browsers_.emplace(browser->number, browser);
-}
-
-void Studio::leave(const Browser& browser) {
-  const std::lock_guard lock(browsers_guard_);
-  browsers_.erase(browser.number);
-  watches_.erase(browser.number);
-}
-
-void Studio::broadcast(const Json& event) {
-  const auto words = written(event);
-  const std::lock_guard lock(browsers_guard_);
-  for (const auto& [number, weak] : browsers_)
-    if (const auto browser = weak.lock()) browser->send(words);
-}
-
-void Studio::notice(const std::string& text, const char* kind) {
-  broadcast({{"event", "notice"}, {"text", text}, {"kind", kind}});
-}
-
-/// Some times a second at most: it changes with every sample.
-void Studio::tell_queue() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
-  const auto before = queue_told_.load();
-  constexpr auto interval = std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::milliseconds(200));
-  const Json json = queue_.json();
-  bool rendering = false;
-  for (const Json& entry : json["entries"]) rendering |= entry["state"] == "rendering" && entry["fraction"] > 0.0;
-  if (rendering && now - before < interval.count()) return;
-  queue_told_ = now;
-  broadcast(json);
-}
-
-void Studio::set_watch(const Browser& browser, int slot, const Watch& watch) {
-  {
-    const std::lock_guard lock(browsers_guard_);
-    watches_[browser.number][slot] = watch;
+    text_units_ = document_.places().size();
+    runner_.set(document_.render());
+    return;
   }
-  wake_viewer();
+  Document::Source source = Document::read(std::filesystem::absolute(file).string());
+  beginning_ = true;
+  const std::lock_guard lock(tasks_guard_);
+  tasks_.push_front({nullptr, {}, [this, source = std::move(source)]() mutable { open_first(std::move(source)); }});
+  tasks_changed_.notify_one();
 }
 
-std::map<int, std::shared_ptr<const Frame>> Studio::frames(const Browser& browser) const {
-  std::map<int, std::shared_ptr<const Frame>> all;
-  const std::lock_guard lock(browsers_guard_);
-  const auto watches = watches_.find(browser.number);
-  if (watches == watches_.end()) return all;
-  for (const auto& [slot, watch] : watches->second)
-    if (const auto found = frames_.find(watch); found != frames_.end()) all.emplace(slot, found->second);
-  return all;
+void Studio::open_first(Document::Source source) {
+  {
+    Working working(*this, "open", source.file);
+    const std::string folder = std::filesystem::path(source.file).parent_path().string();
+    try {
+      document_.open(std::move(source));
+    } catch (...) {  // no memory, perhaps; what is wrong with the text is a draft
+      for (const Error& error : errors_at_hand()) notice(error.what(), "error");
+      document_.create(folder);
+    }
+    text_units_ = document_.places().size();
+    runner_.set(document_.render());
+    runner_.start();
+  }
+  beginning_ = false;
 }
 
 // ---- requests ---------------------------------------------------------------------------------------------------------------
@@ -141,7 +102,7 @@ std::map<int, std::shared_ptr<const Frame>> Studio::frames(const Browser& browse
 void Studio::request(const std::shared_ptr<Browser>& from, std::string text) {
   {
     const std::lock_guard lock(tasks_guard_);
-    tasks_.push_back({from, std::move(text)});
+    tasks_.push_back({from, std::move(text), {}});
   }
   tasks_changed_.notify_one();
 }
@@ -172,8 +133,12 @@ void Studio::answer() {
     const Task task = std::move(tasks_.front());
     tasks_.pop_front();
     lock.unlock();
-    answer(task);
-    task.from->answered();
+    if (task.from) {
+      answer(task);
+      task.from->answered();
+    } else {
+      task.own();
+    }
     lock.lock();
   }
 }
@@ -198,6 +163,8 @@ void Studio::answer(const Task& task) {
     const Request* found = find_request(call.text("do"));
     if (settings_.read_only && !found->read_only)
       throw RequestError("read_only", "this studio only shows (--read-only): nothing can be changed");
+    const std::string name = found->name;
+    Working working(*this, name, name == "open" ? call.text_or("file", "") : std::string());
     Json result = found->answer(call);
     reply["ok"] = true;
     for (auto& [key, value] : result.items()) reply[key] = std::move(value);

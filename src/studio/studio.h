@@ -72,8 +72,12 @@ class Studio {
   Studio(const Studio&) = delete;
   Studio& operator=(const Studio&) = delete;
 
-  /// Before any browser comes: what it begins with. Empty: an empty description in the working folder.
+  /// What it begins with; empty: an empty description in the working folder. Throws when the file itself cannot be read. The
+  /// rest, which takes long for a large scene, is done before the first request is answered; browsers may come meanwhile, and
+  /// are told.
   void begin(const std::string& file);
+  /// Whether that is still to be done.
+  bool beginning() const { return beginning_; }
   /// Instead of that: pictures alone.
   void show_pictures(std::vector<std::pair<std::string, std::shared_ptr<const Image>>>);
 
@@ -146,9 +150,28 @@ class Studio {
 
  private:
   struct Task {
-    std::shared_ptr<Browser> from;
+    std::shared_ptr<Browser> from;  // null: the studio's own
     std::string text;
+    std::function<void()> own = {};
   };
+  /// What the thread that answers is at: browsers are told when it takes long. The end of its scope is the end of the work.
+  class Working {
+   public:
+    Working(Studio&, std::string what, std::string file);
+    ~Working();
+    Working(const Working&) = delete;
+    Working& operator=(const Working&) = delete;
+    Json json() const;
+    const std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
+    bool told = false;
+
+   private:
+    Studio& studio_;
+    const std::string what_, file_;
+  };
+  void tell_working();
+  void send_all(const std::shared_ptr<const std::string>& words);
+  void open_first(Document::Source);
   /// A render as it is at a moment.
   struct Shown {
     int number = 0;  // 0: the document's own
@@ -183,6 +206,7 @@ class Studio {
   std::map<int, std::map<int, Watch>> watches_;  // of browsers, by slots
   Frames frames_;
   int next_browser_ = 1;
+  Working* working_ = nullptr;  // guarded as browsers are
   struct Shape {
     std::uint32_t generation = 0;
     int width = 0, height = 0;
@@ -201,6 +225,7 @@ class Studio {
   std::mutex viewer_guard_;
   std::condition_variable viewer_changed_;
   bool viewer_woken_ = false;
+  std::atomic<bool> beginning_{false};
   std::atomic<bool> ending_{false};
   std::atomic<bool> discarded_{false};  ///< a page gave up what is not saved
   /// A page asked for the end: its own answer is the last. Of the thread that answers.
@@ -258,6 +283,8 @@ Json tree_json(const Document&);
 Json names_json(const Document&);
 Json error_json(const Error&, const Document*);
 Json errors_json(const std::vector<Error>&, const Document*);
+/// As it is sent.
+std::shared_ptr<const std::string> written(const Json&);
 /// Of the exception at hand.
 std::vector<Error> errors_at_hand();
 /// A tone map written as text that names no file. Throws Error or Errors when it is none.

@@ -17,7 +17,8 @@ using Clock = std::chrono::steady_clock;
 /// How much of the program's work looking may be: what is rendered should hardly notice.
 constexpr double share = 0.03, share_when_fresh = 0.12;
 constexpr auto fresh = std::chrono::seconds(2);
-constexpr auto shortest = std::chrono::milliseconds(50), longest = std::chrono::milliseconds(4000);
+constexpr auto shortest = std::chrono::milliseconds(50), resting = std::chrono::milliseconds(250),
+               longest = std::chrono::milliseconds(4000);
 
 double processor_time(clockid_t clock) {
   timespec t{};
@@ -76,6 +77,7 @@ void Studio::look() {
       woken = std::exchange(viewer_woken_, false);
     }
     if (ending_) return;
+    tell_working();
     bool rendering = false;
     std::uint64_t changes = 0, generations = generation;
     const auto count = [&](const Runner::Status& status) {
@@ -88,7 +90,7 @@ void Studio::look() {
       generations += side->generation();
     }
     const bool changed = woken || changes != seen_changes || generations != seen_generations;
-    pause = rendering || changed ? shortest : longest / 4;
+    pause = rendering || changed ? shortest : resting;
     if (!changed && !rendering) continue;
     const bool soon = coarse && Clock::now() - looked >= shortest;
     // What was begun anew is looked at more often: of it most is to be seen.

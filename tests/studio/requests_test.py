@@ -22,6 +22,18 @@ def values_of(npy):
     return array.array(kind, npy[10 + size :]), shape
 
 
+# A cube that is divided over and over: at nine levels it is prepared in seconds.
+DIVIDED = """Job {
+    renderer: PathTracer { samples: 1 }
+    camera: PerspectiveCamera {}
+    image: ImageBuffer { width: 8, height: 6 }
+    scene: BvhScene { objects: [ SubdivisionSurface {
+        positions: [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]
+        indices: [0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7], levels: 9 } ] }
+}
+"""
+
+
 class Requests(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -46,6 +58,34 @@ class Requests(unittest.TestCase):
             self.assertTrue(any("LightTracer cannot find" in line for line in page.good("warnings")["advice"]))
         with self.open().page() as page:
             self.assertEqual([w["message"] for w in page.good("warnings")["warnings"]], [])
+
+    def test_what_takes_long_is_told(self):
+        # The address is there before the scene is read, and so is whoever asks for it.
+        with self.open(DIVIDED) as studio, studio.page(hello=False) as page:
+            first = page.wait(lambda e: e.get("event") != "progress")
+            self.assertEqual((first["event"], first["what"], first["file"]), ("working", "open", str(self.file)))
+            self.assertGreaterEqual(first["seconds"], 0)
+            tree = page.ask("hello", protocol=1)["tree"]["components"]
+            told = [e["what"] for e in page.events if e["event"] == "working"]
+            self.assertEqual(told, ["open", None], "it is over when the first request is answered")
+            self.assertTrue(page.good("hello", protocol=1)["document"]["valid"])
+            page.events.clear()
+            surface = next(int(i) for i, c in tree.items() if c["class"] == "SubdivisionSurface")
+            page.good("edit", component=surface, member="boundary", text="edges")
+            told = [(e["what"], e.get("file")) for e in page.events if e["event"] == "working"]
+            self.assertEqual(told, [("edit", None), (None, None)])
+
+    def test_it_ends_while_it_reads(self):
+        studio = self.open(DIVIDED)
+        studio.process.terminate()
+        self.assertEqual(studio.process.wait(60), 0)
+        self.assertEqual(studio.process.stderr.read(), "")
+        self.assertEqual([p.name for p in self.file.parent.iterdir()], ["scene.etd"])
+
+    def test_a_file_that_cannot_be_read_ends_it(self):
+        done = subprocess.run([PROGRAM, "studio", "--no-browser", str(self.file)], capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("scene.etd", done.stderr)
 
     def test_views(self):
         studio = self.open()

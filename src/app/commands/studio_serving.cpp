@@ -136,6 +136,8 @@ int serve(studio::StudioSettings settings, studio::ServerSettings server_setting
   server.run();
   kill(getpid(), to_itself);  // in case it ended by itself
   waiter.join();
+  // Nothing was edited yet, and what reads a scene cannot be interrupted.
+  if (by_others && studio.beginning()) std::_Exit(exit_status::done);
   if (const std::string aside = studio.end(); !aside.empty()) fmt::print(stderr, "What was not saved is in {}\n", aside);
   if (studio.begin_again && !by_others) begin_again(server.port_and_token(), studio.document().file());
   return exit_status::done;

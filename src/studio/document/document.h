@@ -40,8 +40,16 @@ class Document {
   /// What edits bring into the text may name files of these folders alone, and those that it named when it was opened.
   Document(RenderSettings settings, const Folders& folders) : settings_(std::move(settings)), folders_(&folders) {}
 
-  /// An .etd, or a .json that is rewritten as one. What is wrong with it leaves a draft and no render.
-  void open(const std::string& file);
+  /// A file's text, as a document begins with it.
+  struct Source {
+    std::string file, text;           ///< a .json is rewritten as an .etd, which is not saved yet
+    std::optional<std::string> disk;  ///< what the file holds; none for one that was rewritten
+  };
+  /// Throws Error, or Errors for a .json, when it cannot be read.
+  static Source read(const std::string& file);
+  /// Reads what the text names, too, and prepares the render. What is wrong with it leaves a draft and no render.
+  void open(Source);
+  void open(const std::string& file) { open(read(file)); }
   /// The smallest description that can be rendered, in a folder.
   void create(const std::string& folder);
   /// Whether its file holds something else than was read or written there last, or is gone.
@@ -52,6 +60,8 @@ class Document {
   /// Reads all files that it names anew.
   void reload();
 
+  /// Whether it holds a document at all: not before it was opened or created.
+  bool begun() const { return bool(outline_); }
   const std::string& file() const { return file_; }
   const std::string& folder() const { return folder_; }
   /// What messages call the text.

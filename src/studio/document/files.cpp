@@ -57,27 +57,28 @@ Job {
 
 }  // namespace
 
-void Document::open(const std::string& file) {
+Document::Source Document::read(const std::string& file) {
   std::string text;
   try {
     text = read_regular_file(file, largest_text);
   } catch (const Error& error) {
     throw Error(fmt::format("cannot read '{}': {}", file, error.what()));
   }
-  const std::string disk = text, folder = fs::path(file).parent_path().string();
-  std::string path = file;
-  bool converted = false;
-  if (language::is_json(file)) {  // its text is not ours to edit: it goes on as an .etd, not saved yet
-    text = write_description(*load_job(file), false, folder);
-    path = fs::path(file).replace_extension(".etd").string();
-    converted = true;
-  }
+  if (!language::is_json(file)) return {file, text, text};
+  // Its text is not ours to edit.
+  return {fs::path(file).replace_extension(".etd").string(),
+          write_description(*load_job(file), false, fs::path(file).parent_path().string()), std::nullopt};
+}
+
+void Document::open(Source source) {
+  const std::string folder = fs::path(source.file).parent_path().string();
+  const std::string& text = source.text;
   Document next(settings_, *folders_);
   next.next_id_ = next_id_;
   next.revision_ = revision_;
-  next.file_ = path;
+  next.file_ = source.file;
   next.folder_ = folder;
-  next.name_ = intern(path);
+  next.name_ = intern(source.file);
   language::remember_text(next.name_, text);
   next.trusts_all_ = true;
   try {
@@ -88,9 +89,9 @@ void Document::open(const std::string& file) {
     next.set_draft(text, errors_at_hand());
     next.take_text(std::make_unique<Outline>("", next.name_));
   }
-  if (!converted) {
-    next.saved_text_ = disk;
-    next.note_disk(disk);
+  if (source.disk) {
+    next.saved_text_ = *source.disk;
+    next.note_disk(std::move(*source.disk));
     next.saved_revision_ = next.revision_;
   }
   take(std::move(next));

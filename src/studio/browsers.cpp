@@ -1,0 +1,104 @@
+// The browsers that look at a studio, and what they are told.
+
+#include "studio.h"
+
+namespace etendue::studio {
+
+/// Texts from files may hold bytes that are not UTF-8.
+std::shared_ptr<const std::string> written(const Json& json) {
+  return std::make_shared<const std::string>(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+void Studio::join(const std::shared_ptr<Browser>& browser) {
+  const std::lock_guard lock(browsers_guard_);
+  browser->number = next_browser_++;
+  browsers_.emplace(browser->number, browser);
+  if (!working_) return;
+  working_->told = true;
+  browser->send(written(working_->json()));
+}
+
+void Studio::leave(const Browser& browser) {
+  const std::lock_guard lock(browsers_guard_);
+  browsers_.erase(browser.number);
+  watches_.erase(browser.number);
+}
+
+void Studio::broadcast(const Json& event) {
+  const auto words = written(event);
+  const std::lock_guard lock(browsers_guard_);
+  send_all(words);
+}
+
+/// Called while `browsers_guard_` is held.
+void Studio::send_all(const std::shared_ptr<const std::string>& words) {
+  for (const auto& [number, weak] : browsers_)
+    if (const auto browser = weak.lock()) browser->send(words);
+}
+
+Studio::Working::Working(Studio& studio, std::string what, std::string file)
+    : studio_(studio), what_(std::move(what)), file_(std::move(file)) {
+  const std::lock_guard lock(studio_.browsers_guard_);
+  studio_.working_ = this;
+}
+
+Studio::Working::~Working() {
+  const std::lock_guard lock(studio_.browsers_guard_);
+  studio_.working_ = nullptr;
+  if (!told) return;
+  try {
+    studio_.send_all(written({{"event", "working"}, {"what", nullptr}}));
+  } catch (const std::exception&) {  // no memory for it: the answer tells the same
+  }
+}
+
+Json Studio::Working::json() const {
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+  return {{"event", "working"}, {"what", what_}, {"file", file_.empty() ? Json() : Json(file_)}, {"seconds", seconds}};
+}
+
+/// Called some times a second: most work is done sooner.
+void Studio::tell_working() {
+  constexpr auto patience = std::chrono::milliseconds(300);
+  const std::lock_guard lock(browsers_guard_);
+  if (!working_ || working_->told || std::chrono::steady_clock::now() - working_->since < patience) return;
+  working_->told = true;
+  send_all(written(working_->json()));
+}
+
+void Studio::notice(const std::string& text, const char* kind) {
+  broadcast({{"event", "notice"}, {"text", text}, {"kind", kind}});
+}
+
+/// Some times a second at most: it changes with every sample.
+void Studio::tell_queue() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+  const auto before = queue_told_.load();
+  constexpr auto interval = std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::milliseconds(200));
+  const Json json = queue_.json();
+  bool rendering = false;
+  for (const Json& entry : json["entries"]) rendering |= entry["state"] == "rendering" && entry["fraction"] > 0.0;
+  if (rendering && now - before < interval.count()) return;
+  queue_told_ = now;
+  broadcast(json);
+}
+
+void Studio::set_watch(const Browser& browser, int slot, const Watch& watch) {
+  {
+    const std::lock_guard lock(browsers_guard_);
+    watches_[browser.number][slot] = watch;
+  }
+  wake_viewer();
+}
+
+std::map<int, std::shared_ptr<const Frame>> Studio::frames(const Browser& browser) const {
+  std::map<int, std::shared_ptr<const Frame>> all;
+  const std::lock_guard lock(browsers_guard_);
+  const auto watches = watches_.find(browser.number);
+  if (watches == watches_.end()) return all;
+  for (const auto& [slot, watch] : watches->second)
+    if (const auto found = frames_.find(watch); found != frames_.end()) all.emplace(slot, found->second);
+  return all;
+}
+
+}  // namespace etendue::studio
