@@ -2,9 +2,10 @@
 import { signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { chooseFile } from "./files/browser.tsx";
-import { document_, line, locked, notify, readOnly } from "./model/state.ts";
+import { document_, line, locked, notify, opening, readOnly, working } from "./model/state.ts";
 import { ask } from "./model/studio.ts";
 import { Button } from "./parts/parts.tsx";
+import { WorkingBadge } from "./parts/working.tsx";
 import { RenderButtons } from "./control/control.tsx";
 import { guarded, Question } from "./guarded.tsx";
 import { settle } from "./text/editor.tsx";
@@ -45,13 +46,13 @@ export async function redo(): Promise<void> {
 
 export function TopBar(): JSX.Element {
   const now = document_.value;
-  const off = readOnly.value || line.value !== "open";
+  const off = readOnly.value || line.value !== "open" || opening.value;
   return (
     <header class="top" role="banner">
       <h1>
         <span class="brand">Étendue</span>
         <span class="title" title={now?.file ?? t.unnamed}>
-          {now?.title ?? ""}
+          {now?.title ?? working.value?.file?.split("/").pop() ?? ""}
           {now?.changed && <span class="changed" title={t.changed}> •</span>}
         </span>
       </h1>
@@ -67,7 +68,8 @@ export function TopBar(): JSX.Element {
       </div>
       <RenderButtons />
       <span class="spring" />
-      {locked.value && <span class={`lock lock-${locked.value}`} role="status">{t.locked[line.value === "closed" ? "closed" : locked.value]}</span>}
+      <WorkingBadge />
+      {locked.value && locked.value !== "opening" && <span class={`lock lock-${locked.value}`} role="status">{t.locked[line.value === "closed" ? "closed" : locked.value]}</span>}
       <Button icon={isDark.value ? "light" : "dark"} label={isDark.value ? t.light : t.dark} onClick={() => (theme.value = isDark.value ? "light" : "dark")} />
       <Button icon="help" label={t.help} keys="F1" onClick={() => (helping.value = true)} />
       <Question />

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { connect, openBrowser, openPage, repository, run, scratch, startStudio, until } from "./harness.mjs";
+import { connect, openBrowser, openPage, repository, run, scratch, startStudio, until, whole } from "./harness.mjs";
 
 const folder = join(repository, "scenes/figures");
 
@@ -129,7 +129,7 @@ class Builder {
         await hands.write(id, member, field.locator(".entry").nth(i), String(parts[i]));
       }
     } else if (type === "transform") {
-      await field.locator("button", { hasText: "As text" }).click();
+      await field.locator("button", { hasText: "Edit as text" }).click();
       await hands.write(id, member, field.locator(".entry"), state.text);
     } else await hands.write(id, member, field.locator(".entry"), /^[a-z_]+$/.test(state.text) ? String(state.value) : state.text);
   }
@@ -146,7 +146,7 @@ class Builder {
       await until("its panel", async () => (await hands.selected()) === there.id);
       return this.fill(child, there.id);
     }
-    await field.locator("button[aria-label^='Add'], button[aria-label^='Another class']").click();
+    await field.locator("button[aria-label^='Add'], button[aria-label^='Change the class']").click();
     const made = await hands.choose(child.class, names.get(child.id));
     if (!names.has(child.id)) await this.fill(child, made);
   }
@@ -185,7 +185,7 @@ function packed(png) {
   return Buffer.concat(found);
 }
 
-test("figure 4.4 is built from nothing by mouse and keyboard, and renders to the bytes of its file", { timeout: 600000 }, async (t) => {
+test("figure 4.4 is built from nothing by mouse and keyboard, and renders to the bytes of its file", whole, async (t) => {
   const browser = await openBrowser(t);
   const figure = await readFigure(t, browser);
   const studio = await startStudio(t, null, "--threads", "1");

@@ -15,6 +15,14 @@ export const program = process.env.ETENDUE_PROGRAM ?? join(build, "etendue");
 const page = process.env.ETENDUE_STUDIO_PAGE ?? join(build, "studio/index.html");
 export const chromiumPath = process.env.ETENDUE_CHROMIUM ?? "/usr/bin/chromium";
 
+/**
+ * How long something is waited for that is bound to come [s]: tests wait for what is to be seen, never for a time, so on a machine
+ * that is busy with other things they take longer, and that is all.
+ */
+export const patience = 180;
+/** Of a whole test, after which something hangs. */
+export const whole = { timeout: 3_000_000 };
+
 /** A folder of its own that goes away with the test. */
 export function scratch(t) {
   const folder = mkdtempSync(join(tmpdir(), "etendue-studio-"));
@@ -92,22 +100,29 @@ export async function openBrowser(t) {
   const browser = await chromium.launch({
     executablePath: chromiumPath,
     args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    timeout: 1000 * patience,
   });
   t.after(() => browser.close());
   return browser;
 }
 
-/** Opens the page and waits for its tree; fails the test for every error the page throws. */
-export async function openPage(t, browser, address, options = {}) {
+/** A page without anything on it yet, as patient as all else. */
+export async function emptyPage(browser, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
-  const opened = await context.newPage();
+  context.setDefaultTimeout(1000 * patience);
+  return context.newPage();
+}
+
+/** Opens the page and waits for its tree, unless told not to; fails the test for every error the page throws. */
+export async function openPage(t, browser, address, { tree = true, ...options } = {}) {
+  const opened = await emptyPage(browser, options);
   const errors = [];
   opened.on("pageerror", (error) => errors.push(String(error)));
   t.after(() => {
     if (errors.length) throw new Error(`the page threw: ${errors.join("; ")}`);
   });
   await opened.goto(address);
-  await opened.waitForSelector("[role=treeitem]");
+  if (tree) await opened.waitForSelector("[role=treeitem]");
   return opened;
 }
 
@@ -162,12 +177,12 @@ export async function connect(opened) {
 }
 
 /** Waits until something holds. */
-export async function until(what, test, seconds = 10) {
-  const end = Date.now() + seconds * 1000;
+export async function until(what, test) {
+  const end = Date.now() + 1000 * patience;
   for (;;) {
     const value = await test();
     if (value) return value;
-    if (Date.now() > end) throw new Error(`not within ${seconds} s: ${what}; it is ${JSON.stringify(value)}`);
+    if (Date.now() > end) throw new Error(`not within ${patience} s: ${what}; it is ${JSON.stringify(value)}`);
     await new Promise((done) => setTimeout(done, 30));
   }
 }

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { checkAccess, checkInside, connect, openBrowser, openPage, startStudio, until } from "./harness.mjs";
+import { checkAccess, checkInside, connect, openBrowser, openPage, startStudio, until, whole } from "./harness.mjs";
 
 const scene = (renderer, layers = "") => `# Two lamps.
 key = Rectangle { corner: [-1, 3, -1], edge_u: [2, 0, 0], edge_v: [0, 0, 2], emission: DiffuseEmission { radiance: 3, sides: both } }
@@ -26,9 +26,9 @@ async function begin(t, text) {
   return { studio, page, program: await connect(page) };
 }
 
-const finished = async (program) => until("it is rendered", async () => (await program.ask("hello", { protocol: 1 })).progress.state === "finished", 60);
+const finished = async (program) => until("it is rendered", async () => (await program.ask("hello", { protocol: 1 })).progress.state === "finished");
 
-test("lights are weighed by sliders, switches and colours, and saved so", { timeout: 200000 }, async (t) => {
+test("lights are weighed by sliders, switches and colours, and saved so", whole, async (t) => {
   const { studio, page, program } = await begin(t, scene("PathTracer { samples: 32 }", ', layers: ["light.key"]'));
   await finished(program);
   // What the program knows of a pixel of the floor: its light as linear sRGB (IEC 61966-2-1) of X Y Z.
@@ -58,13 +58,13 @@ test("lights are weighed by sliders, switches and colours, and saved so", { time
   await until("the pixel's numbers are there", is(rgb));
 
   await page.click("summary[aria-label='Light groups']");
-  await page.getByLabel("Weigh the lights").check();
+  await page.getByLabel("Adjust lights").check();
   await until("nothing has changed yet", is(rgb));
-  const slider = page.getByRole("slider", { name: "Stops of key" });
+  const slider = page.getByRole("slider", { name: "Brightness of key in stops" });
   await slider.focus();
   await slider.fill("2");
   await until("the key light is four times as bright", is(rest.map((v, c) => v + 4 * key[c])));
-  await page.getByLabel("Light of all other light").uncheck();
+  await page.getByLabel("Show other lights").uncheck();
   await until("and alone", is(key.map((v) => 4 * v)));
   await page.getByLabel("Colour of key").fill("#ff0000");
   await until("and red", is([4 * key[0], 0, 0]));
@@ -77,34 +77,40 @@ test("lights are weighed by sliders, switches and colours, and saved so", { time
   await page.getByLabel("File").fill("red.exr");
   await page.keyboard.press("Enter");
   await until("it is saved", () => existsSync(join(studio.folder, "red.exr")));
-  await page.getByLabel("Weigh the lights").uncheck();
+  await page.getByLabel("Adjust lights").uncheck();
   await until("it is as it was", is(rgb));
 });
 
-test("photons and a guide are drawn in space", { timeout: 200000 }, async (t) => {
+test("photons and a guide are drawn in space", whole, async (t) => {
   const { page, program } = await begin(t, scene("PhotonMapper { samples: 4, photon_walks: 50000 }"));
   await finished(program);
   await page.click("#tab-paths");
   /** How many pixels of the drawing differ from its background and wires, in greys: those of light. */
   const drawn = async () => (await page.locator(".space canvas").screenshot()).length;
-  await page.waitForTimeout(1500);
-  const before = await drawn();
-  await page.getByRole("button", { name: "Photons" }).click();
+  await page.locator(".space[aria-busy=false]").waitFor();
+  // The wires are on the screen when two pictures are the same.
+  let before = 0;
+  await until("the wires are drawn", async () => {
+    const last = before;
+    before = await drawn();
+    return before === last;
+  });
+  await page.getByRole("button", { name: "Show photons" }).click();
   await page.locator(".photon-count").waitFor();
   assert.match((await page.locator(".photon-count").textContent()) ?? "", /^[\d,]+ of [\d,]+ photons/);
   if (process.env.ETENDUE_SCREENSHOTS) await page.screenshot({ path: join(process.env.ETENDUE_SCREENSHOTS, "photons.png") });
   await until("points are drawn", async () => (await drawn()) > 1.1 * before);
   await checkAccess(page, "photons");
-  await page.getByRole("button", { name: "Photons" }).click();
+  await page.getByRole("button", { name: "Show photons" }).click();
   await page.locator(".photon-count").waitFor({ state: "detached" });
-  await page.getByRole("button", { name: "Guide at the pixel" }).isDisabled();
+  await page.getByRole("button", { name: "Show guiding at the pixel" }).isDisabled();
 });
 
-test("what a renderer does not have is said", { timeout: 200000 }, async (t) => {
+test("what a renderer does not have is said", whole, async (t) => {
   const { page, program } = await begin(t, scene("PathTracer { samples: 1 }"));
   await finished(program);
   await page.click("#tab-paths");
-  await page.getByRole("button", { name: "Photons" }).click();
+  await page.getByRole("button", { name: "Show photons" }).click();
   await page.getByText("PathTracer keeps no photons").waitFor();
   assert.equal(await page.locator("summary[aria-label='Light groups']").count(), 0, "there are no groups");
 });

@@ -4,7 +4,7 @@ import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { checkAccess, checkInside, connect, openBrowser, openPage, repository, run, scratch, startStudio, until } from "./harness.mjs";
+import { checkAccess, checkInside, connect, openBrowser, openPage, repository, run, scratch, startStudio, until, whole } from "./harness.mjs";
 
 const page_ = join(repository, "studio");
 
@@ -34,7 +34,7 @@ async function begin(t, text = small) {
 const row = (page, name) => page.locator("[role=treeitem]", { hasText: name }).first();
 const field = (page, name) => page.locator(".field", { has: page.locator("label", { hasText: new RegExp(`^${name}$`) }) }).first();
 
-test("a panel's edit changes the value in the text and nothing else", async (t) => {
+test("a panel's edit changes the value in the text and nothing else", whole, async (t) => {
   const { page, program, studio } = await begin(t);
   assert.equal(await program.text(), small);
   await row(page, "Sphere").click();
@@ -48,7 +48,7 @@ test("a panel's edit changes the value in the text and nothing else", async (t) 
   await until("it is saved", () => studio.read() === wanted);
 });
 
-test("what is refused is said at the field, and changes nothing", async (t) => {
+test("what is refused is said at the field, and changes nothing", whole, async (t) => {
   const { page, program } = await begin(t);
   await row(page, "Sphere").click();
   const radius = field(page, "radius");
@@ -58,7 +58,7 @@ test("what is refused is said at the field, and changes nothing", async (t) => {
   assert.equal(await program.text(), small);
 });
 
-test("sliders, choices and resets; one drag is one step of undo", async (t) => {
+test("sliders, choices and resets; one drag is one step of undo", whole, async (t) => {
   const { page, program } = await begin(t);
   await row(page, "Sphere").click();
   const slider = field(page, "radius").locator("input[type=range]");
@@ -75,11 +75,11 @@ test("sliders, choices and resets; one drag is one step of undo", async (t) => {
   await until("one undo is enough", async () => (await program.text()) === small);
   await field(page, "sides").locator("select").selectOption("front");
   await until("the choice is written", async () => /sides: front/.test(await program.text()));
-  await field(page, "sides").locator("button[aria-label^='Back to']").click();
+  await field(page, "sides").locator("button[aria-label^='Reset']").click();
   await until("and not written any more", async () => (await program.text()) === small).catch(async (e) => assert.equal(await program.text(), small, String(e)));
 });
 
-test("two browsers see one document", async (t) => {
+test("two browsers see one document", whole, async (t) => {
   const { page, browser, program, studio } = await begin(t);
   const other = await openPage(t, browser, studio.address);
   await row(page, "Sphere").click();
@@ -91,7 +91,7 @@ test("two browsers see one document", async (t) => {
   await until("and takes it back", async () => (await program.text()) === small);
 });
 
-test("the text is edited as typed; what is not valid waits; panels follow", async (t) => {
+test("the text is edited as typed; what is not valid waits; panels follow", whole, async (t) => {
   const { page, program } = await begin(t);
   await row(page, "Sphere").click();
   await page.click("#tab-text");
@@ -107,7 +107,7 @@ test("the text is edited as typed; what is not valid waits; panels follow", asyn
   await page.locator(".problems").waitFor({ state: "detached" });
 });
 
-test("axe finds nothing wrong, in light and dark, in any view", async (t) => {
+test("axe finds nothing wrong, in light and dark, in any view", whole, async (t) => {
   const { page, browser, studio } = await begin(t);
   const check = async (on, what) => {
     await checkAccess(on, what);
@@ -132,7 +132,7 @@ test("axe finds nothing wrong, in light and dark, in any view", async (t) => {
   }
 });
 
-test("a scene is built from nothing by keys alone, and renders to the bytes its text renders to", async (t) => {
+test("a scene is built from nothing by keys alone, and renders to the bytes its text renders to", whole, async (t) => {
   const studio = await startStudio(t, null);
   const browser = await openBrowser(t);
   const page = await openPage(t, browser, studio.address);
@@ -217,7 +217,7 @@ test("a scene is built from nothing by keys alone, and renders to the bytes its 
   assert.ok(new Set(built.subarray(200)).size > 50, "and one with something in it");
 });
 
-test("rows are dragged before others, and into scenes", async (t) => {
+test("rows are dragged before others, and into scenes", whole, async (t) => {
   const nested = small.replace("        Environment", "        BvhScene { objects: [] }   # a scene inside\n        Environment");
   const { page, program } = await begin(t, nested);
   const order = async () => (await program.components()).filter((c) => c.uses.some((u) => u.member === "objects")).map((c) => `${c.class} in ${c.uses[0].id}.${c.uses[0].index}`).sort();
@@ -230,7 +230,7 @@ test("rows are dragged before others, and into scenes", async (t) => {
   await until("the ball is in the scene inside", async () => /BvhScene \{ objects: \[\s*Sphere \{[^\n]*\}\s*\] \}/.test(await program.text()));
 });
 
-test("two builds of the page give the same bytes", async (t) => {
+test("two builds of the page give the same bytes", whole, async (t) => {
   const folder = scratch(t);
   const bytes = ["a", "b"].map((name) => {
     // The second from another folder, by another name of the same one, at another time.

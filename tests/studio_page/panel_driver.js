@@ -1,7 +1,9 @@
 // Runs inside the page: creates components and edits every member of them as people do, by the page's own controls.
 globalThis.driver = (() => {
   const pause = (ms) => new Promise((done) => setTimeout(done, ms));
-  const until = async (test, ms = 5000) => {
+  /** What is bound to come is waited for, however busy the machine is. */
+  const patience = 120000;
+  const until = async (test, ms = patience) => {
     for (const end = performance.now() + ms; performance.now() < end; await pause(8)) {
       const value = test();
       if (value) return value;
@@ -21,14 +23,14 @@ globalThis.driver = (() => {
   /** Clicks the row of what is called `name`. */
   async function select(name) {
     const find = () => [...document.querySelectorAll("[role=treeitem]")].find((r) => r.querySelector(".what")?.textContent === name);
-    let row = await until(find, 300);
-    for (let i = 0; !row && i < 4; ++i) {
-      document.querySelectorAll("[role=treeitem][aria-expanded=false] .twist").forEach((twist) => twist.click());
-      row = await until(find, 300);
-    }
+    const row = await until(() => {
+      const found = find();
+      if (!found) document.querySelectorAll("[role=treeitem][aria-expanded=false] .twist").forEach((twist) => twist.click());
+      return found;
+    });
     if (!row) throw new Error(`no row ${name}`);
     row.click();
-    await until(() => document.querySelector(".panel-title h2")?.textContent === name);
+    if (!(await until(() => document.querySelector(".panel-title h2")?.textContent === name))) throw new Error(`no panel of ${name}`);
   }
 
   /** Chooses a class in the window that is open; gives the identifier of what was made. */
@@ -37,7 +39,7 @@ globalThis.driver = (() => {
     if (!input) throw new Error("no window of classes");
     if (name) {
       set(input, name);
-      if (!(await until(() => document.querySelector("[role=option][aria-selected=true] b")?.textContent === name, 2000))) throw new Error(`${name} is not offered`);
+      if (!(await until(() => document.querySelector("[role=option][aria-selected=true] b")?.textContent === name))) throw new Error(`${name} is not offered`);
     }
     const chosen = document.querySelector("[role=option][aria-selected=true] b")?.textContent;
     const before = selectedId();
@@ -51,7 +53,7 @@ globalThis.driver = (() => {
       if (files) [...files.querySelectorAll("button")].find((b) => b.textContent === "Cancel")?.click();
       if (told()) return -1;
       return selectedId() !== before && document.querySelector(".panel-title")?.textContent?.includes(chosen) && selectedId();
-    }, 6000);
+    });
     if (made === -1) throw new Error(`refused: ${told()}`);
     return made || 0;
   }
@@ -62,13 +64,14 @@ globalThis.driver = (() => {
     const field = await until(() => fieldOf(id, member));
     if (!field) throw new Error(`no field ${member}`);
     const buttons = [...field.querySelectorAll(".control button")];
-    const button = buttons.find((b) => /^(Add|Another class|A map instead)/.test(b.getAttribute("aria-label") ?? b.textContent ?? ""));
+    const button = buttons.find((b) => /^(Add|Change the class|Use a map)/.test(b.getAttribute("aria-label") ?? b.textContent ?? ""));
     if (!button) throw new Error(`no button at ${member}`);
+    const before = signature(id, member);
     button.click();
-    const opened = await until(() => document.querySelector("dialog.chooser") || selectedId() !== id, 2000);
+    const opened = await until(() => document.querySelector("dialog.chooser") || selectedId() !== id || signature(id, member) !== before);
     if (opened instanceof HTMLElement) return choose(name);
     // There is but one class: it was added at once.
-    return (await until(() => component(id)?.members[member]?.value?.component, 2000)) ?? 0;
+    return (await until(() => component(id)?.members[member]?.value?.component)) ?? 0;
   }
 
   const signature = (id, member) => {
@@ -77,8 +80,15 @@ globalThis.driver = (() => {
   };
   const complaint = (id, member) => fieldOf(id, member)?.querySelector("[role=alert]")?.textContent ?? "";
 
-  async function settled(id, member, before, ms = 20000) {
-    return until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) ? "refused" : null), ms);
+  async function settled(id, member, before) {
+    return until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) ? "refused" : null));
+  }
+
+  /** Takes away what was said of an earlier try, so that what is said next is seen. */
+  async function forget(id, member, element) {
+    if (!complaint(id, member)) return;
+    key(element, "Escape");
+    await until(() => !complaint(id, member));
   }
 
   /** Tries texts in an entry until one is taken. */
@@ -90,10 +100,10 @@ globalThis.driver = (() => {
       if (!entry) return "no entry";
       if (entry.value === text) continue;
       entry.focus();
+      await forget(id, member, entry);
       set(entry, text);
-      const said = complaint(id, member);
       key(entry, "Enter", { ctrlKey: true });
-      const end = await until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) && (complaint(id, member) !== said || !said) ? "refused" : null), said ? 600 : 20000);
+      const end = await settled(id, member, before);
       entry.blur();
       if (end === "changed") return "changed";
       refused = complaint(id, member) || refused;
@@ -112,7 +122,7 @@ globalThis.driver = (() => {
   }
 
   async function edit(id, m) {
-    const field = await until(() => fieldOf(id, m.name), 1500);
+    const field = await until(() => fieldOf(id, m.name));
     if (!field) return "no field";
     const before = signature(id, m.name);
     const said = () => (complaint(id, m.name) ? `refused: ${complaint(id, m.name)}` : "silent");
@@ -127,11 +137,11 @@ globalThis.driver = (() => {
       const other = m.offered.find((c) => c !== now && !m.list) ?? m.offered[0];
       try {
         const made = await create(m.name, m.offered.length > 1 || field.querySelector(".go") || m.list ? other : undefined);
-        await until(() => signature(id, m.name) !== before, 1500);
+        await until(() => signature(id, m.name) !== before, m.offered.length < 2 ? 1500 : patience); // the only one there is may be there already
         if (made && selectedId() !== id) {
           const back = [...document.querySelectorAll(".panel-head nav .link")].pop();
           back?.click();
-          await until(() => selectedId() === id, 1500);
+          await until(() => selectedId() === id);
         }
         return signature(id, m.name) !== before ? "changed" : m.offered.length < 2 ? "alone" : "silent";
       } catch (error) {
@@ -145,9 +155,10 @@ globalThis.driver = (() => {
     if (m.choices) {
       const list = field.querySelector("select");
       for (const option of [...list.options].map((o) => o.value).filter((v) => v !== list.value)) {
+        await forget(id, m.name, list);
         set(list, option);
         list.dispatchEvent(new Event("change", { bubbles: true }));
-        if ((await settled(id, m.name, before, 2500)) === "changed") return "changed";
+        if ((await settled(id, m.name, before)) === "changed") return "changed";
       }
       return list.options.length < 2 ? "alone" : said();
     }
@@ -184,7 +195,7 @@ globalThis.driver = (() => {
   async function go(id) {
     const [holder] = component(id)?.uses ?? [];
     fieldOf(holder?.id, holder?.member)?.querySelector(".go")?.click();
-    await until(() => selectedId() === id, 2000);
+    await until(() => selectedId() === id);
   }
 
   return { select, create, edit, reset, go, selectedId };

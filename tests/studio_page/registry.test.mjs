@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { connect, openBrowser, openPage, run, startStudio, until } from "./harness.mjs";
+import { connect, openBrowser, openPage, run, startStudio, until, whole } from "./harness.mjs";
 
 const base = `# What all is put into.
 matt = Lambertian { color: 0.5 }   # its colour takes maps
@@ -85,7 +85,7 @@ function values(components, root) {
 const some = "AgXToneMap,MixMap,GaussianFilter,PathTracer,Sphere,Conductor,EnvironmentEmission,HomogeneousVolume,TriangleMesh,PngOutput,SobolSampler,PowerLightSampler,HeroWavelengths,BidirectionalMutation";
 const chosen = process.env.ETENDUE_CLASSES ?? some;
 const only = chosen === "all" ? null : chosen.split(",");
-test("every class is created and every member edited; saved, read again, undone", { timeout: 3000000 }, async (t) => {
+test("every class is created and every member edited; saved, read again, undone", whole, async (t) => {
   for (const info of concrete) placeOf(info.name);
   const studio = await startStudio(t, base, "--threads", "1");
   const browser = await openBrowser(t);

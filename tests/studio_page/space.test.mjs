@@ -1,7 +1,7 @@
 // The drawing in three dimensions: an object is moved and turned by its handles, in its transform's own words, one drag one step of undo.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { connect, openBrowser, openPage, startStudio, until } from "./harness.mjs";
+import { connect, openBrowser, openPage, startStudio, until, whole } from "./harness.mjs";
 
 const scene = `# Two boxes, one inside a scene that is turned. This stays.
 Job {
@@ -40,13 +40,17 @@ async function handle(page, color) {
   return found && [box.x + found[0], box.y + found[1]];
 }
 
-test("an object is moved by its handles", { timeout: 300000 }, async (t) => {
+test("an object is moved by its handles", whole, async (t) => {
   const studio = await startStudio(t, scene, "--threads", "1");
   const browser = await openBrowser(t);
   const page = await openPage(t, browser, studio.address, { colorScheme: "dark" });
   const program = await connect(page);
-  const drag = async (dx) => {
-    const [x, y] = await until("the red arrow is seen", () => handle(page, [255, 0, 0]), 40);
+  /** Drags the handle of a component that is selected. */
+  const drag = async (name, dx) => {
+    const { id } = (await program.components()).find((c) => c.class === name);
+    await page.locator(`.space[data-handles="${id}"]`).waitFor();
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); // and drawn
+    const [x, y] = await until("the red arrow is seen", () => handle(page, [255, 0, 0]));
     await page.mouse.move(x - 3, y);
     await page.mouse.down();
     for (let i = 1; i <= 5; ++i) await page.mouse.move(x - 3 + (dx * i) / 5, y);
@@ -54,7 +58,7 @@ test("an object is moved by its handles", { timeout: 300000 }, async (t) => {
   };
   await page.click("#tab-paths");
   await page.locator("[role=treeitem]", { hasText: "Box" }).first().click();
-  await drag(60);
+  await drag("Box", 60);
   const moved = /translate\(([\d.]+) cm, 0, 0\) \* scale\(1\)/;
   const text = await until("the text has another place", async () => {
     const now = await program.text();
@@ -67,8 +71,7 @@ test("an object is moved by its handles", { timeout: 300000 }, async (t) => {
 
   // What is inside another scene is moved in that one's coordinates: the world's x is its -y.
   await page.locator("[role=treeitem]", { hasText: "Sphere" }).first().click();
-  await page.waitForTimeout(500);
-  await drag(60);
+  await drag("Sphere", 60);
   await until("the sphere has moved along its own y", async () => {
     const found = /translate\((\S+), (\S+), (\S+)\) \} \]/.exec(await program.text());
     return found && Number(found[1]) === 0 && Number(found[2]) < 1.9 && Number(found[3]) === 0;

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { connect, openBrowser, openPage, run, startStudio, until } from "./harness.mjs";
+import { connect, openBrowser, openPage, run, startStudio, until, whole } from "./harness.mjs";
 
 const scene = `# All that has a name is edited; what is written about it stays.
 matt = Lambertian { color: 0.5 }   # twice
@@ -39,7 +39,7 @@ function numbers(seed) {
 
 const wanted = Number(process.env.ETENDUE_EDITS ?? 60);
 
-test(`${wanted} random edits are undone to the first byte`, { timeout: 1500000 }, async (t) => {
+test(`${wanted} random edits are undone to the first byte`, whole, async (t) => {
   const studio = await startStudio(t, scene, "--threads", "1");
   const browser = await openBrowser(t);
   const page = await openPage(t, browser, studio.address, { viewport: { width: 1280, height: 1400 } });

@@ -2,7 +2,7 @@
 import { useSignal } from "@preact/signals";
 import type { JSX } from "preact";
 import { brief, duration, percent } from "../model/numbers.ts";
-import { line, progress, queue, readOnly, root } from "../model/state.ts";
+import { line, opening, progress, queue, readOnly, root } from "../model/state.ts";
 import { ask, demand, report } from "../model/studio.ts";
 import { remember, remembered } from "../memory.ts";
 import { Button } from "../parts/parts.tsx";
@@ -20,7 +20,7 @@ const t = texts.control;
 
 export function RenderButtons(): JSX.Element {
   const state = progress.value?.state ?? "empty";
-  const off = readOnly.value || line.value !== "open" || root.value === null;
+  const off = readOnly.value || line.value !== "open" || root.value === null || opening.value;
   const running = state === "rendering";
   return (
     <div class="cluster" role="group" aria-label={t.label}>
@@ -63,7 +63,7 @@ export function ControlStrip(): JSX.Element {
   return (
     <section class="control" aria-label={t.label}>
       <div class="status">
-        <span class={`state state-${p?.state ?? "empty"}`}>{t.states[p?.state ?? "empty"]}</span>
+        <span class={`state state-${p?.state ?? "empty"}`}>{opening.value ? t.opening : t.states[p?.state ?? "empty"]}</span>
         <progress max={1} value={p?.fraction ?? 0} aria-label={t.progress} />
         {p && p.state !== "empty" && (
           <div class="facts-row">

@@ -21,9 +21,9 @@ export function TasksView(): JSX.Element {
         {tasks.value.length === 0 && <li class="dim">{t.none}</li>}
       </ul>
       <div class="cluster wrap">
-        <Button label={t.verify} disabled={off} onClick={() => void ask("verify")} />
-        <Button label={t.strategies} disabled={off} onClick={() => void ask("strategies")} />
-        <Button label={t.again} disabled={readOnly.value} onClick={() => void guarded("begin_again", {}, { discard: true }, "", "", "")} />
+        <Button label={t.verify} hint={t.verifyHelp} disabled={off} onClick={() => void ask("verify")} />
+        <Button label={t.strategies} hint={t.strategiesHelp} disabled={off} onClick={() => void ask("strategies")} />
+        <Button label={t.again} hint={t.againHelp} disabled={readOnly.value} onClick={() => void guarded("begin_again", {}, { discard: true }, "", "", "")} />
       </div>
     </div>
   );

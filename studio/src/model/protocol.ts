@@ -220,6 +220,13 @@ export interface Task {
   strategies?: Strategy[];
 }
 
+/** The program is at something that takes long; `what` null: no longer. */
+export interface WorkingEvent {
+  what: string | null;
+  file?: string | null;
+  seconds?: number;
+}
+
 export interface Notice {
   text: string;
   kind: "info" | "warning" | "error";

@@ -20,6 +20,15 @@ export const knownNames = signal<{ illuminants: string[]; glasses: string[]; met
 export const folders = signal<string[]>([]);
 
 export const document_ = signal<DocumentState | null>(null);
+/** What takes the program long: by which request, of which file, and when it was begun, as `performance.now` counts. */
+export interface Working {
+  what: string;
+  file: string | null;
+  begun: number;
+}
+export const working = signal<Working | null>(null);
+/** Another document is being read. */
+export const opening = computed(() => working.value?.what === "open");
 export const root = signal<number | null>(null);
 export const components = signal<ReadonlyMap<number, Component>>(new Map());
 export const names = signal<Name[]>([]);
@@ -68,8 +77,9 @@ export function select(id: number | null, use: Use | null = null): void {
 }
 
 /** Why nothing can be edited, if so. */
-export const locked = computed<"read_only" | "draft" | "invalid" | "offline" | null>(() => {
+export const locked = computed<"read_only" | "draft" | "invalid" | "offline" | "opening" | null>(() => {
   if (line.value !== "open") return "offline";
+  if (opening.value) return "opening";
   if (readOnly.value) return "read_only";
   if (document_.value?.draft) return "draft";
   if (document_.value && !document_.value.valid) return "invalid";

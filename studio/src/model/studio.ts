@@ -2,7 +2,7 @@
 import { Classes } from "./classes.ts";
 import { Connection } from "./connection.ts";
 import { Refused } from "./protocol.ts";
-import type { Component, DocumentState, Event, Hello, Notice, Progress, Queue, Reply, SideRender, Task, TextChange, TextState, TreeState } from "./protocol.ts";
+import type { Component, DocumentState, Event, Hello, Notice, Progress, Queue, Reply, SideRender, Task, TextChange, TextState, TreeState, WorkingEvent } from "./protocol.ts";
 import * as state from "./state.ts";
 import { forgetPictures, takePixels } from "../picture/store.ts";
 import { texts } from "../texts.ts";
@@ -17,7 +17,10 @@ let watched: Record<string, unknown> = { what: "linear" };
 const protocol = location.protocol === "https:" ? "wss" : "ws";
 export const connection = new Connection(`${protocol}://${location.host}/socket${location.search}`, {
   opened: () => void hello(),
-  line: (line) => (state.line.value = line),
+  line: (line) => {
+    state.line.value = line;
+    if (line !== "open") state.working.value = null;
+  },
   event: take,
   pixels: takePixels,
 });
@@ -65,6 +68,9 @@ function take(event: Event): void {
       break;
     case "progress":
       takeProgress(event as unknown as Progress);
+      break;
+    case "working":
+      takeWorking(event as unknown as WorkingEvent);
       break;
     case "queue":
       state.queue.value = event as unknown as Queue;
@@ -157,6 +163,10 @@ function takeProgress(progress: Progress): void {
   }
   if (course !== before) state.errorCourse.value = course;
   state.progress.value = progress;
+}
+
+function takeWorking({ what, file, seconds }: WorkingEvent): void {
+  state.working.value = what === null ? null : { what, file: file ?? null, begun: performance.now() - 1000 * (seconds ?? 0) };
 }
 
 function takeTask(task: Task): void {

@@ -23,7 +23,7 @@ export function Panel(): JSX.Element {
     forgetWrong();
     explain(null);
   }, [component?.id]);
-  if (!component) return <section class="panel" aria-label={t.label}><p class="empty-note">{t.none}</p></section>;
+  if (!component) return <section class="panel" aria-label={t.label} />; // without a document
   const info = classes.value.find(component.class);
   const elsewhere = component.written === "elsewhere";
   return (
@@ -31,7 +31,7 @@ export function Panel(): JSX.Element {
       <Head component={component} />
       {info && <p class="summary">{inline(info.summary)}</p>}
       {elsewhere && <p class="hint">{t.elsewhere(component.file ?? "")}</p>}
-      {locked.value && locked.value !== "offline" && <p class="hint">{t.locked[locked.value]}</p>}
+      {locked.value && t.locked[locked.value] && <p class="hint">{t.locked[locked.value]}</p>}
       <fieldset disabled={elsewhere || locked.value !== null} class="fields">
         {(info ? ownGroupsFirst(info) : []).map((g) => (
           <Section key={`${component.class}.${g.name}`} name={g.name} members={g.members} component={component} />

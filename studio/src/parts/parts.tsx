@@ -9,6 +9,10 @@ interface ButtonProps {
   label: string;
   /** Shown beside the icon; without, the label is only told. */
   text?: boolean;
+  /** Shown beside the icon instead of the whole label, which it is a part of. */
+  short?: string;
+  /** What it does, in more words than the label. */
+  hint?: string;
   keys?: string;
   pressed?: boolean;
   disabled?: boolean;
@@ -17,12 +21,12 @@ interface ButtonProps {
   onClick: (event: MouseEvent) => void;
 }
 
-export function Button({ icon, label, text, keys, pressed, disabled, primary, class: more, onClick }: ButtonProps): JSX.Element {
-  const title = keys ? `${label} (${keys})` : label;
+export function Button({ icon, label, text, short, hint, keys, pressed, disabled, primary, class: more, onClick }: ButtonProps): JSX.Element {
+  const title = hint ?? (keys ? `${label} (${keys})` : label);
   return (
     <button
       type="button"
-      class={`button${primary ? " primary" : ""}${text || !icon ? "" : " square"}${more ? ` ${more}` : ""}`}
+      class={`button${primary ? " primary" : ""}${text || short || !icon ? "" : " square"}${more ? ` ${more}` : ""}`}
       title={title}
       aria-label={icon && !text ? label : undefined}
       aria-pressed={pressed === undefined ? undefined : pressed}
@@ -30,7 +34,7 @@ export function Button({ icon, label, text, keys, pressed, disabled, primary, cl
       onClick={onClick}
     >
       {icon && <Icon name={icon} />}
-      {(text || !icon) && <span>{label}</span>}
+      {(text || short || !icon) && <span>{short ?? label}</span>}
     </button>
   );
 }

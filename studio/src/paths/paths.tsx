@@ -151,7 +151,7 @@ function VertexFacts({ vertex }: { vertex: Vertex }): JSX.Element {
   const rows: [string, string][] = [
     ["position", list(vertex.position)],
     ["normal", list(vertex.normal)],
-    ["density", vertex.density === null ? "–" : brief(vertex.density, 4)],
+    ["pdf", vertex.density === null ? "–" : brief(vertex.density, 4)],
     ["throughput", list(vertex.throughput)],
     ...(lit(vertex.emitted) ? ([["emitted", list(vertex.emitted)]] as [string, string][]) : []),
     ...(lit(vertex.direct) ? ([["direct", list(vertex.direct)]] as [string, string][]) : []),

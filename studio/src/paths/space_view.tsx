@@ -20,6 +20,8 @@ export function SpaceView({ paths, chosen }: { paths: ReplayedPath[]; chosen: Si
   const looked = useRef(false);
   const dragged = useSignal(0);
   const shown = useSignal(0);
+  /** The component whose handles are shown. */
+  const handled = useSignal<number | null>(null);
   useEffect(() => {
     let ended = false;
     const begin = async (): Promise<void> => {
@@ -60,7 +62,14 @@ export function SpaceView({ paths, chosen }: { paths: ReplayedPath[]; chosen: Si
   useEffect(() => {
     const now = space.value;
     let current = true;
-    if (now && !now.gizmo.dragging) void heldNow().then((found) => current && now.gizmo.hold(found, gizmoMode.value));
+    if (now && !now.gizmo.dragging) {
+      const id = held?.component.id ?? null;
+      void heldNow().then((found) => {
+        if (!current) return;
+        now.gizmo.hold(found, gizmoMode.value);
+        handled.value = found && id;
+      });
+    }
     return () => {
       current = false;
     };
@@ -71,7 +80,7 @@ export function SpaceView({ paths, chosen }: { paths: ReplayedPath[]; chosen: Si
   return (
     <div class="space-pane">
       <GizmoBar />
-      <div class="space" ref={box} role="img" aria-label={t.scene}>
+      <div class="space" ref={box} role="img" aria-label={t.scene} aria-busy={shown.value === 0 && !failed.value} data-handles={handled.value ?? ""}>
         {failed.value && <p class="empty-note">{failed.value}</p>}
       </div>
     </div>

@@ -15,7 +15,12 @@ interface Waiting {
 }
 
 let waiting: Waiting[] = [];
-let asking = false;
+let sending: Promise<void> | null = null;
+
+/** The moves that were made are with the program after this: what undoes them, or saves where they led, comes behind them. */
+export async function cameraMoved(): Promise<void> {
+  await sending;
+}
 
 /** `x`, `y`: parts of the picture's height, to the right and down, by which the mouse moved. */
 export function moveCamera(kind: CameraMove, x: number, y: number, final: boolean): void {
@@ -34,18 +39,18 @@ function wait(kind: CameraMove, by: Numbers, final: boolean): void {
     last.by = last.by.map((v, i) => v + (by[i] as number)) as Numbers;
     last.final ||= final;
   } else waiting.push({ kind, by, final });
-  if (!asking) void send();
+  sending ??= send();
 }
 
 async function send(): Promise<void> {
-  asking = true;
+  await null; // so that it is known to be sending before it can have ended
   try {
     for (let next = waiting.shift(); next; next = waiting.shift()) {
       const { kind, by, final }: Waiting = next;
       if (!(await ask(kind === "turn" ? "fly" : kind, { ...step(kind, by), final }))) break;
     }
   } finally {
-    asking = false;
+    sending = null;
     waiting = [];
   }
 }

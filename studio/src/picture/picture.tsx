@@ -2,6 +2,8 @@
 import { useSignal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
+import { progress } from "../model/state.ts";
+import { Awaited } from "../parts/working.tsx";
 import { texts } from "../texts.ts";
 import { PictureCanvas } from "./canvas.ts";
 import { PictureInput } from "./input.ts";
@@ -35,10 +37,11 @@ export function Picture(): JSX.Element {
     };
   }, []);
 
+  const there = store.shownFilm.value !== null || store.toned.value !== null;
   return (
     <div class={`picture mode-${mode.value}`}>
       <div class="canvases" ref={box}>
-        <canvas ref={below} class="picture-canvas" />
+        <canvas ref={below} class={`picture-canvas${there ? "" : " blank"}`} />
         <canvas
           ref={above}
           class="picture-over"
@@ -57,7 +60,9 @@ export function Picture(): JSX.Element {
           onContextMenu={(e) => e.preventDefault()}
         />
         {failure.value && <p class="empty-note">{failure.value}</p>}
-        {!store.shownFilm.value && !store.toned.value && !failure.value && <p class="empty-note">{texts.picture.none}</p>}
+        {!there && !failure.value && (
+          <Awaited details>{progress.value?.state === "rendering" ? texts.working.firstPass : texts.picture.none}</Awaited>
+        )}
       </div>
       <PixelNumbers />
     </div>

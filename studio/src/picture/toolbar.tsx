@@ -13,6 +13,7 @@ import { command, crop, mode, movesCamera, pathPixel, setCrop, type Mode } from 
 import { watchedPicture } from "./readout.tsx";
 import { savePicture } from "./save.tsx";
 import * as store from "./store.ts";
+import { learn, unknownTools } from "./tools.ts";
 import { ViewedPictures } from "./viewed.tsx";
 import { Views } from "./views.tsx";
 import { WaveformView } from "./waveform.tsx";
@@ -46,15 +47,16 @@ export function PictureToolbar(): JSX.Element {
     <div class="toolbar picture-bar" role="toolbar" aria-label={t.toolbar}>
       <div class="cluster" role="group" aria-label={t.mouse}>
         {modes.map((m) => (
-          <Button key={m.name} icon={m.icon} label={m.label} pressed={mode.value === m.name} disabled={movesCamera(m.name) && readOnly.value}
-            onClick={() => (mode.value = m.name)} />
+          <Button key={m.name} icon={m.icon} label={m.label} short={unknownTools.value.has(m.name) ? t.modeNames[m.name] : undefined}
+            pressed={mode.value === m.name} disabled={movesCamera(m.name) && readOnly.value} onClick={() => ((mode.value = m.name), learn([m.name]))} />
         ))}
+        {modes.some((m) => unknownTools.value.has(m.name)) && <Button icon="close" label={t.hideNames} onClick={() => learn(modes.map((m) => m.name))} />}
         {crop.value && <Button label={t.wholePicture} onClick={() => void setCrop(null)} />}
         {movesCamera(mode.value) && <Button icon="target" label={t.frame} onClick={frameSelected} />}
       </div>
       <div class="cluster" role="group" aria-label={t.zoom}>
         <Button icon="fit" label={t.fit} keys="F" onClick={() => command("fit")} />
-        <Button label="1:1" keys="1" onClick={() => command("one")} />
+        <Button label="1:1" hint={`${t.one} (1)`} onClick={() => command("one")} />
       </div>
       <Exposure />
       <select aria-label={t.curve} title={t.curve} value={store.curve.value} onChange={(e) => setCurve(e.currentTarget.value as store.Curve)}>
@@ -84,7 +86,7 @@ function Exposure(): JSX.Element {
   };
   return (
     <div class="cluster exposure">
-      <label class="inline">
+      <label class="inline" title={t.exposure}>
         <span>{t.exposure}</span>
         <input type="range" aria-label={t.exposure} min={-10} max={10} step={0.05} value={store.stops.value} disabled={disabled} onInput={change} />
       </label>

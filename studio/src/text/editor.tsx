@@ -15,6 +15,7 @@ import { ask, connection, demand, followText, hello, report, textNow } from "../
 import { Markdown } from "../parts/markdown.tsx";
 import { dragged } from "../panel/edit.ts";
 import { Button } from "../parts/parts.tsx";
+import { cameraMoved } from "../picture/camera.ts";
 import { warnings } from "./warnings.ts";
 import { texts } from "../texts.ts";
 import { language } from "./language.ts";
@@ -175,9 +176,10 @@ function extensions(): unknown[] {
   ];
 }
 
-/** What was dragged, and what was typed if it is valid, is with the program after this. */
+/** What was dragged or moved, and what was typed if it is valid, is with the program after this. */
 export async function settle(): Promise<void> {
   await dragged();
+  await cameraMoved();
   await sync?.flush();
 }
 

@@ -6,9 +6,10 @@ import type { Component, Use } from "../model/protocol.ts";
 import { classes, components, document_, locked, placeOfSelected, root, select, selectedComponent } from "../model/state.ts";
 import { Icon, kindIcon } from "../parts/icons.tsx";
 import { Button } from "../parts/parts.tsx";
+import { Awaited } from "../parts/working.tsx";
 import { texts } from "../texts.ts";
 import * as actions from "./actions.ts";
-import { rows, type Row } from "./rows.ts";
+import { isUse, rows, type Row } from "./rows.ts";
 
 const t = texts.tree;
 const rowHeight = 26;
@@ -133,7 +134,7 @@ export function Tree(): JSX.Element {
           ))}
         </div>
       </div>
-      {all.length === 0 && <p class="empty-note">{document_.value?.valid === false ? t.invalid : search.value ? t.nothingFound : t.empty}</p>}
+      {all.length === 0 && <Awaited>{document_.value?.valid === false ? t.invalid : search.value ? t.nothingFound : t.empty}</Awaited>}
       <label class="check foot">
         <input type="checkbox" checked={defaults.value} onChange={(e) => (defaults.value = e.currentTarget.checked)} />
         {t.defaults}
@@ -171,6 +172,7 @@ interface RowProps {
 function RowView({ row, at, current, target, inside, drag, enter, drop }: RowProps): JSX.Element {
   const { component, use, depth, expanded } = row;
   const shared = component.uses.length > 1;
+  const beside = component.name ? component.class : namesInside(component);
   return (
     <div
       id={`row-${at}`}
@@ -212,7 +214,7 @@ function RowView({ row, at, current, target, inside, drag, enter, drop }: RowPro
         <Icon name={kindIcon(classes.value.kind(component.class))} />
       </span>
       <span class="what">{label(component)}</span>
-      {component.name && <span class="class">{component.class}</span>}
+      {beside && <span class="class">{beside}</span>}
       <span class="spring" />
       {shared && (
         <span class="shared" title={t.shared(component.uses.length)}>
@@ -223,6 +225,16 @@ function RowView({ row, at, current, target, inside, drag, enter, drop }: RowPro
       {use && use.index === undefined && <span class="member">{use.member}</span>}
     </div>
   );
+}
+
+/** What a component without a name can be told by: the names of what its members are, such as its shader's. */
+function namesInside(component: Component): string {
+  const found: string[] = [];
+  for (const { value } of Object.values(component.members)) {
+    const name = isUse(value) ? components.value.get(value.component)?.name : null;
+    if (name) found.push(name);
+  }
+  return found.slice(0, 3).join(", ");
 }
 
 export function label(component: Component): string {
