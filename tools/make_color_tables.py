@@ -3,7 +3,8 @@
 
     tools/make_color_tables.py FOLDER_OF_CSV_FILES
 
-The tables are committed: building needs neither this script nor the CSV files. Run it again only when data change.
+Those of metals and glasses are made by tools/make_optical_constants.py. The tables are committed: building needs neither this
+script nor the CSV files. Run it again only when data change.
 """
 import csv
 import pathlib
@@ -14,9 +15,6 @@ LOW, HIGH = 360, 830
 
 # name in files, other names it is known by, name in the language
 ILLUMINANTS = [("A", "", "A"), ("D50", "", "D50"), ("D65", "", "D65"), ("E", "", "E"), ("FL2", "FL2", "F2"), ("FL11", "FL11", "F11")]
-GLASSES = [("N-BK7", "BK7", "N-BK7"), ("N-SF11", "SF11", "N-SF11"), ("F2", "", "F2"),
-           ("fused silica", "silica,fused quartz", "fused silica"), ("diamond", "", "diamond"), ("water 20 C", "H2O", "water")]
-METALS = [("Au", "gold", "Au"), ("Ag", "silver", "Ag"), ("Al", "aluminium,aluminum", "Al"), ("Cu", "copper", "Cu"), ("Cr", "chromium", "Cr")]
 
 
 def read(path):
@@ -75,36 +73,12 @@ def illuminants(source, target):
           "\n};\nconst std::span<const Illuminant> illuminants = all;\n")
 
 
-def glasses(source, target):
-    comments, rows = read(source / "sellmeier.csv")
-    found = {r["material"]: r for r in rows}
-    items = []
-    for file, aliases, name in GLASSES:
-        r = found[file]
-        b, c = (", ".join(literal(r[f"{letter}{i}"]) for i in range(1, 5)) for letter in "BC")
-        items.append(f'// {r["measurement"]}; {r["page"]}; valid {r["valid_from_nm"]}-{r["valid_to_nm"]} nm\n'
-                     f'    {{"{name}", "{aliases}",\n     {{{b}}},\n     {{{c}}}}}')
-    write(target, "tables_glasses.cpp", comment(comments[:2]) + "\nstatic constexpr Glass all[] = {\n" + rows_of(items, 1) +
-          "\n};\nconst std::span<const Glass> glasses = all;\n")
-
-
-def metals(source, target):
-    body, names = "", []
-    for file, aliases, name in METALS:
-        comments, rows = read(source / f"nk_{file}.csv")
-        items = ["{" + ", ".join(literal(r[c]) for c in ("wavelength_nm", "n", "k")) + "}" for r in rows]
-        body += comment(comments) + f"\n// Rows: wavelength [nm], n, k.\nstatic constexpr double index_{name}[][3] = {{\n" + rows_of(items, 4) + "\n};\n\n"
-        names.append(f'{{"{name}", "{aliases}", index_{name}}}')
-    write(target, "tables_metals.cpp", body + "static constexpr Metal all[] = {\n" + rows_of(names, 1) +
-          "\n};\nconst std::span<const Metal> metals = all;\n")
-
-
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     source = pathlib.Path(sys.argv[1])
     target = pathlib.Path(__file__).resolve().parent.parent / "src" / "color"
-    for make in (observer, illuminants, glasses, metals):
+    for make in (observer, illuminants):
         make(source, target)
 
 

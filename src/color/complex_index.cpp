@@ -26,6 +26,18 @@ class ComplexIndex final : public SpectralFunction {
   std::string expression_;
 };
 
+/// Those of all tables, in their order.
+std::span<const tables::Metal> all_metals() {
+  static const std::vector<tables::Metal> all = [] {
+    std::vector<tables::Metal> list;
+    for (const auto& table : {tables::metals, tables::plain_metals, tables::transition_metals, tables::alloys,
+                              tables::semiconductors, tables::compounds})
+      list.insert(list.end(), table.begin(), table.end());
+    return list;
+  }();
+  return all;
+}
+
 }  // namespace
 
 Color complex_index(Color n, Color k) {
@@ -36,7 +48,7 @@ Color complex_index(Color n, Color k) {
 }
 
 Color metal_index(const std::string& name) {
-  const tables::Metal& metal = find_named(tables::metals, "metal", name);
+  const tables::Metal& metal = find_named(all_metals(), "metal", name);
   std::vector<float> wavelengths, n, k;
   for (const auto& row : metal.rows) {
     wavelengths.push_back(float(row[0]));
@@ -47,6 +59,6 @@ Color metal_index(const std::string& name) {
       new ComplexIndex(table_spectrum(wavelengths, n), table_spectrum(wavelengths, k), "metal(" + quoted(metal.name) + ")"));
 }
 
-std::vector<std::string> metal_names() { return names_of(tables::metals); }
+std::vector<std::string> metal_names() { return names_of(all_metals()); }
 
 }  // namespace etendue

@@ -1,5 +1,5 @@
 #pragma once
-// The measured data of src/color/tables_*.cpp, which tools/make_color_tables.py makes.
+// The measured data of src/color/tables_*.cpp, which tools/make_color_tables.py and make_optical_constants.py make.
 
 #include <array>
 #include <span>
@@ -37,8 +37,8 @@ extern const std::span<const Glass> glasses;
 struct Metal {
   const char* name;
   const char* aliases;
-  std::span<const double[3]> rows;  ///< wavelength [nm], n, k
+  std::span<const double[3]> rows;  ///< wavelength [nm], n, k, over all that is visible
 };
-extern const std::span<const Metal> metals;
+extern const std::span<const Metal> metals, plain_metals, transition_metals, alloys, semiconductors, compounds;
 
 }  // namespace etendue::tables

@@ -78,6 +78,30 @@ TEST(PbrtAsFound, NamedSpectra) {
       import_text(v4("Material \"conductor\" \"spectrum eta\" \"metal-CuZn-eta\" \"spectrum k\" \"metal-CuZn-k\"" + sphere +
                      "LightSource \"point\" \"spectrum I\" \"illum-acesD60\""));
   EXPECT_TRUE(i.job && i.told().empty()) << i.told();
+  for (const char* metal : {"Ag", "Al", "Au", "Cu", "CuZn", "MgO", "TiO2"}) {
+    const std::string name = std::string("metal-") + metal;
+    const Imported m = import_text(
+        v4("Material \"conductor\" \"spectrum eta\" \"" + name + "-eta\" \"spectrum k\" \"" + name + "-k\"" + sphere));
+    ASSERT_TRUE(m.job && m.told().empty()) << m.told();
+    EXPECT_EQ((*get(shader(m), "ior").as<Color>())->expression(), "metal(\"" + std::string(metal) + "\")");
+  }
+  for (const auto& [theirs, ours] : {std::pair("BK7", "N-BK7"),
+                                     {"BAF10", "N-BAF10"},
+                                     {"FK51A", "N-FK51A"},
+                                     {"LASF9", "N-LASF9"},
+                                     {"F5", "N-SF5"},
+                                     {"SF5", "N-SF5"},
+                                     {"F10", "N-SF10"},
+                                     {"SF10", "N-SF10"},
+                                     {"F11", "N-SF11"},
+                                     {"SF11", "N-SF11"}}) {
+    const Imported g =
+        import_text(v4("Material \"dielectric\" \"spectrum eta\" \"glass-" + std::string(theirs) + "\"" + sphere));
+    ASSERT_TRUE(g.job && g.told().empty()) << g.told();
+    EXPECT_EQ((*get(shader(g), "ior").as<Color>())->expression(), "glass(\"" + std::string(ours) + "\")");
+  }
+  const Imported unknown = import_text(v4("Material \"dielectric\" \"spectrum eta\" \"glass-BK8\"" + sphere));
+  EXPECT_TRUE(told(unknown, "'glass-BK8' is not known here (did you mean 'glass-BK7'?)")) << unknown.told();
   // ACES's D60 between D50 and D65: more blue than the one, less than the other.
   const auto blue = [](const std::string& name) {
     const Value v =

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "components/shaders/fresnel.h"
 #include "etendue/describe/color.h"
@@ -33,8 +34,10 @@ TEST(PublishedNumbers, RowsOfMetals) {
     EXPECT_NEAR(double(metal->imaginary()->at(float(r.wavelength), ColorUse::coefficient)), r.k, 2e-4 * r.k)
         << r.name << r.wavelength;
   }
-  // Measured curves are smooth: no row departs far from its neighbours' mean.
+  // Curves of metals are smooth: no row departs far from its neighbours' mean. Semiconductors have edges.
+  const std::set<std::string> with_edges = {"Si", "Ge", "GaAs", "Se", "Se-e", "AlSb", "SnTe"};
   for (const std::string& name : metal_names()) {
+    if (with_edges.contains(name)) continue;
     const Color metal = metal_index(name);
     for (double l = 410; l < 760; l += 5)
       for (const Color& part : {metal, metal->imaginary()}) {

@@ -92,7 +92,7 @@ std::string Writer::index_of(const Component& shader, const std::string& name) {
 
 std::string Writer::metal_of(const Component& shader, const std::string& prefix) {
   const Color ior = color_of(shader, "ior");
-  for (const char* metal : {"Cu", "Au", "Ag", "Al"})
+  for (const char* metal : {"Cu", "Au", "Ag", "Al", "CuZn", "MgO", "TiO2"})
     if (ior && ior->expression() == fmt::format("metal(\"{}\")", metal))
       return fmt::format(" \"spectrum {0}eta\" \"metal-{1}-eta\" \"spectrum {0}k\" \"metal-{1}-k\"", prefix, metal);
   const Color k = ior ? ior->imaginary() : nullptr;

@@ -91,9 +91,15 @@ namespace {
 /// normal incidence, which for k = 1 is 1 - 2 n here to the first order. An index is more than 0.
 constexpr float almost_no_index = 1e-6f;
 
-}  // namespace
-
-namespace {
+/// Tables of Mitsuba in which something visible is missing. It takes n = 0 there, which reflects all light.
+constexpr const char* going_on = "and all light beyond is reflected: here the last n and k go on";
+constexpr std::tuple<const char*, const char*, const char*> incomplete_tables[] = {
+    {"AlSb", "ends at 590 nm", going_on},
+    {"d-C", "ends at 656 nm", going_on},
+    {"Se", "ends at 689 nm", going_on},
+    {"Se-e", "ends at 689 nm", going_on},
+    {"AlAs", "has n = 0 from 394 to 435 nm",
+     "where all light is reflected: here n goes evenly from what it is on either side"}};
 
 /// An index of refraction whose table ends within the visible goes on with its first and last values: no index is 0.
 Color going_on_at_its_ends(const Color& table) {
@@ -112,13 +118,41 @@ Color going_on_at_its_ends(const Color& table) {
   return table_spectrum(std::move(wavelengths), std::move(values));
 }
 
+/// The n and k of a name of Mitsuba; tells where they are not those it has.
+Color named_metal(Importing& importing, const std::string& material, Location at) {
+  // Of most, Mitsuba has the same table under two names, one of which tells the handbook: "Mo" and "Mo_palik".
+  constexpr std::string_view palik = "_palik";
+  std::vector<std::string> names = {material};
+  if (material.ends_with(palik)) names.push_back(material.substr(0, material.size() - palik.size()));
+  for (const std::string& name : names) {
+    Color index;
+    try {
+      index = metal_index(name);
+    } catch (const Error&) {
+      continue;
+    }
+    for (const auto& [incomplete, what, instead] : incomplete_tables)
+      if (names.back() == incomplete)
+        importing.inexact(fmt::format("Mitsuba's table of '{}' {}, {}", material, what, instead), at);
+    return index;
+  }
+  std::string list;
+  for (const std::string& known : metal_names()) list += (list.empty() ? "'" : ", '") + known + "'";
+  importing.inexact(
+      fmt::format("the optical constants of '{}' are not known here{}: those of chromium stand for them; known are {}",
+                  material, suggestion(material, metal_names()), list),
+      at);
+  return metal_index("Cr");
+}
+
 }  // namespace
 
 Converter::Surface Converter::conductor(const Element& e, Uv uv, const std::string& name) {
-  std::string material = e.string("material", e.old && !e.has("eta") ? "Cu" : "none");
+  const std::string material = e.string("material", e.old && !e.has("eta") ? "Cu" : "none");
+  const bool lossless = material == "none" || material == "None";
   const bool by_numbers = e.has("eta") || e.has("k");
   const bool rough = e.type == "roughconductor";
-  if (!by_numbers && (material == "none" || material == "None") && !rough) {
+  if (!by_numbers && lossless && !rough) {
     Ref<Component> mirror = make("PerfectSpecular", e, name);
     set(*mirror, "color", color(e, "specular_reflectance", 1, uv));
     return {mirror, false};
@@ -143,23 +177,10 @@ Converter::Surface Converter::conductor(const Element& e, Uv uv, const std::stri
       };
       set_member(*shader, "ior", complex_index(part("eta", double(almost_no_index)), part("k", 1)), e.at);
     }
-  } else if (material == "none" || material == "None") {
+  } else if (lossless) {
     set_member(*shader, "ior", complex_index(flat_spectrum(almost_no_index), flat_spectrum(1)), e.at);  // reflects all light
   } else {
-    // Mitsuba's names may tell who measured: "Cu_palik".
-    const std::string element = material.substr(0, material.find('_'));
-    try {
-      set_member(*shader, "ior", metal_index(element), e.location_of("material"));
-      if (element != material)  // those without a suffix are Mitsuba's own tables
-        importing_.inexact(
-            fmt::format("the optical constants of '{}' are those of metal(\"{}\"), from another source", material, element),
-            e.location_of("material"));
-    } catch (const Error&) {
-      set_member(*shader, "ior", metal_index("Cr"), e.location_of("material"));
-      importing_.inexact(
-          fmt::format("the optical constants of '{}' are not known here: those of chromium stand for them", material),
-          e.location_of("material"));
-    }
+    set_member(*shader, "ior", named_metal(importing_, material, e.location_of("material")), e.location_of("material"));
   }
   set(*shader, "color", color(e, "specular_reflectance", 1, uv));
   if (rough)

@@ -11,48 +11,21 @@ namespace etendue::pbrt {
 
 namespace {
 
-/// Glasses by Sellmeier's formula, with the figures of the Schott catalogue: B1 B2 B3, C1 C2 C3 [um^2].
-struct Glass {
-  const char* name;
-  std::array<double, 3> b, c;
-};
-constexpr Glass glasses[] = {
-    {"BAF10", {1.5851495, 0.143559385, 1.08521269}, {0.00926681282, 0.0424489805, 105.613573}},
-    {"FK51A", {0.971247817, 0.216901417, 0.904651666}, {0.00472301995, 0.0153575612, 168.68133}},
-    {"LASF9", {2.00029547, 0.298926886, 1.80691843}, {0.0121426017, 0.0538736236, 156.530829}},
-    {"SF5", {1.52481889, 0.187085527, 1.42729015}, {0.011254756, 0.0588995392, 129.141675}},
-    {"SF10", {1.62153902, 0.256287842, 1.64447552}, {0.0122241457, 0.0595736775, 147.468793}},
+/// pbrt's names of glasses, and what they are here. It says "F5", "F10" and "F11" for SF5, SF10 and SF11.
+constexpr std::pair<const char*, const char*> glasses[] = {
+    {"BK7", "N-BK7"}, {"BAF10", "N-BAF10"}, {"FK51A", "N-FK51A"}, {"LASF9", "N-LASF9"}, {"F5", "N-SF5"},
+    {"SF5", "N-SF5"}, {"F10", "N-SF10"},    {"SF10", "N-SF10"},   {"F11", "N-SF11"},    {"SF11", "N-SF11"},
 };
 
-Color by_sellmeier(const Glass& glass) {
-  std::vector<float> wavelengths, n;
-  for (int nm = 360; nm <= 830; nm += 5) {
-    const double l2 = nm * 1e-3 * nm * 1e-3;
-    double squared = 1;
-    for (size_t i = 0; i < 3; ++i) squared += glass.b[i] * l2 / (l2 - glass.c[i]);
-    wavelengths.push_back(float(nm));
-    n.push_back(float(std::sqrt(squared)));
-  }
-  return table_spectrum(wavelengths, n);
+/// Why there is no spectrum of a name that begins as pbrt's own do.
+[[noreturn]] void fail_unknown_spectrum(const std::string& name) {
+  std::vector<std::string> known;
+  for (const auto& [theirs, ours] : glasses) known.push_back(std::string("glass-") + theirs);
+  for (const std::string& light : illuminant_names()) known.push_back("stdillum-" + light);
+  for (const std::string& metal : metal_names())
+    for (const char* part : {"-eta", "-k"}) known.push_back("metal-" + metal + part);
+  throw Error(fmt::format("the spectrum '{}' is not known here{}", name, suggestion(name, known)));
 }
-
-/// What pbrt names beside the metals that the language has: brass (Querry 1985, at three wavelengths), magnesia and rutile
-/// (Palik 1985, n alone, as they do not absorb).
-struct Optical {
-  const char* name;
-  std::vector<float> wavelengths, n, k;
-};
-const Optical opticals[] = {
-    {"CuZn", {360, 465, 532, 630, 830}, {0.947f, 0.947f, 0.5682f, 0.445f, 0.445f}, {1.92f, 1.92f, 2.588f, 3.522f, 3.522f}},
-    {"MgO",
-     {360, 382, 436, 486, 546, 589, 633, 706, 768, 830},
-     {1.7732f, 1.7668f, 1.7547f, 1.7471f, 1.7408f, 1.7374f, 1.7346f, 1.731f, 1.7287f, 1.727f},
-     {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}},
-    {"TiO2",
-     {360, 388, 400, 420, 440, 460, 480, 500, 540, 580, 620, 660, 700, 760, 830},
-     {3.87f, 3.49f, 3.4f, 3.29f, 3.2f, 3.13f, 3.08f, 3.03f, 2.96f, 2.92f, 2.88f, 2.85f, 2.83f, 2.81f, 2.79f},
-     {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}},
-};
 
 /// From pairs of wavelength [nm] and value. v3 goes on with the first and last value, v4 with nothing.
 Color from_pairs(const Reader& reader, const Parameter& p) {
@@ -123,10 +96,8 @@ Color with_unit_luminance(const Color& color, const Parameter& p) {
 Color named_spectrum(const std::string& name) {
   if (name.starts_with("glass-")) {
     const std::string glass = name.substr(6);
-    if (glass == "BK7") return glass_index("N-BK7");
-    if (glass == "SF11" || glass == "F11") return glass_index("N-SF11");
-    for (const Glass& g : glasses)
-      if (glass == g.name || (glass[0] == 'F' && glass == std::string(g.name).substr(1))) return by_sellmeier(g);
+    for (const auto& [theirs, ours] : glasses)
+      if (glass == theirs) return glass_index(ours);
   }
   // D60 as the ACES state it, of the chromaticity (0.32168, 0.33767): 0.728 of the way from D50 to D65, which comes within
   // 0.0007.
@@ -147,12 +118,8 @@ Color named_spectrum(const std::string& name) {
       if (name == "metal-" + metal + "-eta") return metal_index(metal);
       if (name == "metal-" + metal + "-k") return metal_index(metal)->imaginary();
     }
-  for (const Optical& o : opticals) {
-    if (name == fmt::format("metal-{}-eta", o.name)) return table_spectrum(o.wavelengths, o.n);
-    if (name == fmt::format("metal-{}-k", o.name)) return table_spectrum(o.wavelengths, o.k);
-  }
   for (const char* kind : {"glass-", "stdillum-", "metal-"})
-    if (name.starts_with(kind)) throw Error(fmt::format("the spectrum '{}' is not known here", name));
+    if (name.starts_with(kind)) fail_unknown_spectrum(name);
   return nullptr;
 }
 
