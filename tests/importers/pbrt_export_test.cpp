@@ -116,6 +116,9 @@ TEST(PbrtExport, AmountsOfLight) {
 TEST(PbrtExport, Materials) {
   const auto ball = [](const std::string& shader) { return sky + "Sphere { shader: " + shader + " }\n"; };
   expect_same(ball("Conductor { ior: metal(\"Au\"), roughness: 0.3, multiple_scattering: false }"));
+  const TemporaryFolder folder;
+  const std::string brass = exported(job_of(ball("Conductor { ior: metal(\"brass\") }")), folder / "scene.pbrt").text;
+  EXPECT_NE(brass.find("\"metal-CuZn-eta\""), std::string::npos) << brass;
   expect_same(ball("Conductor { ior: complex(1.5, 2), roughness: 0.3, roughness_v: 0.1, multiple_scattering: false }"));
   expect_same(ball("Dielectric { ior: 1.4, multiple_scattering: false }"));
   expect_same(ball("Dielectric { ior: 1.6, exterior: 1.2, multiple_scattering: false }"));
