@@ -2,9 +2,11 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -56,7 +58,7 @@ pid_t spawn(const std::string& path, const std::vector<std::string>& arguments, 
   pid_t child = 0;
   const int failed = ::posix_spawnp(&child, path.c_str(), &actions, nullptr, list.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw Error("'" + path + "' cannot be started: " + std::strerror(failed));
+  if (failed != 0) throw NotStarted("'" + path + "' cannot be started: " + std::strerror(failed));
   return child;
 }
 
@@ -93,6 +95,19 @@ std::string one_line(std::string words) {
   constexpr size_t half = 200;  // what is wrong may stand first, or behind what led to it
   if (words.size() > 2 * half) words = words.substr(0, half) + " … " + words.substr(words.size() - half);
   return words;
+}
+
+/// That a program ended by a signal says nothing of the file that it read: the libraries in it are other people's, and have
+/// faults that right files meet too.
+std::string fault(const std::string& program, int signal) {
+  std::string text = fmt::format(
+      "its reader {}, which calls other people's code, was ended by signal {} ({}): the file may well be right. Another format "
+      "of the same model may be read, best glTF (.glb)",
+      program, signal, ::strsignal(signal));
+  rlimit memory{};
+  if (::getrlimit(RLIMIT_AS, &memory) == 0 && memory.rlim_cur != RLIM_INFINITY)
+    text += fmt::format(". It may also have run out of memory, of which it had {} MB (ulimit -v)", memory.rlim_cur >> 20);
+  return text;
 }
 
 }  // namespace
@@ -134,8 +149,7 @@ std::string run_program(const std::string& path, const std::vector<std::string>&
   if (!ended) throw Error("reading it takes too long, or too much memory");
   if (WIFSIGNALED(status)) {
     if (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL) throw Error("reading it takes too long");
-    throw Error("it is damaged: " + shown_as + " was ended by a fault (" + ::strsignal(WTERMSIG(status)) + ")" +
-                (words.empty() ? "" : " after saying: " + words));
+    throw Error(fault(shown_as, WTERMSIG(status)) + (words.empty() ? "" : "; it said: " + words));
   }
   if (WEXITSTATUS(status) != 0) throw Error(words.empty() ? shown_as + " cannot read it" : words);
   return bytes;

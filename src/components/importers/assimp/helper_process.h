@@ -4,7 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "etendue/core/error.h"
+
 namespace etendue {
+
+/// There is no such program, or it is none that can be started.
+class NotStarted : public Error {
+  using Error::Error;
+};
 
 /// What a helper, which lies beside this library or in libexec/etendue, writes to its standard output. Throws Error with the
 /// reason alone when it fails, is ended by a fault, says nothing for too long, or writes more than memory holds.

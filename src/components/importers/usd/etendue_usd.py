@@ -7,28 +7,34 @@ importer shows. Files outside of FILE's folder and of the FOLDERs are not opened
 """
 import math
 import os
-import re
 import resource
 import sys
 
 sys.dont_write_bytecode = True
+# Each thread takes address space of its own, which is limited here: on a machine of many cores they would take all of it.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("PXR_WORK_THREAD_LIMIT", "4")
+os.environ.setdefault("TF_ENV_SETTING_ALERTS_ENABLED", "0")  # or it says so among the errors
 
 try:
     import numpy
     from pxr import Gf, Tf, Usd, UsdGeom, UsdLux
 except ImportError as missing:
-    sys.exit(f"USD files are read by Python packages that are not installed ({missing.name}): pip install usd-core numpy; "
+    sys.exit(f"USD files are read by Python packages of which one is not installed ({missing.name or missing}): pip install usd-core numpy; "
              "the environment variable ETENDUE_PYTHON names the Python that has them")
 
-from etendue_usd_files import Files
+from etendue_usd_files import Files, words_of
 from etendue_usd_glb import Glb
 from etendue_usd_lights import Lights
 from etendue_usd_materials import Materials
-from etendue_usd_meshes import Meshes, array
+from etendue_usd_meshes import Meshes
 from etendue_usd_shapes import Shapes, camera_of
 from etendue_usd_skins import bend
+from etendue_usd_values import array
 
 MOST_INSTANCES = 1 << 22
+# What a value of an unexpected type ends in: without the thing that has it a scene is still one.
+UNUSABLE = (TypeError, AttributeError, LookupError, OverflowError, Tf.ErrorException)
 
 
 class Converter:
@@ -39,7 +45,7 @@ class Converter:
         self.metres = UsdGeom.GetStageMetersPerUnit(stage)
         if not (0 < self.metres < float("inf")):
             raise ValueError(f"its metersPerUnit is {self.metres}")
-        bend(stage, self.time, glb.note)
+        bend(stage, self.time, glb.note, UNUSABLE)
         self.places = UsdGeom.XformCache(self.time)
         self.materials = Materials(glb, files, self.time)
         self.materials.gather(stage)
@@ -68,7 +74,10 @@ class Converter:
                     continue
             elif prim.GetTypeName() in ("RenderSettings",):
                 self.glb.note("render settings are left out")
-            convert(prim)
+            try:
+                convert(prim)
+            except UNUSABLE as error:
+                self.glb.note(f"{prim.GetPath()} is left out: {words_of(error)[:200]}")
             if prim.IsA(UsdGeom.PointInstancer):
                 prims.PruneChildren()
 
@@ -190,12 +199,19 @@ class Converter:
         return True
 
 
+def limit(what, wanted):
+    """Lower limits that the process was started with stay."""
+    soft, hard = resource.getrlimit(what)
+    lowest = min([wanted] + [x for x in (soft, hard) if x != resource.RLIM_INFINITY])
+    resource.setrlimit(what, (lowest, hard))
+
+
 def main():
     path = os.path.abspath(sys.argv[1])
     size = os.path.getsize(path)
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_AS, ((4 << 30) + 64 * size, resource.RLIM_INFINITY))
-    resource.setrlimit(resource.RLIMIT_CPU, (120 + (size >> 20), resource.RLIM_INFINITY))
+    limit(resource.RLIMIT_CORE, 0)
+    limit(resource.RLIMIT_AS, (4 << 30) + 64 * size)
+    limit(resource.RLIMIT_CPU, 120 + (size >> 20))
     glb = Glb()
     files = Files(path, sys.argv[3:], glb.note)
     files.check_layers()
@@ -210,9 +226,8 @@ if __name__ == "__main__":
     try:
         main()
     except MemoryError:
-        sys.exit("it needs more memory than a file of its size may")
-    except Tf.ErrorException as error:  # what the library finds wrong, without the places in its own source
-        words = re.sub(r"Error in '\S*' at line \d+ in file \S+ : ", "", " ".join(str(error).split()))
-        sys.exit(words.strip("' ")[:400])
+        sys.exit(f"it needs more memory than its reader may have ({resource.getrlimit(resource.RLIMIT_AS)[0] >> 20} MB, see 'ulimit -v')")
+    except Tf.ErrorException as error:
+        sys.exit(words_of(error)[:400])
     except Exception as error:
         sys.exit(" ".join(str(error).split())[:400] or type(error).__name__)

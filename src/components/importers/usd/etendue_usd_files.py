@@ -1,7 +1,8 @@
 """Which files a USD scene may open: those in its own folder, and in folders that the person who reads it allows."""
 import os
+import re
 
-from pxr import Ar, Sdf, UsdUtils
+from pxr import Ar, Sdf, Tf, UsdUtils
 
 LAYERS = (".usd", ".usda", ".usdc", ".usdz")
 
@@ -10,7 +11,8 @@ class Files:
     def __init__(self, path, allowed, note):
         self.path, self.note = path, note
         self.folders = [os.path.realpath(folder) for folder in [os.path.dirname(path) or ".", *allowed]]
-        self.layers = []  # kept, so that the stage finds them opened
+        self.layers = []  # kept, so that the stage finds them opened and as they were made here
+        self.unread = set()
 
     def refused(self, path):
         """The folder of a file that may not be read, or nothing."""
@@ -25,34 +27,93 @@ class Files:
 
     def check_layers(self):
         """Follows all sublayers, references, payloads and clips, those in variants that are not chosen too, before a stage is
-        made: it would open them wherever they are."""
+        made: it would open them wherever they are. What is not read is taken out, in memory, and told."""
         waiting, seen = [self.path], {self.path}
-        resolver = Ar.GetResolver()
         while waiting:
             path = waiting.pop()
-            layer = Sdf.Layer.FindOrOpen(path)
+            layer = self.opened(path)
             if layer is None:
-                if path == self.path:
-                    raise ValueError("it is no USD file that can be read")
-                self.note(f"the layer '{os.path.basename(path)}' cannot be read: it is left out")
                 continue
             self.layers.append(layer)
-            sublayers, references, payloads = UsdUtils.ExtractExternalReferences(layer.identifier)
-            layered = [*sublayers, *payloads, *layer.GetCompositionAssetDependencies()]
-            layered += [r for r in references if Ar.SplitPackageRelativePathInner(r)[1].lower().endswith(LAYERS) or r.lower().endswith(LAYERS)]
-            for named in dict.fromkeys(layered):
-                if not named:
-                    continue
-                if named.startswith("`"):
-                    raise ValueError(f"the file name {named[:80]} is computed, which is not read")
-                found = str(resolver.Resolve(layer.ComputeAbsolutePath(named)))
-                if not found:
-                    self.note(f"there is no file '{named}': it is left out")
-                    continue
-                self.require(found, named)
-                inner = Ar.SplitPackageRelativePathInner(found)[1] or found
-                if not inner.lower().endswith(LAYERS):
-                    raise ValueError(f"'{named}' is no USD file; other formats are not read within a scene")
-                if found not in seen:
+            unread = set()
+            for named in self.named_layers(layer):
+                found = self.found(layer, named)
+                if found is None or (found not in seen and self.opened(found) is None):
+                    unread.add(named)
+                elif found not in seen:
                     seen.add(found)
                     waiting.append(found)
+            if unread:
+                take_out(layer, unread)
+
+    def opened(self, path):
+        """A layer, or None, which is told; an error where it is the scene itself."""
+        if path in self.unread:
+            return None
+        try:
+            layer = Sdf.Layer.FindOrOpen(path)
+            why = ""
+        except Tf.ErrorException as error:
+            if path == self.path:
+                raise
+            layer, why = None, ": " + words_of(error)[:200]
+        if layer is None:
+            if path == self.path:
+                raise ValueError("it is no USD file that can be read")
+            self.unread.add(path)
+            self.note(f"the layer '{os.path.basename(path)}' cannot be read and is left out{why}")
+        return layer
+
+    @staticmethod
+    def named_layers(layer):
+        sublayers, references, payloads = UsdUtils.ExtractExternalReferences(layer.identifier)
+        layered = [*sublayers, *payloads, *layer.GetCompositionAssetDependencies()]
+        layered += [r for r in references if Ar.SplitPackageRelativePathInner(r)[1].lower().endswith(LAYERS) or r.lower().endswith(LAYERS)]
+        return [named for named in dict.fromkeys(layered) if named]
+
+    def found(self, layer, named):
+        """Where a layer is that another names; None: it is not read, which is told."""
+        if named.startswith("`"):
+            self.note(f"the file name {named[:80]} is computed: what it stands for is left out")
+            return None
+        found = str(Ar.GetResolver().Resolve(layer.ComputeAbsolutePath(named)))
+        if not found:
+            self.note(f"there is no file '{named}': it is left out")
+            return None
+        inner = Ar.SplitPackageRelativePathInner(found)[1] or found
+        if not inner.lower().endswith(LAYERS):
+            what = "a MaterialX file, which is not read: its materials are grey" if inner.lower().endswith(".mtlx") else (
+                "no USD file; other formats are not read within a scene: it is left out")
+            self.note(f"'{named}' is {what}")
+            return None
+        self.require(found, named)
+        return found
+
+
+def take_out(layer, unread):
+    """Sublayers, references and payloads of these names."""
+    layer.SetPermissionToEdit(True)
+    for i in reversed(range(len(layer.subLayerPaths))):
+        if layer.subLayerPaths[i] in unread:
+            del layer.subLayerPaths[i]
+
+    def visit(path):
+        prim = layer.GetPrimAtPath(path) if path.IsPrimPath() or path.IsPrimVariantSelectionPath() else None
+        for key in ("references", "payload"):
+            if not prim or not prim.HasInfo(key):
+                continue
+            items = prim.GetInfo(key)
+            for kind in ("explicitItems", "addedItems", "prependedItems", "appendedItems"):
+                given = getattr(items, kind)
+                left = [item for item in given if item.assetPath not in unread]
+                if len(left) < len(given):
+                    setattr(items, kind, left)
+            prim.SetInfo(key, items)
+
+    layer.Traverse(Sdf.Path.absoluteRootPath, visit)
+
+
+def words_of(error):
+    """What the library finds wrong, without the places in its own source."""
+    words = re.sub(r"Error in '\S*' at line \d+ in file \S+ : ", "", " ".join(str(error).split()))
+    return words.strip("' ")

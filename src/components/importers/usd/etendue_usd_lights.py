@@ -5,6 +5,7 @@ import numpy
 from pxr import Ar, Gf, UsdGeom, UsdLux
 
 from etendue_usd_glb import plain
+from etendue_usd_values import of_kind
 
 TURN_UP = Gf.Matrix4d().SetRotate(Gf.Rotation(Gf.Vec3d(1, 0, 0), 90))  # +y to +z, +z to -y
 
@@ -26,10 +27,11 @@ class Lights:
         light = UsdLux.LightAPI(prim)
         color = plain(self.value("color", (1, 1, 1)))
         if self.value("enableColorTemperature", False):
-            color = [c * t for c, t in zip(color, UsdLux.BlackbodyTemperatureAsRgb(float(self.value("colorTemperature", 6500))))]
+            color = [c * t for c, t in zip(color, UsdLux.BlackbodyTemperatureAsRgb(self.value("colorTemperature", 6500)))]
         # Of what types have their own default for, the schema's is asked.
-        strength = float(light.GetIntensityAttr().Get(self.time) if light and not self.old("intensity") else self.value("intensity", 1))
-        strength *= 2 ** min(float(self.value("exposure", 0)), 200)
+        default = light.GetIntensityAttr().Get(self.time) if light and not self.old("intensity") else 1
+        strength = default if isinstance(default, float) else self.value("intensity", 1)
+        strength *= 2 ** min(self.value("exposure", 0), 200)
         self.color = [max(0.0, c * strength) for c in plain(color)]
         return make(place)
 
@@ -43,11 +45,11 @@ class Lights:
     def value(self, name, otherwise):
         attribute = self.prim.GetAttribute(name if self.old(name) else "inputs:" + name)
         found = attribute.Get(self.time) if attribute else None
-        return otherwise if found is None else found
+        return of_kind(found, otherwise, f"'{name}' of {self.prim.GetPath()}", self.glb.note)
 
     def note_the_rest(self):
         for name in ("diffuse", "specular"):
-            if float(self.value(name, 1)) != 1:
+            if self.value(name, 1) != 1:
                 self.glb.note(f"'{name}' of lights, which strengthens one kind of reflection, is left out")
         if not self.value("shadow:enable", True) or tuple(self.value("shadow:color", (0, 0, 0))) != (0, 0, 0):
             self.glb.note("lights cast shadows, and black ones, as light does")
@@ -80,9 +82,9 @@ class Lights:
         if measured:
             return measured
         members = {"radiance": self.radiance(texture)}
-        angle = min(max(float(self.value("shaping:cone:angle", 90)), 0), 180) if shaped else 180
-        soft = min(max(float(self.value("shaping:cone:softness", 0)), 0), 1)
-        focus = max(float(self.value("shaping:focus", 0)), 0)
+        angle = min(max(self.value("shaping:cone:angle", 90), 0), 180) if shaped else 180
+        soft = min(max(self.value("shaping:cone:softness", 0), 0), 1)
+        focus = max(self.value("shaping:focus", 0), 0)
         tint = tuple(self.value("shaping:focusTint", (0, 0, 0)))
         flat = self.prim.GetTypeName() in ("RectLight", "DiskLight")
         if focus > 0 and shaped and tint != (1, 1, 1):
@@ -111,11 +113,11 @@ class Lights:
         self.materials.files.require(path, asset.path)
         if texture:
             self.glb.note("the texture of a light with an IES file is left out")
-        if float(self.value("shaping:ies:angleScale", 0)) != 0:
+        if self.value("shaping:ies:angleScale", 0) != 0:
             self.glb.note("'shaping:ies:angleScale' is left out")
         flat = self.prim.GetTypeName() in ("RectLight", "DiskLight")
-        if (float(self.value("shaping:cone:angle", 90)) < (90 if flat else 180) or float(self.value("shaping:cone:softness", 0)) > 0
-                or float(self.value("shaping:focus", 0)) > 0):
+        if (self.value("shaping:cone:angle", 90) < (90 if flat else 180) or self.value("shaping:cone:softness", 0) > 0
+                or self.value("shaping:focus", 0) > 0):
             self.glb.note("the cone and the focus of a light with an IES file are left out")
         # As IesEmission divides by the luminance of its colour [cd/m^2], of which 1 is a pixel of 1 by the observer's integral.
         luminance = sum(c * y for c, y in zip(self.color, (0.2126729, 0.7151522, 0.072175))) * 683.002 * 106.856917
@@ -139,7 +141,7 @@ class Lights:
         return [numpy.array(place.TransformDir(Gf.Vec3d(*v))) for v in vectors]
 
     def rectangle(self, place):
-        w, h = (max(float(self.value(name, 1)), 0) for name in ("width", "height"))
+        w, h = (max(self.value(name, 1), 0) for name in ("width", "height"))
         x, y = self.stretch(place, (1, 0, 0), (0, 1, 0))
         self.normalize(w * h * numpy.linalg.norm(numpy.cross(x, y)))
         if w * h == 0:
@@ -151,7 +153,7 @@ class Lights:
         return self.part("Rectangle", members, place)
 
     def disc(self, place):
-        r = max(float(self.value("radius", 0.5)), 0)
+        r = max(self.value("radius", 0.5), 0)
         x, y = self.stretch(place, (1, 0, 0), (0, 1, 0))
         self.normalize(math.pi * r * r * numpy.linalg.norm(numpy.cross(x, y)))
         if r == 0:
@@ -165,7 +167,7 @@ class Lights:
         return self.part("Disc", {"radius": r, "emission": emission}, turned * place)
 
     def cylinder(self, place):
-        r, length = max(float(self.value("radius", 0.5)), 0), max(float(self.value("length", 1)), 0)
+        r, length = max(self.value("radius", 0.5), 0), max(self.value("length", 1), 0)
         if self.value("treatAsLine", False):
             self.glb.note("lights that are treated as lines have their radius")
         around = numpy.arange(64) * (2 * math.pi / 64)
@@ -183,7 +185,7 @@ class Lights:
         return self.part("Cylinder", {"radius": r, "height": length, "caps": False, "emission": emission}, turned * place)
 
     def sphere(self, place):
-        r = max(float(self.value("radius", 0.5)), 0)
+        r = max(self.value("radius", 0.5), 0)
         x, y, z = self.stretch(place, (1, 0, 0), (0, 1, 0), (0, 0, 1))
         # The area of an ellipsoid: the mean over a sphere's directions n of the stretched |e_u x e_v|, with u and v across n.
         heights, weights = numpy.polynomial.legendre.leggauss(32)
@@ -207,12 +209,12 @@ class Lights:
 
     def note_profile(self):
         asset = self.value("shaping:ies:file", None)
-        if asset is not None and str(getattr(asset, "path", asset)):
+        if asset and asset.path:
             self.glb.note("IES files of lights at infinity are left out")
 
     def distant(self, place):
         self.note_profile()
-        half = min(max(math.radians(float(self.value("angle", 0.53))) / 2, 0), math.pi)
+        half = min(max(math.radians(self.value("angle", 0.53)) / 2, 0), math.pi)
         size = 1 if half == 0 else math.pi * (math.sin(half) ** 2 if half <= math.pi / 2 else 2 - math.sin(half) ** 2)
         self.normalize(size)
         if half == 0:
@@ -231,7 +233,7 @@ class Lights:
                 place = TURN_UP * place
         if self.prim.GetRelationship("portals").HasAuthoredTargets():
             self.glb.note("portals of domes are left out: they only guide rays")
-        layout = str(self.value("texture:format", "automatic"))
+        layout = self.value("texture:format", "automatic")
         image = self.texture()
         if image is not None and layout not in ("automatic", "latlong"):
             self.glb.note(f"textures of domes of the format {layout[:40]} are left out")

@@ -2,9 +2,9 @@
 import os
 import urllib.parse
 
-from pxr import Ar, Sdf, Usd, UsdShade
+from pxr import Ar, Usd, UsdShade
 
-from etendue_usd_glb import plain
+import etendue_usd_values as values
 
 WRAPS = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "black", "useMetadata": "repeat"}
 CHANNELS = {"r": "R", "g": "G", "b": "B", "a": "A"}
@@ -54,25 +54,25 @@ class Materials:
                "emission": self.color(surface, "emissiveColor", (0, 0, 0)),
                "coat": self.number(surface, "clearcoat", 0), "coat_roughness": self.number(surface, "clearcoatRoughness", 0.01)}
         made = {"name": name, "extensions": {"ETENDUE_surface": own}, "doubleSided": False}
-        ior = float(self.value(surface, "ior", 1.5))
-        if int(self.value(surface, "useSpecularWorkflow", 0)) == 1:
+        ior = self.scalar(surface, "ior", 1.5)
+        if self.scalar(surface, "useSpecularWorkflow", 0) == 1:
             ior = self.specular(surface, own, ior)
         else:
             own["metalness"] = self.number(surface, "metallic", 0)
         made["extensions"]["KHR_materials_ior"] = {"ior": ior if ior > 0 else 1.5}
-        opacity, threshold = self.number(surface, "opacity", 1), float(self.value(surface, "opacityThreshold", 0))
+        opacity, threshold = self.number(surface, "opacity", 1), self.scalar(surface, "opacityThreshold", 0)
         if opacity["value"] < 1 or "texture" in opacity:
             own["opacity"] = opacity
             made["alphaMode"] = "MASK" if threshold > 0 else "BLEND"
             if threshold > 0:
                 made["alphaCutoff"] = threshold
-            elif str(self.value(surface, "opacityMode", "transparent")) == "transparent" and "texture" not in opacity:
+            elif self.word(surface, "opacityMode", "transparent") == "transparent" and "texture" not in opacity:
                 self.glb.note("surfaces of an opacity below 1 let light through as holes do: what they reflect becomes less too")
         normals = self.texture(surface, "normal")
         if normals:
             own["normals"] = self.normals(normals)
         displacement = surface.GetInput("displacement")
-        if displacement and (displacement.HasConnectedSource() or float(self.value(surface, "displacement", 0)) != 0):
+        if displacement and (displacement.HasConnectedSource() or self.scalar(surface, "displacement", 0) != 0):
             self.glb.note("the displacement of materials is left out")
         return self.glb.add("materials", made)
 
@@ -117,10 +117,19 @@ class Materials:
                 return otherwise if found is None else found
         return otherwise
 
+    def scalar(self, shader, key, otherwise):
+        return values.number(self.value(shader, key, None), otherwise, f"'{key}' of {shader.GetPath()}", self.glb.note)
+
+    def vector(self, shader, key, otherwise):
+        return values.vector(self.value(shader, key, None), otherwise, f"'{key}' of {shader.GetPath()}", self.glb.note)
+
+    def word(self, shader, key, otherwise):
+        return values.word(self.value(shader, key, None), otherwise, f"'{key}' of {shader.GetPath()}", self.glb.note)
+
     def color(self, shader, key, otherwise):
         found = self.texture(shader, key, colored=True)
         if not found:
-            return {"value": plain(self.value(shader, key, otherwise))}
+            return {"value": self.vector(shader, key, otherwise)}
         if "primvar" in found:
             self.by_vertex = True
             return {"value": [1, 1, 1]}
@@ -132,7 +141,7 @@ class Materials:
     def number(self, shader, key, otherwise):
         found = self.texture(shader, key)
         if not found:
-            return {"value": plain([self.value(shader, key, otherwise)])[0]}
+            return {"value": self.scalar(shader, key, otherwise)}
         which = "rgba".find(found["channel"]) if len(found["channel"]) == 1 else 0
         return {"value": found["scale4"][which], "offset": found["bias4"][which], "texture": found["texture"],
                 "channel": CHANNELS.get(found["channel"], ""), "without": found["without"][which]}
@@ -148,22 +157,22 @@ class Materials:
             kind = reader.GetIdAttr().Get()
             if kind == "UsdUVTexture":
                 return self.image_texture(reader, output)
-            if colored and str(kind).startswith("UsdPrimvarReader_float3") and str(self.value(reader, "varname", "")) == "displayColor":
+            if colored and str(kind).startswith("UsdPrimvarReader_float3") and self.word(reader, "varname", "") == "displayColor":
                 return {"primvar": "displayColor"}
             self.glb.note(f"shaders of the kind {str(kind)[:60]} in '{key}' are left out")
         return None
 
     def image_texture(self, reader, output):
-        asset = self.value(reader, "file", None)
-        scale, bias = plain(self.value(reader, "scale", (1, 1, 1, 1))), plain(self.value(reader, "bias", (0, 0, 0, 0)))
-        fallback = plain(self.value(reader, "fallback", (0, 0, 0, 1)))
+        asset = values.asset(self.value(reader, "file", None), f"'file' of {reader.GetPath()}", self.glb.note)
+        scale, bias = self.vector(reader, "scale", (1, 1, 1, 1)), self.vector(reader, "bias", (0, 0, 0, 0))
+        fallback = self.vector(reader, "fallback", (0, 0, 0, 1))
         without = fallback
         if not asset or not asset.path:
             self.glb.note("a UsdUVTexture without a file has its fallback's colour")
             return {"texture": {"image": self.missing()}, "channel": output, "scale4": scale, "bias4": bias, "without": without}
-        space = {"raw": "linear", "sRGB": "srgb"}.get(str(self.value(reader, "sourceColorSpace", "auto")), "auto")
+        space = {"raw": "linear", "sRGB": "srgb"}.get(self.word(reader, "sourceColorSpace", "auto"), "auto")
         texture = {"image": self.image(asset, reader.GetInput("file").GetAttr()), "transfer": space,
-                   "wrap": [WRAPS.get(str(self.value(reader, key, "useMetadata")), "repeat") for key in ("wrapS", "wrapT")]}
+                   "wrap": [WRAPS.get(self.word(reader, key, "useMetadata"), "repeat") for key in ("wrapS", "wrapT")]}
         if output == "a":
             texture["transfer"] = "linear"
         self.coordinates(reader, texture)
@@ -178,16 +187,16 @@ class Materials:
             shader = UsdShade.Shader(sources[0].GetPrim()) if sources else None
             kind = str(shader.GetIdAttr().Get()) if shader else ""
             if kind == "UsdTransform2d" and key == "st":
-                texture["scale"] = plain(self.value(shader, "scale", (1, 1)))
-                texture["shift"] = plain(self.value(shader, "translation", (0, 0)))
-                texture["angle"] = plain([self.value(shader, "rotation", 0)])[0] * 3.141592653589793 / 180
+                texture["scale"] = self.vector(shader, "scale", (1, 1))
+                texture["shift"] = self.vector(shader, "translation", (0, 0))
+                texture["angle"] = self.scalar(shader, "rotation", 0) * 3.141592653589793 / 180
                 if 0 in texture["scale"]:
                     self.glb.note("a texture that is scaled to nothing is laid as it is")
                     texture["scale"] = [1, 1]
                 key = "in"
                 continue
             if kind == "UsdPrimvarReader_float2":
-                name = str(self.value(shader, "varname", "") or "st")
+                name = self.word(shader, "varname", "") or "st"
                 self.reading.add(name)
                 texture["uv_set"] = self.uv_sets.setdefault(name, len(self.uv_sets))
             elif kind:
@@ -206,7 +215,8 @@ class Materials:
             for prim in Usd.PrimRange.AllPrims(root):
                 attribute = prim.GetAttribute("inputs:file") if prim.GetTypeName() == "Shader" else None
                 value = attribute.Get(self.time) if attribute else None
-                if isinstance(value, Sdf.AssetPath) and value.path:
+                value = values.asset(value, f"'file' of {prim.GetPath()}", self.glb.note) if value is not None else None
+                if value and value.path:
                     found[value.resolvedPath or value.path] = value, attribute
         for path in sorted(found):
             self.image(*found[path])

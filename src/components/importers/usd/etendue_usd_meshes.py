@@ -2,13 +2,9 @@
 import numpy
 from pxr import UsdGeom, UsdShade
 
+from etendue_usd_normals import stated
 from etendue_usd_polygons import triangulated
-
-
-def array(values, kind, width=None):
-    """Numbers of an attribute, which may have none."""
-    found = numpy.array(values if values is not None else [], dtype=kind)
-    return found if width is None else found.reshape(-1, width)
+from etendue_usd_values import array
 
 
 class Meshes:
@@ -37,7 +33,7 @@ class Meshes:
         if not numpy.isfinite(points).all():
             raise ValueError(f"{prim.GetPath()}: its points are no finite numbers")
         subsets = [s for s in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets() if s.GetElementTypeAttr().Get() == "face"]
-        mesh_normals = self.normals(mesh)
+        mesh_normals = stated(mesh, self.time)
         if self.is_smooth(mesh, mesh_normals):
             if not subsets:
                 return self.cage(prim, mesh, points, counts, corners)
@@ -186,13 +182,6 @@ class Meshes:
         uv = numpy.array(values, dtype="f4")[:, :2].copy()
         uv[:, 1] = 1 - uv[:, 1]
         return uv, primvar.GetInterpolation()
-
-    def normals(self, mesh):
-        primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("normals")
-        own = primvar and primvar.HasValue()
-        values = primvar.ComputeFlattened(self.time) if own else mesh.GetNormalsAttr().Get(self.time)
-        how = primvar.GetInterpolation() if own else mesh.GetNormalsInterpolation()
-        return (numpy.array(values, dtype="f4").reshape(-1, 3), how) if values is not None and len(values) else None
 
     def colors(self, mesh):
         """displayColor with displayOpacity, or None; and whether it is opaque."""

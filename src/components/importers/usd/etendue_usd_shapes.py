@@ -4,8 +4,7 @@ import math
 import numpy
 from pxr import Gf, UsdGeom
 
-from etendue_usd_glb import plain
-from etendue_usd_meshes import array
+from etendue_usd_values import array, of_kind
 
 # Places of what stands along z here, for an axis of USD's: rows are where x, y and z go.
 ALONG = {"Z": Gf.Matrix4d(1), "X": Gf.Matrix4d(0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1),
@@ -50,7 +49,7 @@ class Shapes:
     def value(self, prim, name, otherwise):
         attribute = prim.GetAttribute(name)
         found = attribute.Get(self.time) if attribute else None
-        return otherwise if found is None else found if isinstance(found, str) else plain([found])[0]
+        return of_kind(found, otherwise, f"'{name}' of {prim.GetPath()}", self.glb.note)
 
     def curves(self, prim):
         curves = UsdGeom.BasisCurves(prim)

@@ -22,7 +22,13 @@ std::string convert(const std::string& path, const Importing& importing) {
   const char* chosen = std::getenv("ETENDUE_PYTHON");
   std::vector<std::string> arguments{script, path, fmt::format("{}", importing.options().time)};
   for (const std::string& folder : importing.options().allowed_folders) arguments.push_back(folder);
-  return run_program(chosen && *chosen ? chosen : "python3", arguments, "etendue_usd.py");
+  const std::string python = chosen && *chosen ? chosen : "python3";
+  try {
+    return run_program(python, arguments, "etendue_usd.py");
+  } catch (const NotStarted& error) {
+    throw Error(std::string("USD files are read by Python, but ") + error.what() +
+                "; install it with its packages (pip install usd-core numpy), or name one that has them by ETENDUE_PYTHON");
+  }
 }
 
 const bool known_converter = gltf::register_converter(endings(), convert);
@@ -31,8 +37,8 @@ class UsdImporter final : public Importer {
  public:
   static void describe(Description<UsdImporter>& d) {
     d.summary(
-        "Universal Scene Description (.usd, .usda, .usdc, .usdz), read by the Python package usd-core, which must be installed "
-        "(pip install usd-core; ETENDUE_PYTHON names the Python that has it).",
+        "Universal Scene Description (.usd, .usda, .usdc, .usdz), read by the Python packages usd-core and numpy, which "
+        "must be installed (pip install usd-core numpy; ETENDUE_PYTHON names the Python that has them).",
         "Pixar, Universal Scene Description");
   }
   std::vector<std::string> extensions() const override { return endings(); }
