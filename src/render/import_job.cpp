@@ -7,6 +7,7 @@
 #include <set>
 
 #include "language/writer.h"
+#include "render/imported.h"
 
 namespace etendue {
 
@@ -112,7 +113,7 @@ class ImportedFile final : public language::OtherFile {
  public:
   ImportedFile(const Importer& importer, const std::string& path, const ImportOptions& options,
                const std::vector<std::pair<std::string, std::string>>& parameters)
-      : importing_(path, options, parameters), read_(importer.import(importing_)) {
+      : importing_(path, options, parameters), read_(imported(importer, importing_)) {
     for (const auto& [name, value] : parameters) parameters_.push_back(name);
   }
 
@@ -189,7 +190,7 @@ const language::OtherFiles& imported_files() {
 
 ImportedJob import_job(const Importer& importer, const std::string& path, const LoadOptions& options) {
   Importing importing(path, options.import, options.defines);
-  ImportedJob result{whole_job(importer.import(importing), importing), {}};
+  ImportedJob result{whole_job(imported(importer, importing), importing), {}};
   result.notes = importing.notes();
   if (options.import.strict && !result.notes.empty()) throw Errors(std::move(result.notes));
   return result;

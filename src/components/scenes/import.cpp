@@ -7,10 +7,10 @@
 #include "components/importers/permissions.h"
 #include "describe/expansion.h"
 #include "etendue/importer.h"
-
 #include "etendue/render/job.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
+#include "render/imported.h"
 
 namespace etendue {
 namespace {
@@ -47,11 +47,11 @@ class Import final : public Scene {
     ImportOptions options = import_permissions();
     options.time = time;
     Importing importing(path, options);
-    const Ref<Component> imported = import_by(*importer, importing);
+    const Ref<Component> read = import_by(*importer, importing);
     if (options.strict && !importing.notes().empty()) throw Errors(importing.notes());
     for (const Error& note : importing.notes()) warn(note.what(), note.location);
-    const Ref<Job> job = ref_cast<Job>(imported);
-    const Ref<Scene> scene = job ? job->scene : ref_cast<Scene>(imported);
+    const Ref<Job> job = ref_cast<Job>(read);
+    const Ref<Scene> scene = job ? job->scene : ref_cast<Scene>(read);
     if (!scene) fail("file", "'" + path + "' holds nothing that can be seen");
     objects.clear();
     for (const Ref<SceneObject>& object : scene->objects)
@@ -73,7 +73,7 @@ class Import final : public Scene {
   /// What concerns the file as a whole, such as that there is none, is told where it is named.
   Ref<Component> import_by(const Importer& importer, Importing& importing) const {
     try {
-      return importer.import(importing);
+      return imported(importer, importing);
     } catch (const Error& error) {
       if (error.location.line > 0) throw;
       const std::string what = error.what(), path = file.resolved();

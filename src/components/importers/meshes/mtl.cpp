@@ -7,38 +7,10 @@
 #include "components/objects/meshes/obj_lines.h"
 #include "files/regular_file.h"
 #include "files/text_encoding.h"
+#include "mtl_lines.h"
 
 namespace etendue {
 namespace {
-
-struct Texture {
-  SurfaceTexture image;
-  std::string channel;
-  double bump = 1, base = 0, gain = 1;  // what it says is base + gain * texel
-  bool has_alpha = false, has_colors = false;
-};
-
-/// The lines of one material, before it is known what they mean together.
-struct Said {
-  std::string name;
-  Location at;
-  std::map<std::string, double> numbers;
-  std::map<std::string, std::array<double, 3>> colors;
-  std::map<std::string, Texture> textures;
-  bool has(const char* key) const { return numbers.contains(key) || colors.contains(key) || textures.contains(key); }
-  double number(const char* key, double otherwise) const {
-    const auto found = numbers.find(key);
-    return found == numbers.end() ? otherwise : found->second;
-  }
-  std::array<double, 3> color(const char* key, double otherwise) const {
-    const auto found = colors.find(key);
-    return found == colors.end() ? std::array<double, 3>{otherwise, otherwise, otherwise} : found->second;
-  }
-  const Texture* texture(const char* key) const {
-    const auto found = textures.find(key);
-    return found == textures.end() ? nullptr : &found->second;
-  }
-};
 
 std::string lower(std::string_view text) {
   std::string small(text);
@@ -56,28 +28,31 @@ class MtlReader {
   void read(std::map<std::string, MtlMaterial>& all) {
     const FileContents contents(path_);
     const std::string text = as_utf8(contents.text());
-    Said said;
+    std::vector<MtlLines> materials;
+    bool by_meshlab = false;
     for (Lines lines(text); lines.next();) {
       const std::string word = lower(lines.keyword());
       const Location at{file_, int(lines.line()), 0};
+      if (!word.empty() && word[0] == '#')
+        by_meshlab = by_meshlab || (word + lower(lines.left())).find("meshlab") != std::string::npos;
       if (word.empty() || word[0] == '#') continue;
       if (word == "newmtl") {
-        finish(said, all);
-        said = {std::string(lines.rest()), at, {}, {}, {}};
+        materials.push_back({std::string(lines.rest()), at, {}, {}, {}});
         continue;
       }
-      if (!said.at.known()) continue;
+      if (materials.empty()) continue;
       try {
-        line(lines, word, at, said);
+        line(lines, word, at, materials.back());
       } catch (const Error& error) {
         throw Error(error.what(), at);
       }
     }
-    finish(said, all);
+    tr_is_opacity_ = tr_is_opacity(importing_, materials, by_meshlab);
+    for (const MtlLines& said : materials) finish(said, all);
   }
 
  private:
-  void line(Lines& lines, const std::string& word, Location at, Said& said) {
+  void line(Lines& lines, const std::string& word, Location at, MtlLines& said) {
     static const std::vector<std::string> colors{"kd", "ks", "ke", "tf"},
         numbers{"ns", "ni", "d", "tr", "illum", "pr", "pm", "ps", "pc", "pcr", "aniso", "anisor"},
         textures{"map_kd",   "map_ks", "map_ke", "map_ns", "map_d",  "map_tr",
@@ -98,7 +73,7 @@ class MtlReader {
     }
   }
 
-  void read_color(Lines& lines, const std::string& word, Location at, Said& said) {
+  void read_color(Lines& lines, const std::string& word, Location at, MtlLines& said) {
     if (lines.rest().starts_with("spectral") || lines.rest().starts_with("xyz")) {
       importing_.inexact("a colour that is a spectrum's file or CIE XYZ is not read", at);
       return;
@@ -110,8 +85,8 @@ class MtlReader {
     said.colors[word] = c;
   }
 
-  std::optional<Texture> read_texture(Lines& lines, Location at) {
-    Texture texture;
+  std::optional<MtlTexture> read_texture(Lines& lines, Location at) {
+    MtlTexture texture;
     SurfaceTexture placed;
     while (lines.rest().starts_with("-")) {
       const std::string option = lower(lines.keyword());
@@ -170,8 +145,7 @@ class MtlReader {
     return digit(c) || ((c == '-' || c == '+' || c == '.') && (digit(next) || next == '.'));
   }
 
-  void finish(const Said& said, std::map<std::string, MtlMaterial>& all) {
-    if (!said.at.known()) return;
+  void finish(const MtlLines& said, std::map<std::string, MtlMaterial>& all) {
     Surface s;
     s.name = said.name;
     base(said, s);
@@ -184,7 +158,7 @@ class MtlReader {
     all.try_emplace(said.name, MtlMaterial{s, said.at});
   }
 
-  static void put(const Texture* texture, SurfaceColor& color) {
+  static void put(const MtlTexture* texture, SurfaceColor& color) {
     if (!texture) return;
     color.texture = texture->image;
     for (size_t i = 0; i < 3; ++i) {
@@ -192,7 +166,7 @@ class MtlReader {
       color.value[i] *= texture->gain;
     }
   }
-  static void put(const Texture* texture, SurfaceNumber& number) {
+  static void put(const MtlTexture* texture, SurfaceNumber& number) {
     if (!texture) return;
     number.texture = texture->image;
     number.channel = texture->channel;
@@ -204,8 +178,8 @@ class MtlReader {
     number.value *= texture->gain;
   }
 
-  void base(const Said& said, Surface& s) const {
-    const Texture* texture = said.texture("map_kd");
+  void base(const MtlLines& said, Surface& s) const {
+    const MtlTexture* texture = said.texture("map_kd");
     // Exporters often leave Kd black where a texture stands for it.
     s.base_color = said.color("kd", texture ? 1 : 0.8);
     if (texture && s.base_color.black()) s.base_color.value = {1, 1, 1};
@@ -217,7 +191,7 @@ class MtlReader {
     if (s.ior == 1) s.ior = 1.5;  // what exporters write that know no index
   }
 
-  static void pbr(const Said& said, Surface& s) {
+  static void pbr(const MtlLines& said, Surface& s) {
     s.metalness = said.number("pm", said.texture("map_pm") ? 1 : 0);
     s.roughness = said.number("pr", said.texture("map_pr") ? 1 : 0.5);
     put(said.texture("map_pm"), s.metalness);
@@ -226,7 +200,7 @@ class MtlReader {
 
   // Phong's exponent n is about that of a Beckmann distribution with alpha^2 = 2 / (n + 2) (Walter et al. 2007, section 5.3),
   // and alpha is the square of the roughness.
-  static void phong(const Said& said, Surface& s) {
+  static void phong(const MtlLines& said, Surface& s) {
     s.roughness = std::pow(2 / (std::max(said.number("ns", 0), 0.0) + 2), 0.25);
     const std::array<double, 3> reflected = said.color("ks", said.texture("map_ks") ? 1 : 0);
     const double most = strongest(reflected), illum = said.number("illum", 2);
@@ -247,12 +221,12 @@ class MtlReader {
     put(said.texture("map_ks"), s.specular_color);
   }
 
-  void transparency(const Said& said, Surface& s) const {
+  void transparency(const MtlLines& said, Surface& s) const {
     const double illum = said.number("illum", 2);
-    const double opacity = std::clamp(said.has("d") ? said.number("d", 1) : 1 - said.number("tr", 0), 0.0, 1.0);
-    const bool refracts = illum == 6 || illum == 7 || ((illum == 4 || illum == 9) && (opacity < 1 || said.has("tf")));
+    const double there = mtl_opacity(importing_, said, tr_is_opacity_);
+    const bool refracts = illum == 6 || illum == 7 || ((illum == 4 || illum == 9) && (there < 1 || said.has("tf")));
     if (refracts) {
-      s.transmission = opacity < 1 ? 1 - opacity : 1;
+      s.transmission = there < 1 ? 1 - there : 1;
       s.transmission_color = said.color("tf", 1);
       if (s.transmission_color.black()) s.transmission_color = 1.0;  // exporters write 0 for "unused"
       s.thin = false;
@@ -260,8 +234,8 @@ class MtlReader {
       s.specular_color = 1.0;
       return;
     }
-    s.opacity = opacity;
-    const Texture* holes = said.texture("map_d");
+    s.opacity = there;
+    const MtlTexture* holes = said.texture("map_d");
     if (!holes) holes = said.texture("map_tr");
     if (!holes) return;
     if (s.opacity.value == 0) s.opacity = 1;
@@ -276,8 +250,8 @@ class MtlReader {
     if (holes->channel.empty() && holes->has_alpha) s.opacity.channel = "A";
   }
 
-  void shape(const Said& said, Surface& s) const {
-    const Texture* sheens = said.texture("map_ps");
+  void shape(const MtlLines& said, Surface& s) const {
+    const MtlTexture* sheens = said.texture("map_ps");
     if (const double sheen = said.number("ps", sheens ? 1 : 0); sheen > 0) {
       s.sheen_color = sheen;
       s.sheen_roughness = 0.5;
@@ -290,9 +264,9 @@ class MtlReader {
     s.coat_roughness = said.number("pcr", 0);
     s.anisotropy = std::clamp(said.number("aniso", 0), 0.0, 1.0);
     s.anisotropy_rotation = said.number("anisor", 0);
-    if (const Texture* normals = said.texture("norm"))
+    if (const MtlTexture* normals = said.texture("norm"))
       s.normals = SurfaceNormals{normals->image, normals->bump, false};
-    else if (const Texture* bumps = said.texture("map_bump")) {
+    else if (const MtlTexture* bumps = said.texture("map_bump")) {
       if (bumps->has_colors && is_of_normals(bumps->image.file)) {
         s.normals = SurfaceNormals{bumps->image, bumps->bump, false};
       } else {
@@ -313,6 +287,7 @@ class MtlReader {
   mutable std::map<std::string, bool> of_normals_;  // images that were looked at
   std::string path_, folder_;
   const char* file_;
+  bool tr_is_opacity_ = false;
 };
 
 }  // namespace

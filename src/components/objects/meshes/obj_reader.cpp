@@ -14,11 +14,6 @@
 namespace etendue {
 namespace {
 
-struct Counts {
-  size_t positions = 0, uvs = 0, normals = 0, faces = 0;
-  bool smoothed = false;  ///< the file has no normals, but groups of faces whose normals are to be blended
-};
-
 /// What follows "s": a number, or "off".
 std::uint32_t smoothing_group(Lines& lines) {
   const std::string_view word = lines.rest();
@@ -28,8 +23,8 @@ std::uint32_t smoothing_group(Lines& lines) {
 }
 
 /// A first pass, so that indices can be checked at once and nothing grows.
-Counts count(std::string_view file) {
-  Counts c;
+ObjCounts count(std::string_view file) {
+  ObjCounts c;
   for (Lines lines(file); lines.next();) {
     const std::string_view word = lines.keyword();
     if (word == "v") ++c.positions;
@@ -155,25 +150,6 @@ MeshData by_vertex(MeshData mesh, const Vertices& vertices, bool smoothed) {
   return result;
 }
 
-/// A corner of a face: "p", "p/t", "p//n" or "p/t/n".
-struct Corner {
-  std::uint32_t position = 0, uv = Vertices::none, normal = Vertices::none;
-};
-Corner read_corner(Lines& lines, const MeshData& so_far, const Counts& all) {
-  Corner c;
-  c.position = read_index(lines, so_far.positions.size(), all.positions, "vertex");
-  if (lines.take('/') && !lines.word_ends()) {
-    if (!lines.take('/')) {
-      c.uv = read_index(lines, so_far.uvs.size(), all.uvs, "texture coordinate");
-      if (lines.take('/') && !lines.word_ends()) c.normal = read_index(lines, so_far.normals.size(), all.normals, "normal");
-    } else if (!lines.word_ends()) {
-      c.normal = read_index(lines, so_far.normals.size(), all.normals, "normal");
-    }
-  }
-  if (!lines.word_ends()) lines.error("an index is expected");
-  return c;
-}
-
 struct Face {
   std::vector<std::uint32_t> corners, positions;
   std::uint32_t material = 0;
@@ -203,7 +179,7 @@ class FaceCutter {
 
 /// With `polygons` given, faces go there as they are, and no triangles are made.
 MeshData parse(std::string_view file, PolygonMesh* polygons) {
-  const Counts all = count(file);
+  const ObjCounts all = count(file);
   if (all.positions == 0) throw Error("it has no vertices");
   if (all.faces == 0) throw Error("it has no faces");
   if (all.positions >= Vertices::none || all.uvs >= Vertices::none || all.normals >= Vertices::none)
@@ -221,6 +197,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   std::vector<Face> late;  // faces that stand before their vertices and have more than three corners
   FaceCutter cutter;
   ObjColors colors(all.positions);
+  ObjCornerReader reader(mesh, all);
   size_t not_faces = 0, not_normals = 0;
   std::unordered_map<std::string, std::uint32_t> materials;
   std::uint32_t material = MeshData::no_material, group = 0;
@@ -252,7 +229,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
       positions.clear();
       bool known = true;
       while (!lines.at_end()) {
-        Corner c = read_corner(lines, mesh, all);
+        ObjCorner c = reader.read(lines);
         if (all.smoothed) c.normal = group;
         known = known && c.position < mesh.positions.size();
         positions.push_back(c.position);

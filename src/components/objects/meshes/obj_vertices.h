@@ -1,6 +1,8 @@
 #pragma once
 // The corners of an OBJ file's faces as vertices, and the colours of vertices.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -45,6 +47,55 @@ inline std::uint32_t read_index(Lines& lines, size_t so_far, size_t all, const c
                 std::to_string(given < 0 ? so_far : all));
   return std::uint32_t(index);
 }
+
+/// Of what an OBJ file has.
+struct ObjCounts {
+  size_t positions = 0, uvs = 0, normals = 0, faces = 0;
+  bool smoothed = false;  ///< the file has no normals, but groups of faces whose normals are to be blended
+};
+
+/// A corner of a face: "p", "p/t", "p//n" or "p/t/n".
+struct ObjCorner {
+  std::uint32_t position = 0, uv = Vertices::none, normal = Vertices::none;
+};
+
+/// Reads corners. Programs that leave out surface coordinates or normals when they write a file often leave their numbers in
+/// the faces: where there are none at all they mean nothing, which is told once.
+class ObjCornerReader {
+ public:
+  ObjCornerReader(MeshData& mesh, const ObjCounts& all) : mesh_(mesh), all_(all) {}
+
+  ObjCorner read(Lines& lines) {
+    ObjCorner c;
+    c.position = read_index(lines, mesh_.positions.size(), all_.positions, "vertex");
+    if (lines.take('/') && !lines.word_ends()) {
+      if (!lines.take('/')) {
+        c.uv = index(lines, mesh_.uvs.size(), all_.uvs, "texture coordinate", no_uvs_);
+        if (lines.take('/') && !lines.word_ends()) c.normal = normal(lines);
+      } else if (!lines.word_ends()) {
+        c.normal = normal(lines);
+      }
+    }
+    if (!lines.word_ends()) lines.error("an index is expected");
+    return c;
+  }
+
+ private:
+  std::uint32_t normal(Lines& lines) { return index(lines, mesh_.normals.size(), all_.normals, "normal", no_normals_); }
+  std::uint32_t index(Lines& lines, size_t so_far, size_t all, const char* what, bool& told) {
+    if (all > 0) return read_index(lines, so_far, all, what);
+    (void)lines.integer();
+    if (!told)
+      mesh_.remarks.push_back(
+          fmt::format("line {}: its faces name {}s, of which the file has none: these are left out", lines.line(), what));
+    told = true;
+    return Vertices::none;
+  }
+
+  MeshData& mesh_;
+  const ObjCounts& all_;
+  bool no_uvs_ = false, no_normals_ = false;
+};
 
 // Colours of vertices, in the two forms that programs have added: red, green and blue behind a vertex's place (MeshLab, Blender
 // and others), and ZBrush's comments "#MRGB" with eight hexadecimal digits for a vertex: a mask, red, green, blue. Both are

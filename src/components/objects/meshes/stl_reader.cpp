@@ -3,7 +3,8 @@
 // Two habits put colours of triangles, 15 bits of sRGB, into the two bytes that close a record of a binary file (Wikipedia,
 // "STL (file format)", section "Color in binary STL"). VisCAM's and SolidView's: the highest bit says that there is a colour,
 // red is above green and blue is lowest. Materialise Magics': the head holds "COLOR=" and four bytes, the colour of all; where
-// the highest bit is not set a triangle has its own, with red lowest.
+// the highest bit is not set a triangle has its own, with red lowest. The bytes were meant as the length of attributes, 0, and
+// other programs leave there what they like: ColorBits says whether they can be colours.
 
 #include <bit>
 #include <cstring>
@@ -52,39 +53,84 @@ size_t binary_count(std::string_view file) {
   return count;
 }
 
-class Colors {
+std::string small(std::string_view text) {
+  std::string all(text);
+  for (char& c : all) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  return all;
+}
+
+/// What the two bytes of all triangles hold.
+class ColorBits {
  public:
-  Colors(std::string_view header, size_t triangles) {
-    constexpr std::string_view mark = "COLOR=";
-    const size_t place = header.find(mark);
-    magics_ = place != std::string_view::npos && place + mark.size() + 4 <= header.size();
-    for (size_t k = 0; k < 3; ++k) all_[k] = 0.7f;
-    if (magics_)
-      for (size_t k = 0; k < 3; ++k)
-        all_[k] = linear(double(static_cast<unsigned char>(header[place + mark.size() + k])) / 255);
-    any_ = magics_;
-    values_.reserve(3 * triangles);
-  }
-
-  void add(std::uint16_t bits) {
-    const bool own = (bits >> 15 != 0) != magics_;
-    any_ = any_ || own;
-    for (int k = 0; k < 3; ++k) {
-      const int five = bits >> 5 * (magics_ ? k : 2 - k) & 31;
-      values_.push_back(own ? linear(double(five) / 31) : all_[size_t(k)]);
+  explicit ColorBits(std::string_view file) : file_(file), count_(binary_count(file)) {
+    for (size_t i = 0; i < count_; ++i) {
+      const std::uint16_t bits = (*this)[i];
+      same_ = same_ && bits == (*this)[0];
+      numbers_ = numbers_ && bits == std::uint16_t(i + (*this)[0]) && (*this)[0] <= 1;
+      zero_ += bits == 0;
+      marked_ += bits >> 15 != 0;
+      black_ += bits == mark;
+      unmarked_ += bits >> 15 == 0 && bits != 0;
     }
+    numbers_ = numbers_ && count_ > 2;
   }
 
-  void give(MeshData& mesh) {
-    if (any_) mesh.face_attributes.push_back({"face_color", 3, std::move(values_)});
+  std::uint16_t operator[](size_t i) const {
+    std::uint16_t bits = 0;
+    std::memcpy(&bits, file_.data() + head + 4 + i * record + 12 * sizeof(float), sizeof bits);
+    return bits;
   }
+
+  /// Why they are none of VisCAM's colours though some have the highest bit; "": they can be.
+  const char* why_not_viscam() const {
+    if (said_in_head("viscam") || said_in_head("solidview")) return "";
+    if (marked_ == black_) return "all that they could say is black";
+    if (same_ && (*this)[0] == 0xffff) return "all their bits are set, everywhere";
+    if (numbers_) return "they count the triangles";
+    // What is not marked has no colour, and mostly 0: of rubbish about as much is marked as not.
+    constexpr size_t few = 16;
+    if (count_ >= few && 2 * unmarked_ > marked_)
+      return "too many triangles have bits without the one that says that they are a colour";
+    return "";
+  }
+  bool any_marked() const { return marked_ > 0; }
+  /// Magics' head without colours of triangles: 0 everywhere, which is what other programs leave.
+  bool all_zero() const { return zero_ == count_; }
+  bool counts_triangles() const { return numbers_; }
 
  private:
-  static float linear(double fraction) { return float(decode_transfer("srgb", fraction)); }
-  bool magics_ = false, any_ = false;
-  std::array<float, 3> all_{};  // of what has none of its own
-  std::vector<float> values_;
+  bool said_in_head(const char* name) const { return small(file_.substr(0, head)).find(name) != std::string::npos; }
+
+  static constexpr std::uint16_t mark = 0x8000;
+  std::string_view file_;
+  size_t count_, zero_ = 0, marked_ = 0, black_ = 0, unmarked_ = 0;
+  bool same_ = true, numbers_ = true;
 };
+
+void give_colors(std::string_view file, MeshData& mesh) {
+  constexpr std::string_view magics_mark = "COLOR=";
+  const std::string_view header = file.substr(0, head);
+  const ColorBits bits(file);
+  const size_t place = header.find(magics_mark);
+  const bool magics = place != std::string_view::npos && place + magics_mark.size() + 4 <= header.size();
+  if (!magics && !bits.any_marked()) return;
+  const std::string rubbish = magics ? (bits.counts_triangles() ? "they count the triangles" : "") : bits.why_not_viscam();
+  if (!rubbish.empty()) mesh.remarks.push_back("the two bytes behind each triangle are not taken for its colour: " + rubbish);
+  if (!magics && !rubbish.empty()) return;
+  const auto linear = [](double fraction) { return float(decode_transfer("srgb", fraction)); };
+  std::array<float, 3> all{0.7f, 0.7f, 0.7f};  // of what has none of its own
+  for (size_t k = 0; magics && k < 3; ++k)
+    all[k] = linear(double(static_cast<unsigned char>(header[place + magics_mark.size() + k])) / 255);
+  const bool own_colors = rubbish.empty() && !(magics && bits.all_zero());
+  std::vector<float> values;
+  values.reserve(3 * mesh.triangles.size());
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const bool own = own_colors && (bits[i] >> 15 != 0) != magics;
+    for (int k = 0; k < 3; ++k)
+      values.push_back(own ? linear(double(bits[i] >> 5 * (magics ? k : 2 - k) & 31) / 31) : all[size_t(k)]);
+  }
+  mesh.face_attributes.push_back({"face_color", 3, std::move(values)});
+}
 
 MeshData read_binary(std::string_view file) {
   if (file.size() < head + 4) throw Error("the file ends within its head");
@@ -95,25 +141,15 @@ MeshData read_binary(std::string_view file) {
   MeshData mesh;
   mesh.triangles.reserve(count);
   Corners corners(mesh);
-  Colors colors(file.substr(0, head), count);
   for (size_t i = 0; i < count; ++i) {
     float numbers[12];
-    std::uint16_t bits = 0;
-    std::memcpy(&bits, file.data() + head + 4 + i * record + sizeof numbers, sizeof bits);
-    colors.add(bits);
     std::memcpy(numbers, file.data() + head + 4 + i * record, sizeof numbers);
     std::array<std::uint32_t, 3> t{};
     for (size_t k = 0; k < 3; ++k) t[k] = corners.add({numbers[3 + 3 * k], numbers[4 + 3 * k], numbers[5 + 3 * k]});
     mesh.triangles.push_back(t);
   }
-  colors.give(mesh);
+  give_colors(file, mesh);
   return mesh;
-}
-
-std::string small(std::string_view text) {
-  std::string all(text);
-  for (char& c : all) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  return all;
 }
 
 MeshData read_text(std::string_view file) {
