@@ -18,7 +18,7 @@
 #include <memory>
 #include <optional>
 
-#include "utf16.h"
+#include "prepared.h"
 
 namespace etendue::assimp_helper {
 namespace {
@@ -26,7 +26,7 @@ namespace {
 void limit(__rlimit_resource resource, std::uint64_t value) {
   rlimit wanted{};
   ::getrlimit(resource, &wanted);
-  wanted.rlim_cur = std::min<rlim_t>(wanted.rlim_max, value);
+  wanted.rlim_cur = std::min<rlim_t>({wanted.rlim_cur, wanted.rlim_max, value});  // a lower limit stays
   wanted.rlim_max = wanted.rlim_cur;
   ::setrlimit(resource, &wanted);
 }
@@ -98,13 +98,16 @@ bool FilesWithin::Exists(const char* path) const { return !allowed(path).empty()
 
 Assimp::IOStream* FilesWithin::Open(const char* path, const char*) {
   const std::string found = allowed(path);
-  if (!found.empty() && is_ase(found))
-    if (const std::optional<std::string> text = utf16_text(found)) {
-      auto* const bytes = new std::uint8_t[text->size() + 1];
-      std::copy_n(text->c_str(), text->size() + 1, bytes);
-      return new Assimp::MemoryIOStream(bytes, text->size(), true);
-    }
-  std::FILE* file = found.empty() ? nullptr : std::fopen(found.c_str(), "rb");
+  if (found.empty()) return nullptr;
+  // The library opens a file several times: to look at how it begins, and to read it.
+  auto known = prepared_.find(found);
+  if (known == prepared_.end()) known = prepared_.emplace(found, prepared(found)).first;
+  if (const std::optional<std::string>& text = known->second) {
+    auto* const bytes = new std::uint8_t[text->size() + 1];
+    std::copy_n(text->c_str(), text->size() + 1, bytes);
+    return new Assimp::MemoryIOStream(bytes, text->size(), true);
+  }
+  std::FILE* file = std::fopen(found.c_str(), "rb");
   return file ? new File(file) : nullptr;
 }
 

@@ -2,6 +2,8 @@
 // What this process may do: it reads files of formats whose reader has faults that are known.
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +27,8 @@ class FilesWithin : public Assimp::IOSystem {
  private:
   /// The path to open, or "".
   std::string allowed(const std::string& path) const;
-  std::vector<std::string> folders_;  // with all links followed
+  std::vector<std::string> folders_;                            // with all links followed
+  std::map<std::string, std::optional<std::string>> prepared_;  // by the path
 };
 
 }  // namespace etendue::assimp_helper

@@ -1,6 +1,6 @@
-// etendue_assimp FILE [--unit=METRES] [FOLDER ...]: reads a model of one of the many formats that Assimp knows and writes it as
-// .glb to standard output; what is wrong goes to standard error. It is a program of its own, so that a fault in the library
-// ends nothing else, and it may open only what lies in the file's folder and those that are named.
+// etendue_assimp FILE [--unit=METRES] [--note=TEXT ...] [FOLDER ...]: reads a model of one of the many formats that Assimp
+// knows and writes it as .glb to standard output; what is wrong goes to standard error. It is a program of its own, so that a
+// fault in the library ends nothing else, and it may open only what lies in the file's folder and those that are named.
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -11,12 +11,14 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "ase_indices.h"
 #include "convert.h"
 #include "limits.h"
+#include "prepared.h"
 #include "second_reading.h"
 
 namespace {
@@ -25,10 +27,11 @@ using namespace etendue::assimp_helper;
 
 int run(const std::string& path, std::vector<std::string> folders) {
   double unit = 0;
-  constexpr std::string_view unit_option = "--unit=";
-  if (!folders.empty() && folders[0].starts_with(unit_option)) {
-    unit = std::strtod(folders[0].c_str() + unit_option.size(), nullptr);
-    folders.erase(folders.begin());
+  std::vector<std::string> notes;
+  constexpr std::string_view unit_option = "--unit=", note_option = "--note=";
+  for (; !folders.empty() && folders[0].starts_with("--"); folders.erase(folders.begin())) {
+    if (folders[0].starts_with(unit_option)) unit = std::strtod(folders[0].c_str() + unit_option.size(), nullptr);
+    if (folders[0].starts_with(note_option)) notes.push_back(folders[0].substr(note_option.size()));
   }
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(path, error);
@@ -51,20 +54,29 @@ int run(const std::string& path, std::vector<std::string> folders) {
   if (!scene || !scene->mRootNode) {
     const std::string said = clean(importer.GetErrorString());
     if (said.find("bad_alloc") != std::string::npos) throw std::bad_alloc();  // the library catches it
+    if (said.find("mNumMeshes is 0") != std::string::npos)
+      throw std::runtime_error("Assimp finds nothing in it that can be seen");
     std::fprintf(stderr, "%s\n", said.c_str());
     return 1;
   }
   Glb glb;
   std::string ending = std::filesystem::path(path).extension().string();
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  notes.insert(notes.end(), left_out().begin(), left_out().end());
+  for (const std::string& note : notes) glb.note(note);
   convert(*scene, glb, ending.empty() ? ending : ending.substr(1), unit);
   const std::uint64_t digest = glb.digest();
   if (second.here()) {
     second.tell(digest);
     return 0;
   }
-  if (second.told() != digest) {
-    std::fprintf(stderr, "it is damaged: what Assimp takes for its content is not in the file\n");
+  const std::optional<std::uint64_t> again = second.told();
+  if (again != digest) {
+    std::fprintf(stderr,
+                 "%s: the file is damaged, or meets a fault of the library, and may then well be right. Another format of the "
+                 "same model may be read, best glTF (.glb)\n",
+                 again ? "what Assimp, which is other people's code, makes of it differs from one reading to the next"
+                       : "Assimp, which is other people's code, read it once and failed at the second reading");
     return 1;
   }
   return glb.write(1) ? 0 : 1;
@@ -74,7 +86,7 @@ int run(const std::string& path, std::vector<std::string> folders) {
 
 int main(int count, char** arguments) {
   if (count < 2) {
-    std::fprintf(stderr, "etendue_assimp FILE [--unit=METRES] [FOLDER ...]\n");
+    std::fprintf(stderr, "etendue_assimp FILE [--unit=METRES] [--note=TEXT ...] [FOLDER ...]\n");
     return 2;
   }
   try {

@@ -17,8 +17,11 @@ std::optional<std::string> utf16_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const auto byte = [&] { return std::uint32_t(file.get()) & 0xff; };
   const std::uint32_t first = byte(), second = byte();
-  const bool little = first == 0xff && second == 0xfe;
-  if (!file || !(little || (first == 0xfe && second == 0xff))) return std::nullopt;
+  const bool marked = (first == 0xff && second == 0xfe) || (first == 0xfe && second == 0xff);
+  const bool unmarked = (first == '<' && second == 0) || (first == 0 && second == '<');
+  const bool little = first == 0xff || second == 0;
+  if (!file || !(marked || unmarked)) return std::nullopt;
+  if (unmarked) file.seekg(0);
   std::string text;
   std::uint32_t high = 0;  // the first half of a pair
   for (;;) {

@@ -7,8 +7,8 @@
 #include "components/importers/gltf/import_document.h"
 #include "components/objects/meshes/mesh_data.h"
 #include "files/gzip.h"
+#include "head_of_3mf.h"
 #include "helper_process.h"
-#include "unit_of_3mf.h"
 
 namespace etendue {
 namespace {
@@ -21,9 +21,22 @@ const std::vector<std::string>& endings() {
 
 std::string convert(const std::string& path, const Importing& importing) {
   std::vector<std::string> arguments{path};
-  if (ending_of_contents(path) == "3mf") arguments.push_back(fmt::format("--unit={}", unit_of_3mf(path)));
+  HeadOf3mf head;
+  if (ending_of_contents(path) == "3mf") {
+    head = head_of_3mf(path);
+    arguments.push_back(fmt::format("--unit={}", head.unit));
+    if (head.face_colors) arguments.emplace_back("--note=colours and images of single triangles of 3MF are left out");
+    if (head.parts_elsewhere) arguments.emplace_back("--note=parts in other files of the 3MF package are left out");
+  }
   for (const std::string& folder : importing.options().allowed_folders) arguments.push_back(folder);
-  return run_helper("etendue_assimp", arguments);
+  try {
+    return run_helper("etendue_assimp", arguments);
+  } catch (const Error& error) {
+    if (!head.parts_elsewhere) throw;
+    throw Error(std::string(error.what()) +
+                "; its parts lie in other files of the package (3MF's production extension), which "
+                "is not read: save it without, or as STL or OBJ");
+  }
 }
 
 const bool known_converter = gltf::register_converter(endings(), convert);

@@ -1,4 +1,4 @@
-#include "unit_of_3mf.h"
+#include "head_of_3mf.h"
 
 #include <zlib.h>
 
@@ -12,7 +12,7 @@
 namespace etendue {
 namespace {
 
-constexpr double millimetre = 1e-3;
+constexpr size_t looked_at = 1 << 16;  // bytes
 
 template <class T>
 T number_at(const std::string& bytes, size_t at) {
@@ -33,7 +33,7 @@ std::string part_of(RegularFile& file, std::uint64_t offset, std::uint64_t count
 std::string inflated(std::string bytes) {
   z_stream stream{};
   if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) return {};
-  std::string text(4096, '\0');
+  std::string text(4 * looked_at, '\0');
   stream.next_in = reinterpret_cast<Bytef*>(bytes.data());
   stream.avail_in = uInt(bytes.size());
   stream.next_out = reinterpret_cast<Bytef*>(text.data());
@@ -63,7 +63,7 @@ std::string begin_of_model(RegularFile& file) {
       const std::string local = part_of(file, head, local_record);
       const std::uint64_t begin =
           head + local_record + number_at<std::uint16_t>(local, 26) + number_at<std::uint16_t>(local, 28);
-      std::string bytes = part_of(file, begin, 16384);
+      std::string bytes = part_of(file, begin, looked_at);
       return number_at<std::uint16_t>(list, at + 10) == 0 ? bytes : inflated(std::move(bytes));
     }
     at += entry_record + name_size + number_at<std::uint16_t>(list, at + 30) + number_at<std::uint16_t>(list, at + 32);
@@ -73,23 +73,29 @@ std::string begin_of_model(RegularFile& file) {
 
 }  // namespace
 
-// 3MF core specification 3.4: the attribute `unit` of the element `model`.
-double unit_of_3mf(const std::string& path) {
+// 3MF core specification 3.4: the attribute `unit` of the element `model`. Resources stand before what is built of them, so
+// that those of colours are mostly near the beginning; prefixes of their names are the file's own.
+HeadOf3mf head_of_3mf(const std::string& path) {
+  HeadOf3mf head;
   std::string text;
   try {
     RegularFile file(path);
     text = begin_of_model(file);
   } catch (const Error&) {
-    return millimetre;
+    return head;
   }
   const size_t model = text.find("<model"), end = text.find('>', model);
-  if (model == std::string::npos) return millimetre;
+  if (model == std::string::npos) return head;
   const std::string element = text.substr(model, end - model);
   for (const auto& [name, length] :
        {std::pair{"micron", 1e-6}, {"centimeter", 1e-2}, {"inch", 0.0254}, {"foot", 0.3048}, {"meter", 1.0}})
     for (const char* mark : {"\"", "'"})
-      if (element.find(std::string(" unit=") + mark + name + mark) != std::string::npos) return length;
-  return millimetre;
+      if (element.find(std::string(" unit=") + mark + name + mark) != std::string::npos) head.unit = length;
+  for (const char* name : {":colorgroup", ":texture2dgroup", ":compositematerials", ":multiproperties"})
+    head.face_colors = head.face_colors || text.find(name) != std::string::npos;
+  const size_t component = text.find("<component ");
+  head.parts_elsewhere = component != std::string::npos && text.find(":path=", component) != std::string::npos;
+  return head;
 }
 
 }  // namespace etendue
