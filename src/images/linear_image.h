@@ -20,9 +20,14 @@ void check_channel(const std::string& path, const std::string& channel);
 std::vector<std::string> image_channels(const std::string& path);
 
 /// Pixels from top to bottom, three channels interleaved; a grey image has three equal ones, and alpha is left out.
+///
+/// All that is read here, and textures too: an OpenEXR file that says it is one of surroundings on the faces of a cube (its
+/// attribute `envmap`) is given in longitude and latitude, with the middle towards +z and the middle of its left half towards
+/// +x.
 struct LinearImage {
   int width = 0, height = 0;
   std::vector<float> rgb;
+  bool from_cube = false;
 };
 /// Of the channel or layer of that name, see check_channel. Throws Error naming the file and the reason.
 LinearImage read_linear_image(const std::string& path, const std::string& transfer, const std::string& channel = {});

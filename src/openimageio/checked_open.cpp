@@ -98,7 +98,7 @@ const char* reader_for(RegularFile& file, const std::string& path) {
 CheckedInput open_checked(const std::string& path) {
   auto file = std::make_shared<RegularFile>(path);
   const char* const reader = reader_for(*file, path);
-  check_exr_header(path);
+  const bool cube = check_exr_header(path);
   check_png_chunks(path);
   check_bmp_header(path);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
@@ -110,7 +110,7 @@ CheckedInput open_checked(const std::string& path) {
   if (!input->open(file->path_to_open(), ignored, wanted)) refuse(input->geterror());
   require_plausible(*input, file->size());
   const bool unpacked = file->path_to_open() != path;
-  return {unpacked ? file : nullptr, std::move(input)};
+  return {unpacked ? file : nullptr, std::move(input), cube};
 }
 
 }  // namespace etendue

@@ -13,10 +13,12 @@ namespace etendue {
 class CheckedInput {
  public:
   CheckedInput() = default;
-  CheckedInput(std::shared_ptr<const RegularFile> file, std::unique_ptr<OIIO::ImageInput> input)
-      : file_(std::move(file)), input_(std::move(input)) {}
+  CheckedInput(std::shared_ptr<const RegularFile> file, std::unique_ptr<OIIO::ImageInput> input, bool is_cube)
+      : cube(is_cube), file_(std::move(file)), input_(std::move(input)) {}
   OIIO::ImageInput* operator->() const { return input_.get(); }
   explicit operator bool() const { return input_ != nullptr; }
+
+  bool cube = false;  ///< see check_exr_header
 
  private:
   std::shared_ptr<const RegularFile> file_;

@@ -76,6 +76,7 @@ struct Part {
   std::uint8_t compression = none;
   std::uint64_t pixel_bytes = 0;  ///< of all channels
   std::uint64_t channels = 0;
+  bool cube = false;  ///< an image of surroundings, on the faces of a cube
 };
 
 Window window_of(Cursor& value) {
@@ -118,6 +119,8 @@ bool read_part(Cursor& cursor, Part& part) {
     if (name == "displayWindow" && type == "box2i") window_of(value);
     if (name == "compression" && type == "compression") part.compression = value.number<std::uint8_t>();
     if (name == "chunkCount" && type == "int") part.chunks = value.number<std::uint32_t>();
+    constexpr std::uint8_t envmap_cube = 1;
+    if (name == "envmap" && type == "envmap") part.cube = value.number<std::uint8_t>() == envmap_cube;
     if (name == "tiles" && type == "tiledesc") {
       part.tiles = Tiles{};
       part.tiles->width = value.number<std::uint32_t>();
@@ -186,21 +189,25 @@ void check_part(const Part& part, std::uint64_t file_size) {
 
 }  // namespace
 
-void check_exr_header(const std::string& path) {
+bool check_exr_header(const std::string& path) {
   RegularFile file(path);
   std::uint32_t start[2] = {0, 0};
-  if (file.read_some(start, sizeof start) < sizeof start || start[0] != magic_number) return;
+  if (file.read_some(start, sizeof start) < sizeof start || start[0] != magic_number) return false;
   if (start[1] & deep) throw Error("it is a deep image, which is not read");
   // Headers hold texts and small previews; a limit keeps this quick for large files.
   constexpr std::uint64_t most = 16u << 20;
   std::string bytes(size_t(std::min(file.size() - sizeof start, most)), '\0');
   bytes.resize(size_t(file.read_some(bytes.data(), bytes.size())));
   Cursor cursor(bytes);
+  bool first = true, cube = false;
   for (Part part; read_part(cursor, part); part = {}) {
     if (part.tiles && !(start[1] & (tiled | multipart))) part.tiles.reset();
     check_part(part, file.size());
+    if (first) cube = part.cube;
+    first = false;
     if (!(start[1] & multipart)) break;
   }
+  return cube;
 }
 
 }  // namespace etendue

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "checked_open.h"
+#include "cube_map.h"
 #include "etendue/describe/color.h"
 #include "files/contained_file.h"
 #include "files/regular_file.h"
@@ -104,18 +106,24 @@ class LinearInput final : public OIIO::ImageInput {
     m_spec.full_y = native.full_y;
     m_spec.full_width = native.full_width;
     m_spec.full_height = native.full_height;
+    if (file_.cube && !open_cube()) return false;
     spec = m_spec;
     return true;
   }
 
   bool close() override {
     file_ = {};
+    cube_.reset();
     return true;
   }
 
   bool read_native_scanline(int subimage, int level, int y, int, void* data) override {
     lock_guard lock(*this);
     if (!file_ || subimage != 0 || level != 0) return false;
+    if (cube_) {
+      cube_->row(y, static_cast<float*>(data));
+      return true;
+    }
     if (y < strip_begin_ || y >= strip_end_) {
       if (!read_strip(y)) return false;
     }
@@ -124,7 +132,29 @@ class LinearInput final : public OIIO::ImageInput {
     return true;
   }
 
+  bool from_cube() const { return cube_.has_value(); }
+
  private:
+  /// Takes all pixels of a cube of surroundings: rows of the picture that it is given as are made of all its faces.
+  bool open_cube() {
+    const int side = m_spec.width;
+    if (std::int64_t(m_spec.height) != 6 * std::int64_t(side)) {
+      errorfmt("it says that it is a cube of surroundings (envmap), but has {} x {} pixels: the faces of a cube are N x 6 N",
+               side, m_spec.height);
+      return false;
+    }
+    const size_t row = size_t(side) * size_t(m_spec.nchannels);
+    std::vector<float> pixels(row * size_t(m_spec.height));
+    for (int y = 0; y < m_spec.height; ++y)
+      if (!read_native_scanline(0, 0, m_spec.y + y, 0, pixels.data() + size_t(y) * row)) return false;
+    strip_ = {};
+    cube_.emplace(std::move(pixels), side, m_spec.nchannels);
+    m_spec.x = m_spec.y = m_spec.full_x = m_spec.full_y = 0;
+    m_spec.width = m_spec.full_width = cube_->width();
+    m_spec.height = m_spec.full_height = cube_->height();
+    return true;
+  }
+
   /// Reads the row of tiles, or the few scanlines, that hold a scanline.
   bool read_strip(int y) {
     const OIIO::ImageSpec& native = file_->spec();
@@ -162,6 +192,7 @@ class LinearInput final : public OIIO::ImageInput {
   }
 
   CheckedInput file_;
+  std::optional<CubeMap> cube_;
   Decoder decoder_;
   std::vector<int> channels_;
   std::vector<float> strip_;
@@ -200,6 +231,7 @@ LinearImage read_linear_file(const std::string& path, const std::string& transfe
   LinearImage image;
   image.width = spec.width;
   image.height = spec.height;
+  image.from_cube = input.from_cube();
   image.rgb.resize(size_t(spec.width) * size_t(spec.height) * 3);
   std::vector<float> row(size_t(spec.width) * size_t(spec.nchannels));
   for (int y = 0; y < spec.height; ++y) {

@@ -32,7 +32,8 @@ class EnvironmentEmission final : public EmissionShader {
         .member<&EnvironmentEmission::file>("file", "",
                                             "the image, in longitude and latitude: its middle is seen along +z of the object, "
                                             "its top along +y, its left and right "
-                                            "edges along -z, the middle of its left half along +x; none: `radiance` is used")
+                                            "edges along -z, the middle of its left half along +x. An OpenEXR file that says "
+                                            "it is a cube (envmap = cube) is laid out so; none: `radiance` is used")
         .member<&EnvironmentEmission::map>("radiance", "W m^-2 sr^-1 nm^-1",
                                            "radiance when there is no image; maps see (u, v) of the direction, v upwards",
                                            Meaning::radiance, soft(0.01, 1000), logarithmic, unless("file"))
@@ -77,10 +78,13 @@ class EnvironmentEmission final : public EmissionShader {
     }
     try {
       image_ = read_linear_image(file.resolved(), transfer);
-      if (layout == Layout::equal_area) image_ = unfold_equal_area(image_);
+      if (layout == Layout::equal_area && !image_.from_cube) image_ = unfold_equal_area(image_);
     } catch (const Error& e) {
       fail("file", e.what());
     }
+    if (image_.from_cube && (layout == Layout::equal_area || rows == Rows::poles))
+      fail(layout == Layout::equal_area ? "layout" : "rows",
+           "the image says of itself that it is a cube (envmap), which has a layout of its own");
     check_pixels();
     build();
     if (lux > 0 && !illuminant)

@@ -93,6 +93,15 @@ Ref<Component> baked_color(Exporting& exporting, const Component& image) {
   return made;
 }
 
+std::string baked_cube(Exporting& exporting, const std::string& file, const std::string& transfer) {
+  if (!says_it_is_a_cube(file)) return {};
+  return exporting.write_beside("surroundings", "pfm", as_pfm(read_linear_image(file, transfer)));
+}
+
+bool says_it_is_a_cube(const std::string& file) {
+  return file.ends_with(".exr") && read_linear_image(file, "linear").from_cube;
+}
+
 // Three equal values have themselves for their mean and for their luminance.
 Ref<Component> baked_number(Exporting& exporting, const Component& image, AsNumber there, bool decoded_there) {
   const std::string file = word_of(image, "file"), channel = word_of(image, "channel"), space = word_of(image, "color_space");

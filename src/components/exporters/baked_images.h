@@ -12,6 +12,12 @@ Ref<Component> baked_product(Exporting&, const Component& product);
 /// An ImageMap with its transfer function, channel and colour space undone: linear sRGB in a file of floats.
 Ref<Component> baked_color(Exporting&, const Component& image);
 
+/// An image of surroundings that says it is a cube (images/linear_image.h) in longitude and latitude, in a file of floats: its
+/// name beside the exported file. Empty: it is none.
+std::string baked_cube(Exporting&, const std::string& file, const std::string& transfer);
+/// Whether an image says so.
+bool says_it_is_a_cube(const std::string& file);
+
 /// What another program makes of a colour where a number is asked for, as ImageMap's `as_number` names it.
 enum class AsNumber : std::uint8_t { mean, luminance };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "components/exporters/baked_images.h"
 #include "writer.h"
 
 namespace etendue::mitsuba_export {
@@ -34,7 +35,10 @@ bool Writer::light_source(const SceneObject& o, const Transform& placed) {
   } else if (kind == "EnvironmentEmission" && !word_of(*e, "file").empty()) {
     note_illuminance();
     Node n = plugin(scene_, "emitter", "envmap");
-    text(n, "filename", exporting.copy_beside(word_of(*e, "file")));
+    // The transfer function is not asked for as what is written, or nobody would tell that it is left out.
+    const std::string file = word_of(*e, "file"),
+                      laid_out = baked_cube(exporting, file, *get(*e, "transfer").as<std::string>());
+    text(n, "filename", laid_out.empty() ? exporting.copy_beside(file) : laid_out);
     number(n, "scale", number_of(*e, "scale"));
     transform(n, "to_world", placed);
     if (word_of(*e, "rows") != "poles")

@@ -142,7 +142,7 @@ Ref<Component> Writer::readable(const Component& image) {
   const bool kept = read_as_ == Texels::normals || word_of(image, "color_space") == "srgb";
   if (read_as_ == Texels::numbers)
     made = baked_number(exporting, image, AsNumber::luminance, decoded);
-  else if (!decoded || !kept || !word_of(image, "channel").empty())
+  else if (!decoded || !kept || !word_of(image, "channel").empty() || says_it_is_a_cube(word_of(image, "file")))
     made = baked_color(exporting, image);
   if (made) readable_.insert(made.get());
   return made;

@@ -30,7 +30,9 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
         .member<&ImageMap::file>("file", "",
                                  "the image: OpenEXR, HDR, PNG, JPEG, TIFF, PNM, PFM, WebP, BMP or TGA. With <UDIM> in its "
                                  "name: one image for each unit "
-                                 "square of u and v, from files with 1001 + u + 10 v in that place; black where there is none",
+                                 "square of u and v, from files with 1001 + u + 10 v in that place; black where there is none. "
+                                 "An OpenEXR file that says it is a cube of surroundings (envmap = cube) is laid in longitude "
+                                 "and latitude, as Environment's u and v go",
                                  required)
         .group("Placement")
         .member<&ImageMap::interpolation>(
