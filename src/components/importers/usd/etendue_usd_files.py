@@ -11,8 +11,7 @@ class Files:
     def __init__(self, path, allowed, note):
         self.path, self.note = path, note
         self.folders = [os.path.realpath(folder) for folder in [os.path.dirname(path) or ".", *allowed]]
-        self.layers = []  # kept, so that the stage finds them opened and as they were made here
-        self.unread = set()
+        self.layers = {}  # by path; kept, so that the stage finds them opened and as they were made here. None: not read
 
     def refused(self, path):
         """The folder of a file that may not be read, or nothing."""
@@ -31,11 +30,7 @@ class Files:
         waiting, seen = [self.path], {self.path}
         while waiting:
             path = waiting.pop()
-            layer = self.opened(path)
-            if layer is None:
-                continue
-            self.layers.append(layer)
-            unread = set()
+            layer, unread = self.opened(path), set()
             for named in self.named_layers(layer):
                 found = self.found(layer, named)
                 if found is None or (found not in seen and self.opened(found) is None):
@@ -48,11 +43,10 @@ class Files:
 
     def opened(self, path):
         """A layer, or None, which is told; an error where it is the scene itself."""
-        if path in self.unread:
-            return None
+        if path in self.layers:
+            return self.layers[path]
         try:
-            layer = Sdf.Layer.FindOrOpen(path)
-            why = ""
+            layer, why = Sdf.Layer.FindOrOpen(path), ""
         except Tf.ErrorException as error:
             if path == self.path:
                 raise
@@ -60,8 +54,8 @@ class Files:
         if layer is None:
             if path == self.path:
                 raise ValueError("it is no USD file that can be read")
-            self.unread.add(path)
             self.note(f"the layer '{os.path.basename(path)}' cannot be read and is left out{why}")
+        self.layers[path] = layer
         return layer
 
     @staticmethod
