@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace etendue {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// A face, and where in it from its upper left corner: 0 to 1 to the right and down.
 struct Place {
@@ -47,9 +46,9 @@ void CubeMap::row(int y, float* out) const {
     std::array<double, 4> sum{};
     double weights = 0;
     for (int j = 0; j < parts; ++j) {
-      const double theta = pi * (y + (j + 0.5) / parts) / height(), sine = std::sin(theta);
+      const double theta = std::numbers::pi * (y + (j + 0.5) / parts) / height(), sine = std::sin(theta);
       for (int i = 0; i < parts; ++i) {
-        const double phi = 2 * pi * (x + (i + 0.5) / parts) / width();
+        const double phi = 2 * std::numbers::pi * (x + (i + 0.5) / parts) / width();
         add(sine * std::sin(phi), std::cos(theta), -sine * std::cos(phi), sine, sum.data());
         weights += sine;
       }
