@@ -1,18 +1,11 @@
 #include "limits.h"
 
 #include <assimp/MemoryIOWrapper.h>
-#include <linux/audit.h>
-#include <linux/filter.h>
-#include <linux/seccomp.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <assimp/IOStream.hpp>
-#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -22,30 +15,6 @@
 
 namespace etendue::assimp_helper {
 namespace {
-
-void limit(__rlimit_resource resource, std::uint64_t value) {
-  rlimit wanted{};
-  ::getrlimit(resource, &wanted);
-  wanted.rlim_cur = std::min<rlim_t>({wanted.rlim_cur, wanted.rlim_max, value});  // a lower limit stays
-  wanted.rlim_max = wanted.rlim_cur;
-  ::setrlimit(resource, &wanted);
-}
-
-/// Sockets and other programs are refused by the system itself from here on.
-void forbid_calls() {
-  ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  constexpr std::uint32_t refused = SECCOMP_RET_ERRNO | 1;  // EPERM
-  constexpr unsigned calls[] = {SYS_socket, SYS_connect, SYS_execve, SYS_execveat, SYS_ptrace, SYS_kill};
-  constexpr unsigned char count = sizeof calls / sizeof calls[0];
-  std::vector<sock_filter> program;
-  program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)));
-  for (unsigned char i = 0; i < count; ++i)
-    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls[i], static_cast<unsigned char>(count - i), 0));
-  program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
-  program.push_back(BPF_STMT(BPF_RET | BPF_K, refused));
-  const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
-  ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter, 0, 0);
-}
 
 /// A file of the C library.
 class File final : public Assimp::IOStream {
@@ -70,15 +39,6 @@ class File final : public Assimp::IOStream {
 };
 
 }  // namespace
-
-void limit_process(std::uint64_t file_size) {
-  constexpr std::uint64_t mega = 1 << 20;
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_AS, 1024 * mega + 64 * file_size);  // the libraries themselves map some hundred megabytes
-  limit(RLIMIT_CPU, 20 + file_size / (2 * mega));
-  ::close_range(3, ~0u, 0);
-  forbid_calls();
-}
 
 FilesWithin::FilesWithin(std::vector<std::string> folders) {
   for (const std::string& folder : folders) {

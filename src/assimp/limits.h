@@ -1,5 +1,5 @@
 #pragma once
-// What this process may do: it reads files of formats whose reader has faults that are known.
+// Which files this process may open: it reads formats whose reader has faults that are known.
 
 #include <cstdint>
 #include <map>
@@ -10,10 +10,6 @@
 #include <assimp/IOSystem.hpp>
 
 namespace etendue::assimp_helper {
-
-/// Limits memory and the processor's time by the size of the file, closes all but the standard files, and forbids the network
-/// and other programs.
-void limit_process(std::uint64_t file_size);
 
 /// Files in these folders and below, for reading alone. Assimp asks it for everything it opens.
 class FilesWithin : public Assimp::IOSystem {

@@ -7,8 +7,8 @@
 #include "components/importers/gltf/import_document.h"
 #include "components/objects/meshes/mesh_data.h"
 #include "files/gzip.h"
+#include "files/helper_process.h"
 #include "head_of_3mf.h"
-#include "helper_process.h"
 
 namespace etendue {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <cstdlib>
 
-#include "components/importers/assimp/helper_process.h"
 #include "components/importers/gltf/document.h"
 #include "components/importers/gltf/import_document.h"
 #include "components/objects/meshes/mesh_data.h"
+#include "files/helper_process.h"
 
 namespace etendue {
 namespace {

@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -46,13 +47,49 @@ struct Pipe {
   }
 };
 
-pid_t spawn(const std::string& path, const std::vector<std::string>& arguments, const Pipe& out, const Pipe& said) {
+/// Bytes as a file in memory alone.
+class Input {
+ public:
+  explicit Input(std::string_view bytes) {
+    if (bytes.empty()) return;
+    file_ = ::memfd_create("input", MFD_CLOEXEC);
+    if (file_ < 0) throw Error(std::strerror(errno));
+    for (size_t done = 0; done < bytes.size();) {
+      const ssize_t written = ::write(file_, bytes.data() + done, bytes.size() - done);
+      if (written < 0 && errno == EINTR) continue;
+      if (written <= 0) {
+        const int reason = errno;
+        ::close(file_);
+        throw Error(std::strerror(reason));
+      }
+      done += size_t(written);
+    }
+    ::lseek(file_, 0, SEEK_SET);
+  }
+  ~Input() {
+    if (file_ >= 0) ::close(file_);
+  }
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+
+  /// Negative: there is none.
+  int file() const { return file_; }
+
+ private:
+  int file_ = -1;
+};
+
+pid_t spawn(const std::string& path, const std::vector<std::string>& arguments, const Input& input, const Pipe& out,
+            const Pipe& said) {
   std::vector<char*> list{const_cast<char*>(path.c_str())};
   for (const std::string& argument : arguments) list.push_back(const_cast<char*>(argument.c_str()));
   list.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  if (input.file() >= 0)
+    posix_spawn_file_actions_adddup2(&actions, input.file(), 0);
+  else
+    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out.write, 1);
   posix_spawn_file_actions_adddup2(&actions, said.write, 2);
   pid_t child = 0;
@@ -124,15 +161,16 @@ std::string helper_path(const std::string& name) {
   return {};
 }
 
-std::string run_helper(const std::string& name, const std::vector<std::string>& arguments) {
+std::string run_helper(const std::string& name, const std::vector<std::string>& arguments, std::string_view input) {
   const std::string path = helper_path(name);
   if (path.empty()) throw Error("the program '" + name + "', which reads such files, is not there: build and install it too");
-  return run_program(path, arguments, name);
+  return run_program(path, arguments, name, input);
 }
 
-std::string run_program(const std::string& path, const std::vector<std::string>& arguments, const std::string& shown_as) {
+std::string run_program(const std::string& path, const std::vector<std::string>& arguments, const std::string& shown_as,
+                        std::string_view input) {
   Pipe out, said;
-  const pid_t child = spawn(path, arguments, out, said);
+  const pid_t child = spawn(path, arguments, Input(input), out, said);
   out.close_write();
   said.close_write();
   std::string bytes, words;
