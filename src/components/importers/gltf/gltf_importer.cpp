@@ -10,18 +10,19 @@ namespace etendue {
 namespace gltf {
 namespace {
 
-/// Extensions that are read, or whose absence changes nothing that is shown, those of materials aside.
-constexpr const char* known_extensions[] = {
-    "KHR_texture_transform", "KHR_lights_punctual", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_texture_webp",
-    "KHR_materials_variants", "KHR_node_visibility",
-    // Of files, of what a hand does, and of what is neither seen nor lights anything.
-    "KHR_xmp", "KHR_xmp_json_ld", "KHR_node_selectability", "KHR_node_hoverability", "KHR_interactivity", "KHR_audio_emitter",
-    "KHR_physics_rigid_bodies", "KHR_implicit_shapes", "EXT_mesh_features", "EXT_instance_features", "EXT_structural_metadata",
-    "EXT_mesh_manifold"};
+/// Extensions that are read, or whose absence changes nothing that is shown, those of materials and textures aside.
+constexpr const char* known_extensions[] = {"KHR_texture_transform", "KHR_lights_punctual", "KHR_mesh_quantization",
+                                            "EXT_mesh_gpu_instancing", "KHR_materials_variants", "KHR_node_visibility",
+                                            // Of files, of what a hand does, and of what is neither seen nor lights anything.
+                                            "KHR_xmp", "KHR_xmp_json_ld", "KHR_node_selectability", "KHR_node_hoverability",
+                                            "KHR_interactivity", "KHR_audio_emitter", "KHR_physics_rigid_bodies",
+                                            "KHR_implicit_shapes", "EXT_mesh_features", "EXT_instance_features",
+                                            "EXT_structural_metadata", "EXT_mesh_manifold"};
 
 void check_extensions(Importing& importing, const Document& document) {
   const auto known = [](const std::string& name) {
-    return std::ranges::find(known_extensions, name) != std::end(known_extensions) || is_known_material_extension(name);
+    return std::ranges::find(known_extensions, name) != std::end(known_extensions) || is_known_material_extension(name) ||
+           is_known_texture_extension(name);
   };
   std::vector<std::string> required;
   for (const Json& name : list_in(document.json(), "extensionsRequired")) {

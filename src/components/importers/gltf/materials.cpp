@@ -21,7 +21,20 @@ constexpr const char* known_extensions[] = {"KHR_materials_transmission",
                                             "KHR_materials_emissive_strength",
                                             "KHR_materials_pbrSpecularGlossiness"};
 
+/// Formats of images that stand for, or beside, the image of a texture. No library of Debian 12 reads Basis Universal; for the
+/// others see docs/decisions/017-image-library.md.
+struct UnreadFormat {
+  const char *extension, *name;
+};
+constexpr UnreadFormat unread_formats[] = {
+    {"KHR_texture_basisu", "Basis Universal's KTX2"}, {"EXT_texture_avif", "AVIF"}, {"MSFT_texture_dds", "DDS"}};
+
 }  // namespace
+
+bool is_known_texture_extension(std::string_view name) {
+  return name == "EXT_texture_webp" ||
+         std::ranges::find(unread_formats, name, &UnreadFormat::extension) != std::end(unread_formats);
+}
 
 bool is_known_material_extension(std::string_view name) {
   return std::ranges::find(known_extensions, name) != std::end(known_extensions);
@@ -147,6 +160,22 @@ SurfaceNumber Materials::number(const Json& object, const char* factor, double o
   return n;
 }
 
+/// The image of a texture; none, with a note: it has none that is read.
+std::optional<size_t> Materials::image_of(const Json& texture) {
+  if (const auto webp = whole(extension(texture, "EXT_texture_webp"), "source")) return webp;
+  const auto source = whole(texture, "source");
+  bool told = false;
+  for (const UnreadFormat& format : unread_formats) {
+    if (!has_extension(texture, format.extension)) continue;
+    importing_.inexact(fmt::format("images in {} ({}) are not read: {}", format.name, format.extension,
+                                   source ? "those that stand beside them are used" : "they are left out"),
+                       at());
+    told = true;
+  }
+  if (!source && !told) importing_.inexact("a texture has no image", at());
+  return source;
+}
+
 std::optional<SurfaceTexture> Materials::texture(const Json& object, const char* key, bool* has_alpha) {
   const Json& info = object_in(object, key);
   if (info.empty()) return std::nullopt;
@@ -157,14 +186,8 @@ std::optional<SurfaceTexture> Materials::texture(const Json& object, const char*
     if (uv_set_ && *uv_set_ != uv)
       importing_.inexact("all textures of a material use the surface coordinates of its first", at());
     if (!uv_set_) uv_set_ = uv;
-    auto source = whole(extension(t, "EXT_texture_webp"), "source");
-    if (!source) source = whole(t, "source");
-    if (!source) {
-      importing_.inexact(
-          has_extension(t, "KHR_texture_basisu") ? "images of Basis Universal (KTX2) are not read" : "a texture has no image",
-          at());
-      return std::nullopt;
-    }
+    const std::optional<size_t> source = image_of(t);
+    if (!source) return std::nullopt;
     const Image& found = image(*source);
     if (has_alpha) *has_alpha = found.has_alpha;
     if (!found.texture) return std::nullopt;

@@ -19,6 +19,9 @@ struct Material {
 /// Whether an extension of materials is read, or changes nothing that a path tracer shows.
 bool is_known_material_extension(std::string_view name);
 
+/// Whether an extension of textures is read, or told where a texture has it.
+bool is_known_texture_extension(std::string_view name);
+
 class Materials {
  public:
   Materials(Importing& importing, const Document& document) : importing_(importing), document_(document) {}
@@ -46,6 +49,7 @@ class Materials {
   void keep_metal(Surface&);
   void reflect(const SurfaceColor& straight_on, Surface&);
   void read_volume(const Json& extensions, Surface&);
+  std::optional<size_t> image_of(const Json& texture);
   std::optional<SurfaceTexture> texture(const Json& object, const char* key, bool* has_alpha = nullptr);
   SurfaceColor color(const Json& object, const char* factor, const char* texture_key, double otherwise);
   SurfaceNumber number(const Json& object, const char* factor, double otherwise, const char* texture_key, const char* channel);
