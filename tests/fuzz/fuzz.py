@@ -22,7 +22,7 @@ import seed_models  # noqa: E402
 import seed_scenes  # noqa: E402
 import seeds  # noqa: E402
 
-SOURCES = {"mitsuba": ["importers/mitsuba"], "pbrt": ["importers/pbrt"], "gltf": ["importers/gltf"], "glb": ["importers/gltf"],
+SOURCES = {"mitsuba": ["importers/mitsuba"], "pbrt": ["importers/pbrt"], "gltf": ["importers/gltf"], "glb": ["importers/gltf", "importers/gltf/compressed"],
            "obj": ["importers/meshes", "objects/meshes"], "mtl": ["importers/meshes"], "stl": ["objects/meshes"],
            "off": ["objects/meshes"], "ply": ["objects/meshes"]}
 

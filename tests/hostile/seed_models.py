@@ -108,12 +108,50 @@ def gltf_json(uri=None):
     return json.dumps(text).encode(), b.bytes
 
 
-def glb():
-    text, binary = gltf_json()
+def glb(text, binary):
     text += b" " * (-len(text) % 4)
     binary += bytes(-len(binary) % 4)
     return (b"glTF" + struct.pack("<III", 2, 28 + len(text) + len(binary), len(text)) + b"JSON" + text
             + struct.pack("<I", len(binary)) + b"BIN\0" + binary)
+
+
+def compressed_json(primitive, accessors, views, binary, extension):
+    text = {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "meshes": [{"primitives": [primitive]}],
+            "accessors": accessors, "bufferViews": views, "buffers": [{"byteLength": len(binary)}, {"byteLength": 200}], "extensionsRequired": [extension]}
+    return glb(json.dumps(text).encode(), binary)
+
+
+def glb_meshopt():
+    """The pyramid's places with exponents, normals on an octahedron, colours by luma and chroma, its corners in both ways: by
+    meshoptimizer 1.3."""
+    views, accessors, binary = [], [], b""
+    for data, count, stride, mode, filter, accessor in (
+            ("ob6epgCAAH9AAAIAAQIAAIAAPwAEAAIAEABAAAAAAAAAAAAAAOD/8wDg//MAAADzAAAA", 5, 12, "ATTRIBUTES", "EXPONENTIAL", (5126, "VEC3")),
+            ("oAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAB/AA==", 5, 4, "ATTRIBUTES", "OCTAHEDRAL", (5120, "VEC3")),
+            ("of8A29ukWQAAAP79AAAAgH8Aa5JtkgAAAAAAAAAAAAAAAAAAAAAAAAAl3AC2AA==", 5, 4, "ATTRIBUTES", "COLOR", (5121, "VEC4")),
+            ("4f4QAAQPCAB2h1ZneKmGZYlomAFpAAA=", 12, 2, "TRIANGLES", "NONE", (5123, "SCALAR")),
+            ("0QAEDAoECAYEBAIKEAAAAAA=", 12, 2, "INDICES", "NONE", (5123, "SCALAR"))):
+        data = base64.b64decode(data)
+        by = {"buffer": 0, "byteOffset": len(binary), "byteLength": len(data), "count": count, "byteStride": stride, "mode": mode, "filter": filter}
+        views.append({"buffer": 1, "byteLength": count * stride, "extensions": {"KHR_meshopt_compression": by}, **({"byteStride": stride} if stride > 2 else {})})
+        accessors.append({"bufferView": len(views) - 1, "componentType": accessor[0], "type": accessor[1], "count": count, "normalized": accessor[0] in (5120, 5121)})
+        binary += data
+    primitive = {"attributes": {"POSITION": 0, "NORMAL": 1, "COLOR_0": 2}, "indices": 3}
+    return compressed_json(primitive, accessors, views, binary, "KHR_meshopt_compression")
+
+
+def glb_draco(sequential):
+    """The pyramid with normals and colours, by Draco 1.5.7."""
+    binary = base64.b64decode(
+        "RFJBQ08CAgEAAAAEBQEAAQQBAgQCAwQDAAQBAwAJAwAAAQkDAAECAgQAAgIDAQABAQAMA2kmzQwfzQwDBfWdiIT/9///AAAAAP8HAAAAAwEBBIABmTn/92kGAxa4hf8A"
+        "AAB/AAAAAAEBAQVhNQNbNQNbNQNbNQNbMTMFQN1/UJYAAAAA5AAAAAAAgL8AAIC/AAAAAAAAAEALCA==" if sequential else
+        "RFJBQ08CAgEBAAAABQQCBAAAAm8B/wER/wJEQP8CREAD/wABAAAAAQAAAQAJAwAAAgEBCQMAAQMBAgIEAAIBAQEBAAwHzQwfNTMD8t+C///////v//8j/gfA/wHg//8D"
+        "AAAAAP8HAAAAAIC/AACAvwAAAAAAAABACwYDAQEEwgHNDHeZGf//g50ZBAuH4aX/AAAAfwAAAP8CVUAIAQEBAAkDzQwTmRmdGQOhlLDJWCbw/X6/qqqqqiCsff0LAAAAAOQAAAA=")
+    accessors = [{"componentType": 5126, "type": "VEC3", "count": 5}, {"componentType": 5126, "type": "VEC3", "count": 5},
+                 {"componentType": 5121, "type": "VEC4", "count": 5, "normalized": True}, {"componentType": 5123, "type": "SCALAR", "count": 12}]
+    attributes = {"POSITION": 0, "NORMAL": 1, "COLOR_0": 2}
+    primitive = {"attributes": attributes, "indices": 3, "extensions": {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": attributes}}}
+    return compressed_json(primitive, accessors, [{"buffer": 0, "byteLength": len(binary)}], binary, "KHR_draco_mesh_compression")
 
 
 # ---- formats of triangles alone -------------------------------------------------------------------------------------------
@@ -303,7 +341,8 @@ def Xform "root" {
 def models():
     text, binary = gltf_json("input.bin")
     image = {"picture.png": picture()}
-    yield "glb", "input.glb", glb(), False, {}
+    yield "glb", "input.glb", glb(*gltf_json()), False, {}
+    yield "glb meshopt", "input.glb", glb_meshopt(), False, {}
     yield "gltf", "input.gltf", text, True, {"input.bin": binary}
     parts = b"mtllib input.mtl\n" + obj() + b"g one\ns 1\nusemtl a\nf 1 2 3\no two\ns off\nusemtl b\nf 1 3 4\nv 0 0 2 0.5 0.2 0.1\nl 1 2\np 1\n"
     yield "obj model", "input.obj", parts, True, {"input.mtl": MTL, **image}
@@ -317,6 +356,8 @@ def models():
 def models_of_libraries():
     """Those that are read in a process of its own."""
     image = {"picture.png": picture()}
+    yield "draco", "input.glb", glb_draco(False), False, {}
+    yield "draco sequential", "input.glb", glb_draco(True), False, {}
     yield "assimp 3ds", "input.3ds", three_ds(), False, image
     yield "assimp lwo", "input.lwo", lightwave(), False, image
     for name, ending, text in (("collada", "dae", COLLADA), ("ase", "ase", ASE), ("x", "x", DIRECTX), ("ac", "ac", AC3D), ("fbx", "fbx", FBX)):

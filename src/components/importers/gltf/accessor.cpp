@@ -9,18 +9,6 @@ namespace {
 
 enum Component { int8 = 5120, uint8 = 5121, int16 = 5122, uint16 = 5123, uint32 = 5125, float32 = 5126 };
 
-size_t size_of(int component) {
-  switch (component) {
-    case int8:
-    case uint8: return 1;
-    case int16:
-    case uint16: return 2;
-    case uint32:
-    case float32: return 4;
-    default: throw Error("'componentType' " + std::to_string(component) + " is unknown");
-  }
-}
-
 size_t width_of(const std::string& type) {
   if (type == "SCALAR") return 1;
   if (type == "VEC2") return 2;
@@ -64,6 +52,18 @@ constexpr size_t bytes_at_once = 1 << 22;
 
 }  // namespace
 
+size_t size_of_component(int component) {
+  switch (component) {
+    case int8:
+    case uint8: return 1;
+    case int16:
+    case uint16: return 2;
+    case uint32:
+    case float32: return 4;
+    default: throw Error("'componentType' " + std::to_string(component) + " is unknown");
+  }
+}
+
 Accessor::Accessor(const Document& document, size_t index)
     : document_(document), json_(&document.element("accessors", index)), index_(index) {
   within(fmt::format("accessors[{}]", index), [&] {
@@ -71,7 +71,7 @@ Accessor::Accessor(const Document& document, size_t index)
     width = width_of(text(*json_, "type"));
     component = int(std::min<size_t>(needed_whole(*json_, "componentType"), 1 << 20));
     normalized = truth(*json_, "normalized", false);
-    const size_t size = size_of(component);
+    const size_t size = size_of_component(component);
     if (count > UINT32_MAX - 1) throw Error("it has more than 2^32 elements");
     if (const auto view = whole(*json_, "bufferView")) {
       const std::uint64_t offset = whole(*json_, "byteOffset").value_or(0), element = size * width,
@@ -94,7 +94,7 @@ void Accessor::elements(Take take) const {
   const auto view = whole(*json_, "bufferView");
   if (!view || count == 0) return;
   const std::uint64_t offset = whole(*json_, "byteOffset").value_or(0);
-  const size_t element = size_of(component) * width, stride = document_.view_stride(*view),
+  const size_t element = size_of_component(component) * width, stride = document_.view_stride(*view),
                step = stride > 0 ? stride : element;
   const size_t together = std::max<size_t>(bytes_at_once / step, 1);
   std::vector<char> bytes;
@@ -115,7 +115,7 @@ void Accessor::sparse(Take take) const {
     const size_t n = needed_whole(s, "count");
     const Json &which = object_in(s, "indices"), &values = object_in(s, "values");
     const int type = int(std::min<size_t>(needed_whole(which, "componentType"), 1 << 20));
-    const size_t size = size_of(type), element = size_of(component) * width;
+    const size_t size = size_of_component(type), element = size_of_component(component) * width;
     const size_t index_view = needed_whole(which, "bufferView"), value_view = needed_whole(values, "bufferView");
     if (n * size > document_.view_size(index_view) || n * element > document_.view_size(value_view))
       throw Error("it is longer than what it lies in");
@@ -131,7 +131,7 @@ void Accessor::sparse(Take take) const {
 }
 
 void Accessor::floats(float* to) const {
-  const size_t size = size_of(component);
+  const size_t size = size_of_component(component);
   const auto take = [&](size_t i, const char* from) {
     float* out = to + i * width;
     if (component == float32)

@@ -8,6 +8,9 @@
 
 namespace etendue::gltf {
 
+/// Bytes of a number of a type, by glTF's code. Throws Error when there is no such type.
+size_t size_of_component(int component);
+
 struct Accessor {
   Accessor(const Document&, size_t index);
 

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "components/importers/permissions.h"
+#include "compression.h"
 #include "data_uri.h"
 #include "files/contained_file.h"
 #include "files/gzip.h"
@@ -37,13 +38,6 @@ std::string image_ending(std::string_view start, const std::string& type) {
   if (start.starts_with("BM")) return "bmp";
   if (start.starts_with("\xabKTX 20"sv)) return "ktx2";
   return type == "image/jpeg" ? "jpg" : (type == "image/x-tga" ? "tga" : "png");
-}
-
-/// Compressed views name besides a buffer of what is not compressed, which may have no bytes.
-constexpr const char* compressions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
-bool is_placeholder(const Json& buffer) {
-  if (find(buffer, "uri")) return false;
-  return std::ranges::any_of(compressions, [&](const char* name) { return truth(extension(buffer, name), "fallback", false); });
 }
 
 std::uint32_t word(const char* at) {
@@ -97,6 +91,8 @@ std::shared_ptr<const Document> Document::open(const std::string& path, const Im
     document->read_container(path, nullptr);
   }
   document->find_buffers(importing);
+  document->decompress_views();
+  document->decompress_meshes();
   constexpr size_t most = 8;
   if (known.size() >= most) known.clear();
   known[key] = {written, size, document};
@@ -166,28 +162,36 @@ void Document::read_container(const std::string& path, const std::string* bytes)
   if (!has_json) throw Error("it has no JSON");
 }
 
+Buffer Document::find_buffer(const Json& description, size_t index, const Importing& importing) const {
+  Buffer missing;
+  missing.missing = true;
+  const std::string uri = text(description, "uri");
+  if (uri.empty()) return index == 0 && chunk_ ? *chunk_ : missing;
+  Buffer buffer;
+  if (is_data_uri(uri)) {
+    buffer.bytes = decode_data_uri(uri).bytes;
+    buffer.size = std::get<std::string>(buffer.bytes).size();
+    return buffer;
+  }
+  try {
+    const std::string path = importing.file(decode_percents(uri), importing.at());
+    buffer.bytes = Slice{path, 0};
+    buffer.size = RegularFile(path).size();
+  } catch (const Error&) {
+    if (!is_fallback(description)) throw;
+    return missing;  // the same is there in compressed form
+  }
+  return buffer;
+}
+
 void Document::find_buffers(const Importing& importing) {
   const Json& list = list_in(json_, "buffers");
   for (size_t i = 0; i < list.size(); ++i)
     within(fmt::format("buffers[{}]", i), [&] {
       const std::uint64_t length = needed_whole(list[i], "byteLength");
-      Buffer buffer;
-      const std::string uri = text(list[i], "uri");
-      if (is_placeholder(list[i])) {
-        buffers_.emplace_back();
-        return;
-      }
-      if (uri.empty()) {
-        if (i > 0 || !chunk_) throw Error("it has no 'uri', and there is no binary part for it");
-        buffer = *chunk_;
-      } else if (is_data_uri(uri)) {
-        buffer.bytes = decode_data_uri(uri).bytes;
-        buffer.size = std::get<std::string>(buffer.bytes).size();
-      } else {
-        const std::string path = importing.file(decode_percents(uri), importing.at());
-        buffer = {Slice{path, 0}, RegularFile(path).size()};
-      }
-      if (length > buffer.size) throw Error(fmt::format("it should have {} bytes, but there are {}", length, buffer.size));
+      Buffer buffer = find_buffer(list[i], i, importing);
+      if (!buffer.missing && length > buffer.size)
+        throw Error(fmt::format("it should have {} bytes, but there are {}", length, buffer.size));
       buffers_.push_back(std::move(buffer));
     });
 }
@@ -200,8 +204,9 @@ const Json& Document::element(const char* list, size_t i) const {
 }
 
 std::uint64_t Document::buffer_bytes() const {
+  constexpr std::uint64_t bytes_of_a_triangle = 12;
   std::uint64_t sum = 0;
-  for (const Buffer& buffer : buffers_) sum += buffer.size;
+  for (const Buffer& buffer : buffers_) sum += buffer.decompressed ? buffer.size / bytes_of_a_triangle : buffer.size;
   return sum;
 }
 
@@ -209,16 +214,18 @@ std::uint64_t Document::view_size(size_t view) const {
   const Json& v = element("bufferViews", view);
   return within(fmt::format("bufferViews[{}]", view), [&] {
     const size_t buffer = needed_whole(v, "buffer"), length = needed_whole(v, "byteLength");
-    const size_t offset = whole(v, "byteOffset").value_or(0);
-    if (buffer >= buffers_.size()) throw Error(fmt::format("there is no buffers[{}]", buffer));
-    for (const char* compression : compressions)
-      if (has_extension(v, compression) && is_placeholder(list_in(json_, "buffers")[buffer]))
-        throw Error(fmt::format("it is compressed by {}, which is not read; programs such as gltfpack undo it", compression));
-    if (offset > buffers_[buffer].size || length > buffers_[buffer].size - offset)
-      throw Error(
-          fmt::format("it reaches to byte {} of buffers[{}], which has {}", offset + length, buffer, buffers_[buffer].size));
+    require_bytes(buffer, whole(v, "byteOffset").value_or(0), length);
     return std::uint64_t(length);
   });
+}
+
+void Document::require_bytes(size_t buffer, std::uint64_t offset, std::uint64_t bytes) const {
+  if (buffer >= buffers_.size()) throw Error(fmt::format("there is no buffers[{}]", buffer));
+  if (buffers_[buffer].missing)
+    throw Error(fmt::format("buffers[{}] has no 'uri', and there is no binary part for it", buffer));
+  if (offset > buffers_[buffer].size || bytes > buffers_[buffer].size - offset)
+    throw Error(
+        fmt::format("it reaches to byte {} of buffers[{}], which has {}", offset + bytes, buffer, buffers_[buffer].size));
 }
 
 size_t Document::view_stride(size_t view) const {
@@ -232,8 +239,11 @@ void Document::read_view(size_t view, std::uint64_t offset, std::uint64_t bytes,
   if (offset > size || bytes > size - offset)
     throw Error(fmt::format("bufferViews[{}] has {} bytes, and {} are needed", view, size, offset + bytes));
   const Json& v = element("bufferViews", view);
-  const Buffer& buffer = buffers_[needed_whole(v, "buffer")];
-  const std::uint64_t begin = whole(v, "byteOffset").value_or(0) + offset;
+  read_buffer(needed_whole(v, "buffer"), whole(v, "byteOffset").value_or(0) + offset, bytes, to);
+}
+
+void Document::read_buffer(size_t index, std::uint64_t begin, std::uint64_t bytes, void* to) const {
+  const Buffer& buffer = buffers_[index];
   if (const auto* text = std::get_if<std::string>(&buffer.bytes)) {
     std::memcpy(to, text->data() + begin, bytes);
     return;
@@ -246,6 +256,13 @@ void Document::read_view(size_t view, std::uint64_t offset, std::uint64_t bytes,
   RegularFile file(slice.path);
   file.seek(slice.offset + begin);
   file.read(to, bytes);
+}
+
+std::string Document::bytes_of(size_t buffer, std::uint64_t offset, std::uint64_t bytes) const {
+  require_bytes(buffer, offset, bytes);
+  std::string read(bytes, '\0');
+  read_buffer(buffer, offset, bytes, read.data());
+  return read;
 }
 
 std::string Document::view_bytes(size_t view) const {

@@ -20,6 +20,8 @@ struct Slice {
 struct Buffer {
   std::variant<Slice, std::string> bytes;
   std::uint64_t size = 0;
+  bool missing = false;       ///< there is a size alone, for views that are compressed and name a buffer besides
+  bool decompressed = false;  ///< made of what is compressed
 };
 
 class Document {
@@ -38,10 +40,11 @@ class Document {
   const Json& element(const char* list, size_t i) const;
   size_t count(const char* list) const { return list_in(json_, list).size(); }
 
-  /// Of all buffers together [bytes].
+  /// Of all buffers together [bytes]; what was compressed counts for what it can tell apart, not for its size.
   std::uint64_t buffer_bytes() const;
   /// Bytes of a buffer view, from an offset in it on. Throws Error when that lies outside of the view or its buffer.
   void read_view(size_t view, std::uint64_t offset, std::uint64_t bytes, void* to) const;
+  std::string view_bytes(size_t view) const;
   /// Of a buffer view [bytes]; what lies between its elements, or 0.
   std::uint64_t view_size(size_t view) const;
   size_t view_stride(size_t view) const;
@@ -55,7 +58,13 @@ class Document {
   void parse(std::string_view text);
   void read_container(const std::string& path, const std::string* bytes);
   void find_buffers(const Importing&);
-  std::string view_bytes(size_t view) const;
+  Buffer find_buffer(const Json& description, size_t index, const Importing&) const;
+  // What is compressed becomes buffers as if it had never been; see compression.cpp.
+  void decompress_views();
+  void decompress_meshes();
+  std::string bytes_of(size_t buffer, std::uint64_t offset, std::uint64_t bytes) const;
+  void require_bytes(size_t buffer, std::uint64_t offset, std::uint64_t bytes) const;
+  void read_buffer(size_t buffer, std::uint64_t begin, std::uint64_t bytes, void* to) const;
 
   Json json_;
   std::optional<Buffer> chunk_;  // of a .glb

@@ -13,6 +13,7 @@ namespace {
 /// Extensions that are read, or whose absence changes nothing that is shown, those of materials and textures aside.
 constexpr const char* known_extensions[] = {"KHR_texture_transform", "KHR_lights_punctual", "KHR_mesh_quantization",
                                             "EXT_mesh_gpu_instancing", "KHR_materials_variants", "KHR_node_visibility",
+                                            "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
                                             // Of files, of what a hand does, and of what is neither seen nor lights anything.
                                             "KHR_xmp", "KHR_xmp_json_ld", "KHR_node_selectability", "KHR_node_hoverability",
                                             "KHR_interactivity", "KHR_audio_emitter", "KHR_physics_rigid_bodies",

@@ -91,7 +91,6 @@ void read_colors(const Accessor& accessor, MeshData& mesh) {
 static_assert(sizeof(Point3) == 3 * sizeof(float) && sizeof(Normal3) == sizeof(Point3) && sizeof(Point2) == 2 * sizeof(float));
 
 MeshData read(const Document& document, const Json& primitive, const PartName& part) {
-  require_uncompressed(document, primitive);
   if (!is_triangles(primitive)) throw Error("it is of points or lines");
   const Json& attributes = object_in(primitive, "attributes");
   MeshData mesh;
@@ -189,13 +188,6 @@ PartName PartName::parse(const std::string& text) {
     if (size_t(end) == text.size() && part.text() == text) return part;
   }
   throw Error("a part of a glTF file is written like \"meshes[0].primitives[0]\", and not '" + text.substr(0, 60) + "'");
-}
-
-void require_uncompressed(const Document& document, const Json& primitive) {
-  if (!has_extension(primitive, "KHR_draco_mesh_compression")) return;
-  const auto positions = whole(object_in(primitive, "attributes"), "POSITION");
-  if (!positions || !find(document.element("accessors", *positions), "bufferView"))
-    throw Error("it is compressed by KHR_draco_mesh_compression, which is not read; programs such as gltf-transform undo it");
 }
 
 bool is_triangles(const Json& primitive) {

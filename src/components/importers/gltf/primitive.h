@@ -23,9 +23,6 @@ struct PartName {
 /// v runs upwards in what this gives, as everywhere in this program; in the file it runs downwards.
 MeshData read_primitive(const Document&, const PartName&);
 
-/// Throws Error where there is nothing but what is compressed.
-void require_uncompressed(const Document&, const Json& primitive);
-
 /// Whether a primitive is of triangles, and how many it has at most; throws Error when what it names is not there.
 bool is_triangles(const Json& primitive);
 size_t triangle_count(const Document&, const Json& primitive);

@@ -236,7 +236,6 @@ std::vector<Ref<SceneObject>> SceneBuilder::primitives(size_t mesh, const PartNa
 }
 
 Ref<SceneObject> SceneBuilder::primitive(size_t mesh, const Json& p, PartName part, const std::string& name) {
-  require_uncompressed(document_, p);
   if (!find(object_in(p, "attributes"), "POSITION")) {  // glTF 2.0, 3.7.2.1: then an extension says where, or nothing
     importing_.inexact("a primitive without POSITION is left out", at());
     return nullptr;
