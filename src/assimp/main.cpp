@@ -39,7 +39,8 @@ int run(const std::string& path, std::vector<std::string> folders) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   folders.push_back(folder.empty() ? "." : folder);
   constexpr std::uint64_t mega = 1 << 20;
-  apart::limit_process(1024 * mega + 64 * size, 20 + size / (2 * mega));  // the libraries themselves map some hundred megabytes
+  etendue::apart::limit_process(1024 * mega + 64 * size,
+                                20 + size / (2 * mega));  // the libraries themselves map some hundred megabytes
   if (const std::string wrong = wrong_ase_index(path); !wrong.empty()) {
     std::fprintf(stderr, "%s\n", wrong.c_str());
     return 1;
