@@ -9,6 +9,7 @@
 
 namespace etendue {
 
+class CoincidentLuminaires;
 class NestedLuminaires;
 
 class Scene : public SceneObject {
@@ -23,7 +24,7 @@ class Scene : public SceneObject {
   std::optional<float> chooses_centre;
 
   /// The nearest hit with t in (0, ray.maximum).
-  bool nearest(const Ray& ray, Hit& hit) const { return unseen_ ? nearest_with_unseen(ray, hit) : find_nearest(ray, hit); }
+  bool nearest(const Ray& ray, Hit& hit) const { return careful_ ? nearest_with_care(ray, hit) : find_nearest(ray, hit); }
   /// Whether anything lies on the ray.
   bool any(const Ray& ray) const { return find_any(ray) || (unseen_ && !ray.of_camera && unseen_->find_any(ray)); }
 
@@ -47,6 +48,12 @@ class Scene : public SceneObject {
 
   /// The surface point of a hit found by `nearest`, through all the nested scenes it lies in.
   void locate(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
+    locate_alone(ray, hit, point);
+    if (coincident_) [[unlikely]]
+      widen_coincident(hit, point);
+  }
+  /// The same, whatever else lies in that place.
+  void locate_alone(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
     if (hit.depth == 0) [[likely]]
       hit.object->surface_point(ray, hit, point);
     else
@@ -54,6 +61,12 @@ class Scene : public SceneObject {
     point.footprint = ray.width + ray.spread * hit.distance;
     point.footprint_cosine = std::abs(dot(point.normal, ray.direction));
     point.ray_direction = ray.direction;
+  }
+  /// Whether the light that leaves a point of a luminaire in a direction is seen from there: in one place with others, one
+  /// surface alone is, the same which rays from there meet (see CoincidentLuminaires). To be asked of points that were sampled;
+  /// those that a ray met are seen. The point's error is then that of all surfaces there.
+  bool in_front(SurfacePoint& point, const Vector3& direction) const {
+    return !coincident_ || in_front_of_coincident(point, direction);
   }
 
   /// Objects that emit, those at infinity included. One in a nested scene is in the list once for each place where that
@@ -126,7 +139,11 @@ class Scene : public SceneObject {
   void choose_centre();
   void locate_nested(const Ray&, const Hit&, SurfacePoint&) const;
   Bounds3 placed_bounds(const AnimatedTransform& placed) const;
+  bool nearest_with_care(const Ray&, Hit&) const;
   bool nearest_with_unseen(const Ray&, Hit&) const;
+  void find_coincident();
+  void widen_coincident(const Hit&, SurfacePoint&) const;
+  bool in_front_of_coincident(SurfacePoint&, const Vector3& direction) const;
   void all_unseen(const Ray&, HitList&) const;
   bool note_unseen(const SceneObject&);
   bool in_interior_tree(const Point3&) const;
@@ -134,9 +151,11 @@ class Scene : public SceneObject {
 
   Bounds3 bounds_;  // of the objects, in the scene's own coordinates
   std::vector<const SceneObject*> luminaires_;
-  std::vector<const SceneObject*> infinite_;  // those that the camera sees come first
-  size_t infinite_seen_ = 0;                  // so many
-  Ref<Scene> unseen_;                         // finite objects that the camera does not see; null: there are none
+  std::vector<const SceneObject*> infinite_;                // those that the camera sees come first
+  size_t infinite_seen_ = 0;                                // so many
+  Ref<Scene> unseen_;                                       // finite objects that the camera does not see; null: there are none
+  std::shared_ptr<const CoincidentLuminaires> coincident_;  // null: there are none, or this scene is a nested one itself
+  bool careful_ = false;                                    // whether `nearest` has to mind either
   const SceneObject* surroundings_ = nullptr;
   std::shared_ptr<const NestedLuminaires> nested_;  // null: there are none, or this scene is a nested one itself
   std::vector<Bounds3> interiors_;  // of the objects that paths can enter, and of scenes in which there are such; of many

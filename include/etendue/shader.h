@@ -92,8 +92,9 @@ class Scatter {
     which &= lobes_;
     return which == no_lobes ? std::nullopt : world_sample(out, choice, u, transport, which);
   }
-  /// An estimate of the fraction of light from all asked lobes that leaves towards `out`, for Russian roulette and for
-  /// choosing between lobes; exact where the model has a closed form.
+  /// The fraction of light that arrives evenly from all sides which the asked lobes send towards `out`, as power (without what
+  /// refraction does to radiance). Russian roulette, choices between lobes and the albedo that pictures and denoisers show rest
+  /// on it. How exact it is: Shader::albedo_error.
   Spectrum albedo(const Vector3& out, Lobes which = all_lobes) const {
     which &= lobes_;
     return which == no_lobes ? Spectrum() : world_albedo(out, which);
@@ -231,6 +232,9 @@ class Shader : public Component {
   /// Whether f(out, in) = f(in, out), with the squared indices across refraction. Models that are not say why; their Scatter
   /// makes importance the adjoint of radiance all the same.
   virtual bool reciprocal() const { return true; }
+  /// A bound of the relative error of the Scatter's `albedo`: 0 where it is exact, but for rounding; more where a table is
+  /// looked up, or where it is a guess. The bound holds up to 85 degrees from the normal, for every set of lobes.
+  virtual float albedo_error() const { return 0; }
   /// Whether `evaluate` of the Scatter is an unbiased estimate, which depends on the bits of its arguments, and `density`
   /// that of something near what `sample` does: weights that compare densities stay right, and nothing else is asked of it.
   virtual bool stochastic() const { return false; }

@@ -50,10 +50,18 @@ bool is_named(std::string_view given, std::string_view name, std::string_view al
   return false;
 }
 
-void fail_unknown(const std::string& what, const std::string& given, const std::vector<std::string>& known) {
+void fail_unknown(const std::string& what, const std::string& given, const std::vector<std::string>& known,
+                  const std::vector<std::string>& others) {
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + ("'" + name + "'");
-  throw Error("unknown " + what + " '" + given + "'" + suggestion(given, known) + "; known are " + list);
+  std::vector<std::string> similar = known;
+  for (std::string_view rest : others)
+    while (!rest.empty()) {
+      const size_t end = std::min(rest.find(','), rest.size());
+      similar.emplace_back(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  throw Error("unknown " + what + " '" + given + "'" + suggestion(given, similar) + "; known are " + list);
 }
 
 }  // namespace etendue

@@ -16,8 +16,9 @@ std::string quoted(std::string_view);
 
 /// Whether `given` is `name` or one of `aliases` (separated by commas), in capitals or not.
 bool is_named(std::string_view given, std::string_view name, std::string_view aliases);
-/// Throws Error: "unknown glass 'BK8' (did you mean 'BK7'?); known are …".
-[[noreturn]] void fail_unknown(const std::string& what, const std::string& given, const std::vector<std::string>& known);
+/// Throws Error: "unknown glass 'BK8' (did you mean 'BK7'?); known are …". `others` may be suggested, too: lists by commas.
+[[noreturn]] void fail_unknown(const std::string& what, const std::string& given, const std::vector<std::string>& known,
+                               const std::vector<std::string>& others = {});
 
 /// The names of a table of src/color/tables.h.
 template <class T>
@@ -31,7 +32,9 @@ template <class T>
 const T& find_named(std::span<const T> table, const std::string& what, const std::string& given) {
   for (const T& entry : table)
     if (is_named(given, entry.name, entry.aliases)) return entry;
-  fail_unknown(what, given, names_of(table));
+  std::vector<std::string> aliases;
+  for (const T& entry : table) aliases.emplace_back(entry.aliases);
+  fail_unknown(what, given, names_of(table), aliases);
 }
 
 }  // namespace etendue

@@ -86,6 +86,12 @@ void SigmoidFit::evaluate(const Coefficients& c, Point& point) const {
   for (int i = 0; i < 9; ++i) point.derivative[size_t(i)] = sum(derivative[i]);
 }
 
+std::array<double, 3> SigmoidFit::rgb_of(const Coefficients& c) const {
+  Point point;
+  evaluate(c, point);
+  return point.rgb;
+}
+
 namespace {
 
 double largest(const std::array<double, 3>& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }

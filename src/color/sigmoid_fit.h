@@ -33,6 +33,8 @@ class SigmoidFit {
   double solve(const std::array<double, 3>& rgb, Coefficients& c, double tolerance, int iterations) const;
   /// For any RGB in [0, 1]^3, from nothing. A colour no reflectance has becomes about the nearest that one has.
   Coefficients solve(const std::array<double, 3>& rgb) const;
+  /// The RGB of a reflectance with these coefficients.
+  std::array<double, 3> rgb_of(const Coefficients&) const;
 
  private:
   struct Point {

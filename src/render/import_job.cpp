@@ -180,7 +180,7 @@ class ImportedFile final : public language::OtherFile {
 
 const language::OtherFiles& imported_files() {
   static const language::OtherFiles files{
-      [](const std::string& path) { return bool(importer_of(path)); },
+      [](const std::string& path) { return bool(importer_of(path)); }, imported_extensions,
       [](const std::string& path, const ImportOptions& options,
          const std::vector<std::pair<std::string, std::string>>& parameters) -> std::unique_ptr<language::OtherFile> {
         return std::make_unique<ImportedFile>(*importer_of(path), path, options, parameters);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "describe/expansion.h"
+#include "etendue/import_by.h"
 #include "etendue/object_map.h"
 #include "etendue/render/job.h"
 #include "etendue/scene.h"
@@ -60,7 +61,7 @@ struct Surfaces {
 }  // namespace
 
 Ref<Component> imported(const Importer& importer, Importing& importing) {
-  Ref<Component> read = importer.import(importing);
+  Ref<Component> read = import_by(importer, importing);
   const Ref<Job> job = ref_cast<Job>(read);
   const Ref<Scene> scene = job ? job->scene : ref_cast<Scene>(read);
   if (!scene) return read;

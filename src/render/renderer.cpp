@@ -69,10 +69,8 @@ namespace {
 /// The renderers that can be had, plugins' too, that find all light of a kind as they are without settings.
 std::vector<std::string> renderers_for(PathClass kind) {
   std::vector<std::string> names;
-  const ClassInfo* interface = Registry::instance().find("Renderer");
-  for (const ClassInfo* info : Registry::instance().subclasses(*interface))
-    if (info != interface && !info->abstract() && (ref_cast<Renderer>(create(*info))->finds() & kind))
-      names.push_back(info->name);
+  for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Renderer")))
+    if (ref_cast<Renderer>(create(*info))->finds() & kind) names.push_back(info->name);
   return names;
 }
 

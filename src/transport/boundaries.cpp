@@ -11,8 +11,9 @@ bool lets_in(const SceneObject& object) { return object.shader && (object.shader
 /// Whether it bounds nothing itself: light goes on behind it in what is around.
 bool mere_sheet(const SceneObject& object) { return is_sheet(*object.shader) && !enterable(object); }
 
-/// Whether the first counts where the boundaries of both lie in one place.
-bool before(const SceneObject& a, const SceneObject& b) {
+}  // namespace
+
+bool boundary_goes_before(const SceneObject& a, const SceneObject& b) {
   if (lets_in(a) != lets_in(b)) return !lets_in(a);
   if (!lets_in(a)) return false;
   if (mere_sheet(a) || mere_sheet(b)) return mere_sheet(a) && !mere_sheet(b);
@@ -21,7 +22,12 @@ bool before(const SceneObject& a, const SceneObject& b) {
   return a.shader->possible_lobes() != pass_through && b.shader->possible_lobes() == pass_through;
 }
 
-}  // namespace
+float reach_of_coincidence(const Scene& scene, const SurfacePoint& point) {
+  // Each of two surfaces in one place is found within its error, which may be nothing (in a plane z = 0, say): then within a
+  // few roundings of the position.
+  const float largest = std::max({std::abs(point.position.x), std::abs(point.position.y), std::abs(point.position.z)});
+  return 4 * point.error + 2.5e-7f * largest + 1e-9f * scene.radius();
+}
 
 namespace {
 
@@ -48,10 +54,7 @@ bool enterable_once_prepared(const SceneObject& object) {
 }
 
 void coincident_hits(const Scene& scene, const Ray& ray, const Hit& hit, const SurfacePoint& point, Ray& probe, HitList& list) {
-  // Each of two surfaces in one place is found within its error, which may be nothing (in a plane z = 0, say): then within a
-  // few roundings of the position.
-  const float largest = std::max({std::abs(point.position.x), std::abs(point.position.y), std::abs(point.position.z)});
-  const float reach = 4 * point.error + 2.5e-7f * largest + 1e-9f * scene.radius();
+  const float reach = reach_of_coincidence(scene, point);
   probe = ray;
   probe.direction = std::copysign(1.0f, dot(point.normal, ray.direction)) * Vector3(point.normal);
   probe.origin = point.position - reach * probe.direction;
@@ -77,7 +80,7 @@ void settle_coincident(const Scene& scene, const Ray& ray, Hit& hit, SurfacePoin
 
   int first = -1;  // the hit itself
   for (int i = 0; i < others.size; ++i)
-    if (before(*others.hits[i].object, first < 0 ? *hit.object : *others.hits[first].object)) first = i;
+    if (boundary_goes_before(*others.hits[i].object, first < 0 ? *hit.object : *others.hits[first].object)) first = i;
   const auto note = [&](const SceneObject& object, const Normal3& normal) {
     if (enterable(object)) media.note_other(object, dot(normal, ray.direction) < 0);
   };

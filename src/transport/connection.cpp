@@ -36,14 +36,14 @@ std::optional<LuminaireConnection> connect_to_luminaire(const Scene& scene, cons
   const Point2 u = numbers.next_pair();
   const LightChoice choice = lights.choose(z.point.position, z.normal(), which);
   if (!choice.luminaire) return {};
-  const SurfaceSample l = choice.luminaire->sample_visible(z.point.position, u, z.point.time);
+  SurfaceSample l = choice.luminaire->sample_visible(z.point.position, u, z.point.time);
   if (!(l.density > 0)) return {};
   const ScatterValue f = scattering(z, z.out, l.direction, Transport::radiance);
   if (f.value.black()) return {};
   const EmissionShader& emission = *choice.luminaire->emission;
   LuminaireConnection c;
   c.light = z.throughput * f.value * emission.radiance(l.point, -l.direction, wavelengths) / (choice.probability * l.density);
-  if (c.light.black()) return {};
+  if (c.light.black() || !scene.in_front(l.point, -l.direction)) return {};
   c.luminaire.kind = Vertex::Kind::luminaire;
   c.luminaire.infinite = l.infinite;
   c.luminaire.point = l.point;

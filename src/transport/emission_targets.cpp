@@ -138,7 +138,7 @@ bool EmissionTargets::sample_emitted_light(const Scene& scene, const LightSample
     light.position = s.density;
     const Vector3 to = direction(s.point, v, light.direction);
     if (!(light.direction > 0)) return false;
-    begin_at_point(s, to, w, light);
+    begin_at_point(scene, s, to, w, light);
   }
   return !light.radiance.black();
 }

@@ -149,6 +149,7 @@ bool PathSpace::complete(LightPath& path) const {
   if (far < reach.nearest || far > reach.farthest) return false;
   at(k - 1).from_camera = double(camera_direction_density(context.camera, ray)) * path.camera_angle(k - 1);
   path.scale = at(k - 1).from_camera;
+  if (!context.scene.in_front(at(0).point, at(0).out)) return false;
   Spectrum f = luminaire.emission->radiance(at(0).point, at(0).out, path.wavelengths);
   for (int i = k - 2; i >= 0; --i) {
     const PathVertex& from = at(i + 1);

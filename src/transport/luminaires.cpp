@@ -61,16 +61,18 @@ bool begin_at_infinity(const Scene& scene, const Point3& through, const SurfaceS
   return true;
 }
 
-void begin_at_point(const SurfaceSample& s, const Vector3& direction, const Wavelengths& w, EmittedLight& light) {
+void begin_at_point(const Scene& scene, const SurfaceSample& s, const Vector3& direction, const Wavelengths& w,
+                    EmittedLight& light) {
   light.point = s.point;
   light.radiance = s.point.object->emission->radiance(s.point, direction, w);
+  if (!scene.in_front(light.point, direction)) light.radiance = {};
   if (s.point.normal == Normal3{}) {
     light.ray.origin = s.point.position;
     light.ray.direction = direction;
   } else {
     light.radiance *= std::abs(dot(s.point.normal, direction));
     const float time = light.ray.time;
-    s.point.leave(direction, light.ray);
+    light.point.leave(direction, light.ray);
     light.ray.time = time;
   }
 }
@@ -111,7 +113,7 @@ bool sample_emitted_light(const Scene& scene, const LightSampler& lights, const 
     const DirectionSample d = luminaire.emission->sample(s.point, direction);
     if (!(d.density > 0)) return false;
     light.direction = d.density;
-    begin_at_point(s, d.direction, w, light);
+    begin_at_point(scene, s, d.direction, w, light);
   }
   return !light.radiance.black();
 }

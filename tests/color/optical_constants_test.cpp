@@ -150,6 +150,12 @@ TEST(OpticalConstants, OtherNames) {
                                                          {"SF10", "N-SF10"},
                                                          {"CCl4", "carbon tetrachloride"}};
   for (const auto& [other, name] : glasses) EXPECT_EQ(glass_index(other)->expression(), "glass(\"" + std::string(name) + "\")");
+  try {
+    metal_index("bras");
+    ADD_FAILURE() << "there is no such metal";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("did you mean 'brass'?"), std::string::npos) << e.what();
+  }
   // No name, in capitals or not, stands for two.
   for (const std::string& name : metal_names()) EXPECT_EQ(metal_index(name)->expression(), "metal(\"" + name + "\")");
   for (const std::string& name : glass_names()) EXPECT_EQ(glass_index(name)->expression(), "glass(\"" + name + "\")");

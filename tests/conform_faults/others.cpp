@@ -146,6 +146,17 @@ class WrongVisibleSquare final : public Square {
 };
 const Register<WrongVisibleSquare> visible;
 
+/// A fortieth of it: no more of the steps may lead elsewhere than those that poles and rounding explain.
+class WrongTangentsSquare final : public Square {
+ public:
+  static void describe(Description<WrongTangentsSquare>& d) { d.summary("A unit square with a corner of wrong tangents."); }
+  void tangents(SurfacePoint& p) const override {
+    Square::tangents(p);
+    if (p.uv.x < 0.16f && p.uv.y < 0.16f) p.dpdu = 1.1f * p.dpdu;
+  }
+};
+const Register<WrongTangentsSquare> tangents;
+
 // ---- maps --------------------------------------------------------------------------------------------------------------
 
 class UnboundedMap final : public ObjectMap {

@@ -69,6 +69,88 @@ class WrongDensityShader final : public MattShader<DensityScatter> {
 };
 const Register<WrongDensityShader> density;
 
+// ---- not reciprocal but at the hero wavelength ------------------------------------------------------------------------
+/// Light that gets through leaves evenly: f(front to back) / f(back to front) must be the squared index of each wavelength.
+class HeroIndexScatter final : public Scatter {
+ public:
+  HeroIndexScatter(const SurfacePoint& p, const Spectrum& eta) : Scatter(p, diffuse_transmission), eta_(eta) {}
+
+ protected:
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z < 0 ? Spectrum(0.4f * inverse_pi * towards(out)) : Spectrum();
+  }
+  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z < 0 ? std::abs(in.z) * inverse_pi : 0;
+  }
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
+    s.in = warp::cosine_hemisphere(u);
+    if (out.z > 0) s.in.z = -s.in.z;
+    s.lobe = diffuse_transmission;
+    s.density = local_density(out, s.in, which);
+    s.value = local_evaluate(out, s.in, which) * std::abs(s.in.z);
+    s.eta = towards(out);
+    return s.density > 0;
+  }
+  Spectrum local_albedo(const Vector3& out, Lobes) const override { return 0.4f * towards(out); }
+  Spectrum relative_index(const Vector3& out, const Vector3&) const override {
+    return out.z > 0 ? eta_ : Spectrum(1.0f) / eta_;
+  }
+
+ private:
+  float towards(const Vector3& out) const { return out.z > 0 ? eta_[0] : 1 / eta_[0]; }
+
+  Spectrum eta_;
+};
+class HeroIndexShader final : public MattShader<Matt> {
+ public:
+  static void describe(Description<HeroIndexShader>& d) { describe_as(d, "Takes every wavelength for the hero."); }
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
+    Spectrum eta;
+    for (int i = 0; i < spectrum_size; ++i) eta.set(i, 1.2f + 1e-3f * (w[i] - wavelength_low));
+    return arena.make<HeroIndexScatter>(p, eta);
+  }
+  Lobes possible_lobes() const override { return diffuse_transmission; }
+};
+const Register<HeroIndexShader> hero_index;
+
+// ---- an albedo that is not what is scattered --------------------------------------------------------------------------
+class AlbedoScatter final : public Matt {
+ public:
+  AlbedoScatter(const SurfacePoint& p, float reflectance, float factor) : Matt(p, reflectance), factor_(factor) {}
+
+ protected:
+  Spectrum local_albedo(const Vector3& out, Lobes which) const override { return Matt::local_albedo(out, which) * factor_; }
+
+ private:
+  float factor_;
+};
+class DimAlbedoShader final : public MattShader<Matt> {
+ public:
+  static void describe(Description<DimAlbedoShader>& d) { describe_as(d, "Its albedo is 20 % below what it scatters."); }
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths&, Arena& arena) const override {
+    return arena.make<AlbedoScatter>(p, reflectance, 0.8f);
+  }
+};
+const Register<DimAlbedoShader> dim_albedo;
+
+/// A guess may be off, but by no more than it says.
+class WildAlbedoShader final : public MattShader<Matt> {
+ public:
+  static void describe(Description<WildAlbedoShader>& d) { describe_as(d, "Its albedo is 60 % off, and said to be 20 % off."); }
+  const Scatter* bind(const SurfacePoint& p, const Wavelengths&, Arena& arena) const override {
+    return arena.make<AlbedoScatter>(p, reflectance, 1.6f);
+  }
+  float albedo_error() const override { return 0.2f; }
+};
+const Register<WildAlbedoShader> wild_albedo;
+
+class BoundlessAlbedoShader final : public MattShader<Matt> {
+ public:
+  static void describe(Description<BoundlessAlbedoShader>& d) { describe_as(d, "Its albedo may be anything, it says."); }
+  float albedo_error() const override { return 10; }
+};
+const Register<BoundlessAlbedoShader> boundless_albedo;
+
 // ---- more light than arrives -------------------------------------------------------------------------------------------
 class EnergyScatter final : public Matt {
  public:

@@ -193,7 +193,7 @@ TEST(Obj, HostileFilesAreRefused) {
   EXPECT_NE(message(v + "f 1 2 0\n", read_obj).find("is 0"), std::string::npos);
   EXPECT_NE(message(v + "f 1 2 -4\n", read_obj), "");
   EXPECT_NE(message(v + "f 1 2 99999999999999999999\n", read_obj), "");
-  EXPECT_NE(message(v + "f 1/1 2 3\n", read_obj), "");
+  EXPECT_NE(message(v + "vt 0 0\nf 1/2 2 3\n", read_obj), "");
   EXPECT_NE(message(v + "f 1 2\n", read_obj), "");
   EXPECT_NE(message(v + "f a b c\n", read_obj), "");
   EXPECT_NE(message("v 0 0\nf 1 1 1\n", read_obj), "");

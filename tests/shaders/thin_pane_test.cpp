@@ -24,6 +24,22 @@ Vector3 direction(double angle, double azimuth = 0.4) {
   return {float(std::sin(t) * std::cos(azimuth)), float(std::sin(t) * std::sin(azimuth)), float(std::cos(t))};
 }
 
+// pbrt and Mitsuba take R for the mean of both polarizations before they add up the passages: 2 R / (1 + R).
+TEST(ThinPane, AveragedPolarizations) {
+  const Ref<Shader> shader = create<Shader>("ThinDielectric", {{"ior", 1.5}, {"polarizations", std::string("averaged")}});
+  Arena arena;
+  const Scatter& s = *shader->bind(flat_point(), Wavelengths(), arena);
+  for (const double angle : {0.0, 60.0, 80.0}) {
+    const Vector3 out = direction(angle);
+    const auto back = s.sample(out, 0, {}, Transport::radiance, specular_reflection);
+    ASSERT_TRUE(back);
+    const double n = 1.5, c = double(out.z), inside = std::sqrt(1 - (1 - c * c) / (n * n));
+    const double R = (std::pow((c - n * inside) / (c + n * inside), 2) + std::pow((n * c - inside) / (n * c + inside), 2)) / 2;
+    EXPECT_NEAR(double(back->weight[0]), 2 * R / (1 + R), 2e-5) << angle;
+    EXPECT_NEAR(double(s.albedo(out)[0]), 1, 1e-5);
+  }
+}
+
 // A pane's passages, one by one: light meets the faces in turn, absorbed by color^(1 / cos inside) on each way.
 TEST(ThinPane, AbsorbsAlongEachPassageAtAllAngles) {
   const Color ior = table_spectrum({360, 830}, {1.7f, 1.4f}), tint = table_spectrum({360, 830}, {0.9f, 0.4f});

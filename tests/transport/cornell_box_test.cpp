@@ -9,7 +9,9 @@ namespace etendue::test {
 namespace {
 
 TEST(CornellBox, AgreesWithMitsuba) {
-  const Ref<Job> job = load_job(ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd");
+  // The size and the angle of view of the reference.
+  const Ref<Job> job =
+      load_job(ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd", {.defines = {{"size", "256"}, {"fov", "39.3077 deg"}}});
   job->renderer->samples = 128;
   const auto render = rendered(job);
   EXPECT_EQ(render->film().bad_samples(), 0u);

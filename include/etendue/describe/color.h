@@ -59,6 +59,9 @@ Color table_spectrum(std::vector<float> wavelengths, std::vector<float> values);
 Color file_spectrum(const FilePath&, const std::string& column = {});
 /// Times a number.
 Color scaled_spectrum(double factor, Color);
+/// Read for this use, whoever asks: RGB as a coefficient, say, that is the spectrum of a reflectance.
+Color used_spectrum(ColorUse, Color);
+Color used_spectrum(const std::string& use, Color);  ///< "reflectance" "radiance" "coefficient"
 
 std::vector<std::string> illuminant_names();
 std::vector<std::string> glass_names();

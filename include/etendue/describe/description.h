@@ -410,7 +410,8 @@ class Register {
 
  private:
   static Ref<Component> (*factory())() {
-    if constexpr (std::is_abstract_v<T>)
+    // An interface that needs nothing overridden hides its constructor from all but its subclasses.
+    if constexpr (std::is_abstract_v<T> || !std::is_default_constructible_v<T>)
       return nullptr;
     else
       return [] { return Ref<Component>(make<T>()); };

@@ -32,7 +32,6 @@ class Renderer : public Component {
   using Interface = Renderer;
   using Parent = Component;
   static void describe(Description<Renderer>&);
-  Renderer();
 
   int samples = 64;  ///< per pixel
   Ref<Sampler> sampler;
@@ -69,6 +68,7 @@ class Renderer : public Component {
   std::vector<Advice> misses(const SceneTraits&) const;
 
  protected:
+  Renderer();
   /// Of a renderer inside, whose samples this one takes: fails where the description says of them in there what only counts
   /// out here, and would have no effect.
   void refuse_samples_of(const Renderer& inner) const;

@@ -28,6 +28,13 @@ inline bool hidden_by_priority(const MediumStack& media, const SceneObject& obje
   return object.shader->transmits() || enterable(object);
 }
 
+/// Whether the first counts where the boundaries of both lie in one place: what lets no light in before what does, sheets
+/// before bodies, higher priorities before lower ones. Of two that are alike neither does.
+bool boundary_goes_before(const SceneObject&, const SceneObject&);
+
+/// Surfaces that lie no farther from a point than this, across its surface, are in one place with it.
+float reach_of_coincidence(const Scene&, const SurfacePoint&);
+
 /// Other surfaces in the same place as a hit, within the error of its position, each once. `probe` is the ray, across the
 /// surface, that found them.
 void coincident_hits(const Scene&, const Ray&, const Hit&, const SurfacePoint&, Ray& probe, HitList&);

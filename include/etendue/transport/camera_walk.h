@@ -99,8 +99,8 @@ class CameraWalk : public Walk<clear> {
   template <class Scattering>
   [[gnu::always_inline]] void add_direct(const LightSampler& lights, const NumberStream::Bounce& u, Heuristic heuristic,
                                          const Scattering& scattering) {
-    if (!vertex.scatters_smoothly() || !propose_direct_light(lights, vertex, ray.time, sample.wavelengths, u.light_choice,
-                                                             u.light_point, heuristic, direct_, scattering))
+    if (!vertex.scatters_smoothly() || !propose_direct_light(scene, lights, vertex, ray.time, sample.wavelengths,
+                                                             u.light_choice, u.light_point, heuristic, direct_, scattering))
       return;
     direct_.light *= throughput;
     if constexpr (!clear) {

@@ -25,18 +25,18 @@ struct DirectLight {
 /// All but V is computed here; false: nothing can come, and `direct` is not to be looked at.
 // Inlined whatever its size: a twentieth of the time of simple scenes.
 template <class Scattering, class Leave>
-[[gnu::always_inline]] inline bool propose_light(const LightSampler& lights, const Point3& from, const Normal3& normal,
-                                                 float time, const Wavelengths& wavelengths, float choice, Point2 u,
-                                                 Heuristic heuristic, DirectLight& direct, const Scattering& scattering,
-                                                 const Leave& leave) {
+[[gnu::always_inline]] inline bool propose_light(const Scene& scene, const LightSampler& lights, const Point3& from,
+                                                 const Normal3& normal, float time, const Wavelengths& wavelengths,
+                                                 float choice, Point2 u, Heuristic heuristic, DirectLight& direct,
+                                                 const Scattering& scattering, const Leave& leave) {
   const LightChoice light = lights.choose(from, normal, choice);
   if (!light.luminaire) return false;
-  const SurfaceSample s = light.luminaire->sample_visible(from, u, time);
+  SurfaceSample s = light.luminaire->sample_visible(from, u, time);
   if (!(s.density > 0)) return false;
   const ScatterValue f = scattering(s.direction);
   if (f.value.black()) return false;
   const Spectrum emitted = light.luminaire->emission->radiance(s.point, -s.direction, wavelengths);
-  if (emitted.black()) return false;
+  if (emitted.black() || !scene.in_front(s.point, -s.direction)) return false;
   leave(s, direct.shadow);
   const float density = light.probability * s.density;
   const float weight = weight_over_density(heuristic, density, s.delta ? 0 : f.density);
@@ -57,11 +57,11 @@ struct ScatteringOf {
 /// From a path's vertex. Light of a luminaire that scattering can meet as well is weighted against that: see
 /// CameraWalk::add_direct.
 template <class Scattering>
-[[gnu::always_inline]] inline bool propose_direct_light(const LightSampler& lights, const Vertex& vertex, float time,
-                                                        const Wavelengths& wavelengths, float choice, Point2 u,
+[[gnu::always_inline]] inline bool propose_direct_light(const Scene& scene, const LightSampler& lights, const Vertex& vertex,
+                                                        float time, const Wavelengths& wavelengths, float choice, Point2 u,
                                                         Heuristic heuristic, DirectLight& direct,
                                                         const Scattering& scattering) {
-  return propose_light(lights, vertex.point.position, vertex.normal(), time, wavelengths, choice, u, heuristic, direct,
+  return propose_light(scene, lights, vertex.point.position, vertex.normal(), time, wavelengths, choice, u, heuristic, direct,
                        scattering, [&](const SurfaceSample& s, Ray& ray) __attribute__((always_inline)) {
                          ray.time = time;
                          if (vertex.in_medium()) {

@@ -59,7 +59,7 @@ bool choose_luminaire(const LightSampler&, float which, float time, EmittedLight
 /// Light of a sampled point at infinity that passes through a point of the scene. False: it never begins.
 bool begin_at_infinity(const Scene&, const Point3& through, const SurfaceSample&, const Wavelengths&, EmittedLight&);
 /// Light of a sampled point that leaves in a direction.
-void begin_at_point(const SurfaceSample&, const Vector3& direction, const Wavelengths&, EmittedLight&);
+void begin_at_point(const Scene&, const SurfaceSample&, const Vector3& direction, const Wavelengths&, EmittedLight&);
 
 /// Chooses a luminaire by power, a point on it and a direction; for one at infinity a direction, and a place across it as
 /// LightFront has it. False: nothing leaves there.

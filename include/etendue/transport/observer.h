@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "etendue/film/image_buffer.h"
+#include "etendue/film/image_tile.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
 #include "etendue/transport/path_record.h"

@@ -54,12 +54,12 @@ struct LuminaireSample {
 };
 
 /// Chooses a point on a luminaire; false: no light comes from there.
-inline bool sample_luminaire(const SceneObject& luminaire, const SurfacePoint& point, const Wavelengths& wavelengths, Point2 u,
-                             LuminaireSample& light) {
-  const SurfaceSample s = luminaire.sample_visible(point.position, u, point.time);
+inline bool sample_luminaire(const Scene& scene, const SceneObject& luminaire, const SurfacePoint& point,
+                             const Wavelengths& wavelengths, Point2 u, LuminaireSample& light) {
+  SurfaceSample s = luminaire.sample_visible(point.position, u, point.time);
   if (!(s.density > 0)) return false;
   light.radiance = luminaire.emission->radiance(s.point, -s.direction, wavelengths);
-  if (light.radiance.black()) return false;
+  if (light.radiance.black() || !scene.in_front(s.point, -s.direction)) return false;
   if (s.infinite)
     point.leave(s.direction, light.shadow);
   else

@@ -1,4 +1,4 @@
-// What holds of every scene object: how it is seen, and that it may be moved.
+// What holds of every scene object: how it is seen, where its tangents lead, and that it may be moved.
 
 #include <fmt/format.h>
 
@@ -86,6 +86,62 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
                                         rays[k].mean(), rays[k].error(), samples[k].mean(), samples[k].error());
                    });
   }
+}
+
+namespace {
+
+/// Two points of the surface, a step apart, and how far the tangents at the first lead from the second, of that step. False:
+/// there is none, or a seam lies between.
+bool step_off(const ObjectTrial& o, const SurfacePoint& start, float phi, float step, SurfacePoint& a, float& off) {
+  const auto down = [&](const Point3& over, SurfacePoint& p) {
+    Hit hit;
+    const Ray ray = o.ray(over + step * Vector3(start.normal), -Vector3(start.normal), 2 * step);
+    if (!o.object.intersect(ray, hit)) return false;
+    p = o.located(ray, hit);
+    return true;
+  };
+  SurfacePoint b;
+  const Frame frame(start.normal);
+  if (!down(start.position, a) || !down(start.position + step * (std::cos(phi) * frame.s + std::sin(phi) * frame.t), b))
+    return false;
+  const float du = b.uv.x - a.uv.x, dv = b.uv.y - a.uv.y;
+  if (a.primitive != b.primitive || std::abs(du) > 0.3f || std::abs(dv) > 0.3f || (du == 0 && dv == 0)) return false;
+  o.object.tangents(a);
+  const Vector3 moved = b.position - a.position;
+  off = length(du * a.dpdu + dv * a.dpdv - moved) / length(moved);
+  return true;
+}
+
+}  // namespace
+
+/// dpdu and dpdv span the surface, and tell where a point with slightly other coordinates lies. At the distance d from a pole
+/// of the coordinates, or where the surface bends within d, a step h leads off by some h / d of itself: a smaller one by less,
+/// if the tangents are right. On the flat sides of a long ellipsoid a few hundredths of all points are so near to a pole that a
+/// step of a thousandth of its length leads off by more than `largest`.
+void check_tangents(const ObjectTrial& o) {
+  constexpr float largest = 0.06f;
+  int wrong = 0, tested = 0;
+  for (int i = o.trial.samples(4000); i > 0; --i) {
+    const SurfacePoint start = o.sample_area().point;
+    const float phi = 2 * pi * o.trial.uniform(), first = 1e-3f * o.radius;
+    float off = 0;
+    SurfacePoint a;
+    if (!step_off(o, start, phi, first, a, off)) continue;
+    ++tested;
+    const bool spans = is_finite(a.dpdu) && is_finite(a.dpdv) &&
+                       o.trial.expect(std::abs(dot(a.normal, a.dpdu)) < 2e-3f * length(a.dpdu) &&
+                                          std::abs(dot(a.normal, a.dpdv)) < 2e-3f * length(a.dpdv),
+                                      "tangents lie in the surface", [&] {
+                                        return fmt::format("at {}, normal {}: dpdu {}, dpdv {}", text_of(a.position),
+                                                           text_of(Vector3(a.normal)), text_of(a.dpdu), text_of(a.dpdv));
+                                      });
+    // Below some steps rounding takes over.
+    for (float step = first / 4; !(off < largest) && step > std::max(first / 64, 100 * a.error); step /= 4)
+      if (!step_off(o, start, phi, step, a, off)) break;
+    wrong += !spans || !(off < largest);
+  }
+  o.trial.expect(ObjectTrial::few(wrong, tested, 0.01), "tangents are the change of position with surface coordinates",
+                 [&] { return fmt::format("{} of {} steps lead elsewhere", wrong, tested); });
 }
 
 /// A copy that is moved, turned and enlarged is the same, moved, turned and enlarged.

@@ -139,42 +139,6 @@ void check_points(const ObjectTrial& o) {
                  [&] { return fmt::format("mean of 1 / density {} ± {} m^2, area {} m^2", area.mean(), area.error(), said); });
 }
 
-/// dpdu and dpdv span the surface, and tell where a point with slightly other coordinates lies.
-void check_tangents(const ObjectTrial& o) {
-  int wrong = 0, tested = 0;
-  const float step = 1e-3f * o.radius;  // short of what bends sharply
-  for (int i = o.trial.samples(4000); i > 0; --i) {
-    const SurfacePoint start = o.sample_area().point;
-    const auto down = [&](const Point3& over, SurfacePoint& p) {
-      Hit hit;
-      const Ray ray = o.ray(over + step * Vector3(start.normal), -Vector3(start.normal), 2 * step);
-      if (!o.object.intersect(ray, hit)) return false;
-      p = o.located(ray, hit);
-      return true;
-    };
-    SurfacePoint a, b;
-    const float phi = 2 * pi * o.trial.uniform();
-    const Frame frame(start.normal);
-    if (!down(start.position, a) || !down(start.position + step * (std::cos(phi) * frame.s + std::sin(phi) * frame.t), b))
-      continue;
-    const float du = b.uv.x - a.uv.x, dv = b.uv.y - a.uv.y;
-    if (a.primitive != b.primitive || std::abs(du) > 0.3f || std::abs(dv) > 0.3f || (du == 0 && dv == 0)) continue;  // a seam
-    o.object.tangents(a);
-    const bool spans = is_finite(a.dpdu) && is_finite(a.dpdv) &&
-                       o.trial.expect(std::abs(dot(a.normal, a.dpdu)) < 2e-3f * length(a.dpdu) &&
-                                          std::abs(dot(a.normal, a.dpdv)) < 2e-3f * length(a.dpdv),
-                                      "tangents lie in the surface", [&] {
-                                        return fmt::format("at {}, normal {}: dpdu {}, dpdv {}", text_of(a.position),
-                                                           text_of(Vector3(a.normal)), text_of(a.dpdu), text_of(a.dpdv));
-                                      });
-    const Vector3 moved = b.position - a.position;
-    ++tested;
-    wrong += !spans || length(du * a.dpdu + dv * a.dpdv - moved) > 0.06f * length(moved);
-  }
-  o.trial.expect(ObjectTrial::few(wrong, tested, 0.03), "tangents are the change of position with surface coordinates",
-                 [&] { return fmt::format("{} of {} steps lead elsewhere", wrong, tested); });
-}
-
 /// Whether some of the surface is very near, or all seen edge on.
 bool too_near(const ObjectTrial& o, const Point3& from) {
   for (int i = 0; i < 1000; ++i)

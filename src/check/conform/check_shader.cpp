@@ -103,6 +103,33 @@ double BoundShader::specular_fraction(const Vector3& out, Lobes specular) const 
   return sum;
 }
 
+RelativeIndex::RelativeIndex(Trial& trial, const BoundShader& bound, Lobes which) {
+  known_[0] = known_[1] = true;
+  for (int hero = 0; hero < spectrum_size; ++hero) {
+    Wavelengths turned = bound.wavelengths();
+    for (int i = 0; i < spectrum_size; ++i) {
+      const int from = (hero + i) % spectrum_size;
+      turned.place(i, bound.wavelengths()[from], bound.wavelengths().density(from));
+    }
+    Arena arena;
+    const Scatter* scatter = trial.part<Shader>().bind(bound.point(), turned, arena);
+    float found[2] = {0, 0};
+    for (int i = 0; scatter && i < 200; ++i) {
+      const Vector3 out = trial.direction();
+      const bool front = dot(bound.point().normal, out) > 0;
+      const auto s = scatter->sample(out, trial.uniform(), trial.pair(), Transport::radiance, which);
+      if (!s || !s->transmitted()) continue;
+      dispersive_ |= s->dispersive;
+      if (found[front] == 0) found[front] = s->eta;
+      known_[front] &= std::abs(s->eta - found[front]) < 1e-4f * found[front];
+    }
+    for (const bool front : {false, true}) {
+      known_[front] &= found[front] > 0;
+      index_[front].set(hero, found[front]);
+    }
+  }
+}
+
 namespace {
 
 /// What does not depend on directions: lobes, and that binding is a function of its arguments.
@@ -148,13 +175,17 @@ void check_dispersion(Trial& trial, const Shader& shader, const BoundShader& bou
   const bool named = bound.scatter()->dispersed() & specular_transmission;
   trial.expect(!alone || alone->dispersed() == no_lobes, "of one wavelength no lobe is named as dispersed",
                [&] { return fmt::format("lobes {}", alone->dispersed()); });
+  const RelativeIndex by(trial, bound, specular_transmission);
   for (int i = 0; i < 100; ++i) {
     const Vector3 out = trial.direction();
     const Point2 u = trial.pair();
     const auto s = bound.scatter()->sample(out, trial.uniform(), u, Transport::radiance, specular_transmission);
-    // By the index that is known: a mixture may refract by another.
-    const bool by_index = s && (std::abs(s->eta - index[0]) < 1e-4f || std::abs(s->eta * index[0] - 1) < 1e-4f);
-    if (by_index && s->eta != 1 && index.minimum() != index.maximum())
+    // By the index inside, if that is the one: a mixture may refract by another.
+    const bool by_inside = s && (std::abs(s->eta - index[0]) < 1e-4f || std::abs(s->eta * index[0] - 1) < 1e-4f);
+    const Spectrum* known = by.from(dot(bound.point().normal, out) > 0);
+    const bool varies = (by_inside && s->eta != 1 && index.minimum() != index.maximum()) ||
+                        (known && known->maximum() > 1.0001f * known->minimum());
+    if (s && varies)
       trial.expect(s->dispersive, "refraction by an index that varies is marked as dispersive",
                    [&] { return "out " + bound.name(out); });
     if (s && named)
@@ -166,12 +197,18 @@ void check_dispersion(Trial& trial, const Shader& shader, const BoundShader& bou
   }
 }
 
+/// What is farther off guides no choice.
+constexpr float largest_albedo_error = 0.5f;
+
 void check_shader(Trial& trial) {
   Shader& shader = trial.part<Shader>();
   const Ref<SceneObject> carrier = carrier_of(shader);
   const auto hero = [&] { return lerp(trial.uniform(), 400, 700); };
   const BoundShader plain(shader, carrier, trial.pair(), hero(), 0, 0);
   const BoundShader tilted(shader, carrier, trial.pair(), hero(), lerp(trial.uniform(), 0.1f, 0.4f), 2 * pi * trial.uniform());
+  trial.expect(shader.albedo_error() >= 0 && shader.albedo_error() <= largest_albedo_error,
+               "the error of the albedo is bounded",
+               [&] { return fmt::format("it is said to be up to {} of the albedo", shader.albedo_error()); });
   check_binding(trial, shader, plain);
   check_binding(trial, shader, tilted);
   check_dispersion(trial, shader, plain);

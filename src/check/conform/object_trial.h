@@ -53,6 +53,8 @@ struct ObjectTrial {
 std::string text_of(const Point3&);
 std::string text_of(const Vector3&);
 
+/// That tangents lie in the surface and tell where points with other coordinates are.
+void check_tangents(const ObjectTrial&);
 /// How the object is seen from a point, and whether points sampled to be seen are so.
 void check_seen_from(const ObjectTrial&, const Point3& from);
 /// That a copy which is moved, turned and enlarged is the same, moved, turned and enlarged.

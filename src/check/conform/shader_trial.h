@@ -47,6 +47,22 @@ class BoundShader {
   bool turned_ = false;
 };
 
+/// By which index a lobe refracts at a point, at each wavelength: index behind the surface over that in front of it, as light
+/// goes. Samples tell it of their hero alone, so each wavelength is made the hero in turn.
+class RelativeIndex {
+ public:
+  RelativeIndex() = default;
+  RelativeIndex(Trial&, const BoundShader&, Lobes);
+  /// Of light that comes from in front, or from behind. Null: it is not the same for all samples, or there are none.
+  const Spectrum* from(bool front) const { return known_[front] ? &index_[front] : nullptr; }
+  /// Whether some sample holds for its hero alone.
+  bool dispersive() const { return dispersive_; }
+
+ private:
+  Spectrum index_[2];
+  bool known_[2] = {false, false}, dispersive_ = false;
+};
+
 /// A sphere whose shader is the given one.
 Ref<SceneObject> carrier_of(Shader&);
 

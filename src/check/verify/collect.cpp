@@ -125,9 +125,8 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
   } else {
     all.push_back({own_class, job.renderer, {}});
     const Registry& registry = Registry::instance();
-    const ClassInfo* interface = registry.find("Renderer");
-    for (const ClassInfo* info : registry.subclasses(*interface))
-      if (info != interface && info->name != own_class) all.push_back({info->name, ref_cast<Renderer>(create(*info)), {}});
+    for (const ClassInfo* info : registry.subclasses(*registry.find("Renderer")))
+      if (info->name != own_class) all.push_back({info->name, ref_cast<Renderer>(create(*info)), {}});
   }
 
   const SceneTraits traits = scene_traits(*job.scene, *job.camera);

@@ -17,12 +17,14 @@ namespace {
 class AmbientOcclusionRenderer final : public Renderer {
   float distance = 0;
   int rays = 4;
+  bool shading_normals = true;
+  float open = 1, background = 1;
 
  public:
   static void describe(Description<AmbientOcclusionRenderer>& d) {
     d.summary(
          "The fraction of the hemisphere over each surface, weighted by the cosine, from which nothing blocks light: "
-         "a grey from 0 (enclosed) to 1 (open). Where the camera sees nothing it is 1. Surfaces are seen from both sides.",
+         "a grey from 0 (enclosed) to 1 (open). Surfaces are seen from both sides.",
          "Zhukov, Iones & Kronin 1998, An ambient light illumination model; Landis 2002, Production-ready global "
          "illumination")
         .without("light_sampler", "it looks at no luminaires")
@@ -30,7 +32,14 @@ class AmbientOcclusionRenderer final : public Renderer {
         .member<&AmbientOcclusionRenderer::distance>("distance", "m", "what is farther away blocks nothing; 0: all does",
                                                      at_least(0), soft(0.01, 100), logarithmic)
         .member<&AmbientOcclusionRenderer::rays>("rays", "1", "rays for each sample of a pixel", range(1, 65536), soft(1, 64),
-                                                 logarithmic);
+                                                 logarithmic)
+        .member<&AmbientOcclusionRenderer::shading_normals>(
+            "shading_normals", "",
+            "whether the hemisphere is about the normals that surfaces are shaded by, or their true ones")
+        .group("Grey")
+        .member<&AmbientOcclusionRenderer::open>("open", "1", "where nothing blocks light", at_least(0), soft(0, 1))
+        .member<&AmbientOcclusionRenderer::background>("background", "1", "where the camera sees nothing", at_least(0),
+                                                       soft(0, 1));
   }
 
   PathClasses finds() const override { return no_paths; }  // it shows how open surfaces are
@@ -42,7 +51,7 @@ class AmbientOcclusionRenderer final : public Renderer {
     Hit hit;
     SurfacePoint point;
     if (!meet_surface(scene, ray, media_around(scene, ray, media), hit, point)) {
-      return grey(1, 1, sample);
+      return grey(background, 1, sample);
     }
     const Vector3 out = -ray.direction;
     sample.observe.surface(point, Spectrum(1.0f));
@@ -53,17 +62,18 @@ class AmbientOcclusionRenderer final : public Renderer {
 
     // The side that is seen; directions under the true surface, which shading normals may lead to, are blocked.
     const float side = dot(point.normal, out) < 0 ? -1.0f : 1.0f;
-    const Frame frame(dot(point.shading_normal, point.normal) * side < 0 ? -point.shading_normal : point.shading_normal);
-    float open = 0;
+    const Normal3 normal = shading_normals ? point.shading_normal : point.normal;
+    const Frame frame(dot(normal, point.normal) * side < 0 ? -normal : normal);
+    float seen = 0;
     Ray shadow;
     for (int i = 0; i < rays && !sample.aborted(); ++i) {
       const Vector3 direction = frame.to_world(warp::cosine_hemisphere(sample.numbers.next_pair()));
       if (!(dot(point.normal, direction) * side > 0)) continue;
       point.leave(direction, shadow);
       if (distance > 0) shadow.maximum = distance;
-      open += visible_fraction(scene, shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena).average();
+      seen += visible_fraction(scene, shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena).average();
     }
-    const Spectrum value = grey(open / float(rays), 2, sample);
+    const Spectrum value = grey(open * seen / float(rays), 2, sample);
     sample.observe.sampled(value, 2, 1);
     return value;
   }

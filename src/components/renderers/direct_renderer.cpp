@@ -8,6 +8,10 @@
 // with w_k = (n_k p_k)^b / sum_j (n_j p_j)^b, b = 1 for the balance and 2 for the power heuristic. Either strategy alone has
 // w = 1. Only the shader finds light by way of specular lobes, and only luminaire samples that of luminaires
 // without extent: these count in full.
+//
+// Where mirrors show surfaces, a perfect mirror or refraction leads to one direction w_k each, and what comes from there is the
+// same sum, of the surface that is seen: L = L_e + direct + sum_k a_k L(x_k, -w_k), up to a depth, with direct light of the
+// other lobes alone.
 
 #include "etendue/render/renderer.h"
 #include "etendue/transport/direct_light.h"
@@ -19,16 +23,20 @@ namespace etendue {
 namespace {
 
 enum class Strategy : std::uint8_t { light, shader, both };
+enum class Shown : std::uint8_t { luminaires, surfaces };
 
 class DirectRenderer final : public Renderer {
   Strategy strategy = Strategy::both;
   int light_samples = 1, shader_samples = 1;
   Heuristic heuristic = Heuristic::power;
+  Shown mirrors = Shown::luminaires;
+  int view_depth = 5;
 
  public:
   static void describe(Description<DirectRenderer>& d) {
-    d.summary("Emitted and direct light only: paths of one and two segments.",
-              "Veach & Guibas 1995, Optimally combining sampling techniques for Monte Carlo rendering")
+    d.summary(
+         "Emitted and direct light only: paths of one and two segments, and these behind perfect mirrors and smooth glass.",
+         "Veach & Guibas 1995, Optimally combining sampling techniques for Monte Carlo rendering; mirrors: Whitted 1980")
         .group("Light")
         .member<&DirectRenderer::strategy>("strategy", "",
                                            "how light is found: by points on luminaires, by directions of the "
@@ -39,72 +47,111 @@ class DirectRenderer final : public Renderer {
         .member<&DirectRenderer::shader_samples>("shader_samples", "1", "directions of the shader for each sample of a pixel",
                                                  range(1, 65536), soft(1, 64), logarithmic, unless("strategy", "light"));
     describe_heuristic<&DirectRenderer::heuristic>(d, when("strategy", "both"));
+    d.group("Mirrors")
+        .member<&DirectRenderer::mirrors>("mirrors", "",
+                                          "what perfect mirrors and smooth glass show: `luminaires` alone, which is direct "
+                                          "light; `surfaces`: those as well, with the light that comes to them directly",
+                                          choices("luminaires", "surfaces"))
+        .member<&DirectRenderer::view_depth>(
+            "view_depth", "1",
+            "what is farther from the camera is not shown, in segments from mirror to mirror: 1 shows what the camera sees "
+            "itself, and mirrors are black; each more may double the work where surfaces both reflect and refract",
+            range(1, 64), when("mirrors", "surfaces"));
   }
 
   PathClasses finds() const override {
-    PathClasses lost = diffuse_light | glossy_light | specular_views | area_caustics | delta_caustics |
-                       delta_caustics_in_mirrors | scattering_media | emitting_media | uneven_media | subsurface_light;
+    PathClasses lost = diffuse_light | glossy_light | area_caustics | delta_caustics | delta_caustics_in_mirrors |
+                       scattering_media | emitting_media | uneven_media | subsurface_light;
     if (strategy == Strategy::shader) lost |= delta_light;
+    if (mirrors == Shown::luminaires) lost |= specular_views;
     return all_paths & ~lost;
   }
 
-  Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
-    const Scene& scene = context.scene;
-    MediumStack inside;
-    MediumStack* const media = media_around(scene, camera_ray, inside);
-    Spectrum radiance, throughput(1.0f);
-    Ray ray = camera_ray;
-    Hit hit;
-    SurfacePoint point;
-    const auto add = [&](int length, const Spectrum& light, const SceneObject* luminaire) {
-      radiance += light;
-      tell_light(sample.observe, length, light, luminaire);
-    };
-    for (int crossings = 0; crossings <= most_crossings; ++crossings) {  // goes round where light passes straight on
-      const ArenaScope memory(sample.arena);
-      if (!meet_surface(scene, ray, media, hit, point)) {
-        for (const SceneObject* far : scene.infinite_luminaires(ray)) {
-          far->surface_point(ray, hit, point);
-          const Spectrum light = throughput * far->emission->radiance(point, -ray.direction, sample.wavelengths);
-          add(1, light, far);
-          sample.observe.escape(*far, ray, throughput);
-          sample.observe.met(light, 1, 1);
-        }
-        return radiance;
-      }
-      const Vector3 out = -ray.direction;
-      sample.observe.surface(point, throughput);
-      if (point.object->luminaire()) {
-        const Spectrum light = throughput * point.object->emission->radiance(point, out, sample.wavelengths);
-        add(1, light, point.object);
-        sample.observe.met(light, 1, 1);
-      }
-      const Scatter* scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
-      sample.observe.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
-      if (!scatter) return radiance;
-
-      Spectrum direct;
-      const auto add_direct = [&](const Spectrum& scattered, const SceneObject* luminaire) {
-        const Spectrum light = throughput * scattered;
-        direct += light;
-        add(2, light, luminaire);
-      };
-      if (strategy != Strategy::shader && scatter->has(smooth_lobes))
-        by_luminaires(scene, point, *scatter, out, sample, add_direct);
-      if (strategy != Strategy::light && scatter->has(bent_lobes))
-        by_shader(scene, point, *scatter, ray, media, sample, add_direct);
-      sample.observe.sampled(direct, 2, 1);
-
-      const auto straight = pass_straight(point, *scatter, ray, media);
-      if (!straight) return radiance;
-      throughput *= *straight;
-    }
-    return radiance;
+  Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
+    RayTree tree{context.scene, sample};
+    RayBranch camera(context.scene, ray, sample.wavelengths);
+    follow(tree, camera);
+    return tree.radiance;
   }
 
  private:
-  /// What passes straight on is followed apart, and is no scattering.
-  static constexpr Lobes bent_lobes = all_lobes & ~pass_through;
+  /// Of which lobes light is direct. What passes straight on is followed apart, and is no scattering; so is what is mirrored
+  /// and refracted where surfaces are shown there.
+  Lobes direct_lobes() const { return mirrors == Shown::surfaces ? smooth_lobes : Lobes(all_lobes & ~pass_through); }
+
+  /// What passes straight on goes on as the branch itself.
+  void follow(RayTree& tree, RayBranch& branch) const {
+    while (!tree.sample.aborted() && to_next_surface(tree, branch)) {
+    }
+  }
+
+  /// Adds the light of the surface that a branch meets, and of what it shows. Returns whether anything passes straight on
+  /// there.
+  bool to_next_surface(RayTree& tree, RayBranch& branch) const {
+    const Scene& scene = tree.scene;
+    SampleContext& sample = tree.sample;
+    const ArenaScope memory(sample.arena);
+    Hit hit;
+    SurfacePoint point;
+    if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
+      for (const SceneObject* far : scene.infinite_luminaires(branch.ray)) {
+        far->surface_point(branch.ray, hit, point);
+        sample.observe.escape(*far, branch.ray, branch.throughput);
+        add_emission(tree, branch, point, far);
+      }
+      return false;
+    }
+    const Vector3 out = -branch.ray.direction;
+    sample.observe.surface(point, branch.throughput);
+    if (point.object->luminaire()) add_emission(tree, branch, point, point.object);
+    const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
+    sample.observe.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
+    if (!scatter) return false;
+
+    Spectrum direct;
+    const auto add_direct = [&](const Spectrum& scattered, const SceneObject* luminaire) {
+      const Spectrum light = branch.throughput * scattered;
+      direct += light;
+      tree.add(branch.depth + 1, light, luminaire);
+    };
+    if (strategy != Strategy::shader && scatter->has(smooth_lobes)) by_luminaires(tree, branch, point, *scatter, add_direct);
+    if (strategy != Strategy::light && scatter->has(direct_lobes())) by_shader(tree, branch, point, *scatter, add_direct);
+    sample.observe.sampled(direct, branch.depth + 1, 1);
+    if (mirrors == Shown::surfaces && branch.depth < view_depth) follow_mirrors(tree, branch, point, *scatter);
+
+    const auto straight = pass_straight(point, *scatter, branch.ray, branch.around());
+    if (!straight) return false;
+    branch.throughput *= *straight;
+    return branch.may_go_on(pass_through);
+  }
+
+  static void add_emission(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const SceneObject* luminaire) {
+    const Spectrum light = branch.throughput * luminaire->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
+    tree.add(branch.depth, light, luminaire);
+    tree.sample.observe.met(light, branch.depth, 1);
+  }
+
+  /// One branch goes on for each perfect mirror and refraction.
+  void follow_mirrors(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter) const {
+    SampleContext& sample = tree.sample;
+    bool first = true;
+    for (const Lobe lobe : {specular_reflection, specular_transmission}) {
+      if (!scatter.has(lobe)) continue;
+      const float choice = sample.numbers.next();  // a surface may have several mirrors
+      const auto next = scatter.sample(-branch.ray.direction, choice, sample.numbers.next_pair(), Transport::radiance, lobe);
+      if (!next || enters_body(point, *next)) continue;
+      RayBranch child = branch;
+      child.throughput *= next->weight;
+      if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();
+      if (child.throughput.black() || !child.may_go_on(lobe)) continue;
+      ++child.depth;
+      go_on(point, *next, child.ray, child.around());
+      if (!first) sample.observe.surface(point, branch.throughput);  // each branch is told from its surface on
+      first = false;
+      sample.observe.scattered(*next);
+      follow(tree, child);
+    }
+  }
 
   /// Lets a ray go straight on through a surface. Returns the fraction that does; none when all is scattered or absorbed.
   static std::optional<Spectrum> pass_straight(const SurfacePoint& point, const Scatter& scatter, Ray& ray,
@@ -118,8 +165,10 @@ class DirectRenderer final : public Renderer {
 
   /// Calls `add(light, luminaire)` for light that is scattered towards `out`; so does by_shader.
   template <class Add>
-  void by_luminaires(const Scene& scene, const SurfacePoint& point, const Scatter& scatter, const Vector3& out,
-                     SampleContext& sample, const Add& add) const {
+  void by_luminaires(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter,
+                     const Add& add) const {
+    SampleContext& sample = tree.sample;
+    const Vector3 out = -branch.ray.direction;
     const float n = float(light_samples);
     LuminaireSample light;
     for (int i = 0; i < light_samples && !sample.aborted(); ++i) {
@@ -127,33 +176,35 @@ class DirectRenderer final : public Renderer {
       const float choice = std::min((float(i) + sample.numbers.next()) / n, one_minus_epsilon);
       const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(point.position, point.normal, choice);
-      if (!chosen.luminaire || !sample_luminaire(*chosen.luminaire, point, sample.wavelengths, u, light)) continue;
-      const ScatterValue f = scatter.value_and_density(out, light.direction, Transport::radiance, bent_lobes);
+      if (!chosen.luminaire || !sample_luminaire(tree.scene, *chosen.luminaire, point, branch.wavelengths, u, light)) continue;
+      const ScatterValue f = scatter.value_and_density(out, light.direction, Transport::radiance, direct_lobes());
       if (f.value.black()) continue;
       const bool rivalled = strategy == Strategy::both && !light.delta;
       const float weight = weight_over_density(heuristic, n * chosen.probability * light.density,
                                                rivalled ? float(shader_samples) * f.density : 0);
       add(f.value * light.radiance * weight *
-              visible_fraction(scene, light.shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena),
+              visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.numbers, sample.arena),
           chosen.luminaire);
     }
   }
 
   template <class Add>
-  void by_shader(const Scene& scene, const SurfacePoint& point, const Scatter& scatter, const Ray& camera_ray,
-                 const MediumStack* media, SampleContext& sample, const Add& add) const {
-    const Vector3 out = -camera_ray.direction;
+  void by_shader(RayTree& tree, RayBranch& branch, const SurfacePoint& point, const Scatter& scatter, const Add& add) const {
+    const Scene& scene = tree.scene;
+    SampleContext& sample = tree.sample;
+    const MediumStack* const media = branch.around();
+    const Vector3 out = -branch.ray.direction;
     const float n = float(shader_samples);
     Hit hit;
     SurfacePoint met;
     for (int i = 0; i < shader_samples && !sample.aborted(); ++i) {
       const float choice = std::min((float(i) + sample.numbers.next()) / n, one_minus_epsilon);
-      const auto next = scatter.sample(out, choice, sample.numbers.next_pair(), Transport::radiance, bent_lobes);
+      const auto next = scatter.sample(out, choice, sample.numbers.next_pair(), Transport::radiance, direct_lobes());
       if (!next || enters_body(point, *next)) continue;
-      Wavelengths wavelengths = sample.wavelengths;
+      Wavelengths wavelengths = branch.wavelengths;
       Spectrum throughput = next->weight / n;
       if (next->dispersive) throughput *= wavelengths.drop_secondary();
-      Ray ray = camera_ray;
+      Ray ray = branch.ray;
       MediumStack inside;
       if (media) inside = *media;
       MediumStack* const around = media ? &inside : nullptr;

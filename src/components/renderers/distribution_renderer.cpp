@@ -251,7 +251,8 @@ class DistributionRenderer final : public Renderer {
       const float choice = std::min((float(i) + sample.numbers.next()) / float(count), one_minus_epsilon);
       const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(place.point.position, place.point.normal, choice);
-      if (!chosen.luminaire || !sample_luminaire(*chosen.luminaire, place.point, branch.wavelengths, u, light)) continue;
+      if (!chosen.luminaire || !sample_luminaire(tree.scene, *chosen.luminaire, place.point, branch.wavelengths, u, light))
+        continue;
       const float density = float(count) * chosen.probability * light.density;
       const ScatterValue rivals = lobe_rays(place, light.direction);
       Spectrum f = rivals.value * weight_over_density(Heuristic::power, density, light.delta ? 0 : rivals.density);

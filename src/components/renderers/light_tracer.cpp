@@ -44,9 +44,9 @@ class LightTracer final : public Renderer {
   }
 
  private:
-  void connect(const RenderContext& context, const std::vector<KeptVertex>& path, size_t i, const EmittedLight& light,
+  void connect(const RenderContext& context, std::vector<KeptVertex>& path, size_t i, const EmittedLight& light,
                SampleContext& sample) const {
-    const KeptVertex& v = path[i];
+    KeptVertex& v = path[i];
     const bool luminaire = i == 0;
     if (unseen(v)) return;
     if (luminaire && (light.infinite || v.point.normal == Normal3{})) return;  // of these the film holds no image
@@ -56,6 +56,7 @@ class LightTracer final : public Renderer {
 
     Spectrum value;
     if (luminaire) {
+      if (!context.scene.in_front(v.point, lens->direction)) return;
       const SceneObject& object = *v.point.object;
       value = object.emission->radiance(v.point, lens->direction, sample.wavelengths) *
               (std::abs(dot(v.point.normal, lens->direction)) / (light.choice * light.position));

@@ -115,7 +115,8 @@ class WhittedRenderer final : public Renderer {
     Spectrum sum;
     LuminaireSample light;
     for (const SceneObject* luminaire : tree.scene.luminaires()) {
-      if (!luminaire->delta() || !sample_luminaire(*luminaire, point, branch.wavelengths, {0.5f, 0.5f}, light)) continue;
+      if (!luminaire->delta() || !sample_luminaire(tree.scene, *luminaire, point, branch.wavelengths, {0.5f, 0.5f}, light))
+        continue;
       const Spectrum f = scatter.evaluate(out, light.direction, Transport::radiance, smooth_lobes);
       if (f.black()) continue;
       const Spectrum direct = branch.throughput * (f * light.radiance / light.density *

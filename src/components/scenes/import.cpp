@@ -2,6 +2,9 @@
 
 #include "import.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <unordered_set>
 
 #include "components/importers/permissions.h"
@@ -43,11 +46,13 @@ class Import final : public Scene {
     const std::string path = file.resolved();
     if (file.empty()) fail("file", "a file is needed");
     const Ref<Importer> importer = importer_of(path);
-    if (!importer) fail("file", "'" + path + "' is of no format that is imported");
+    if (!importer)
+      fail("file", fmt::format("'{}' is of no format that is imported; files of these endings are: .{}", path,
+                               fmt::join(imported_extensions(), ", .")));
     ImportOptions options = import_permissions();
     options.time = time;
     Importing importing(path, options);
-    const Ref<Component> read = import_by(*importer, importing);
+    const Ref<Component> read = read_by(*importer, importing);
     if (options.strict && !importing.notes().empty()) throw Errors(importing.notes());
     for (const Error& note : importing.notes()) warn(note.what(), note.location);
     const Ref<Job> job = ref_cast<Job>(read);
@@ -71,7 +76,7 @@ class Import final : public Scene {
 
  private:
   /// What concerns the file as a whole, such as that there is none, is told where it is named.
-  Ref<Component> import_by(const Importer& importer, Importing& importing) const {
+  Ref<Component> read_by(const Importer& importer, Importing& importing) const {
     try {
       return imported(importer, importing);
     } catch (const Error& error) {

@@ -22,7 +22,7 @@ class NestedLuminaires::Finder {
         const double count = contents(*inner).count;
         if (count > 0) c.placings.push_back(object.get());
         c.count += count;
-      } else if (object->luminaire()) {
+      } else if (shines(*object)) {
         c.lights.push_back(object.get());
         ++c.count;
       }

@@ -8,6 +8,9 @@
 
 namespace etendue {
 
+/// Whether light comes from an object: it emits, and there is something of it.
+bool shines(const SceneObject&);
+
 /// One PlacedLuminaire for each place in which a luminaire of a nested scene stands, and a table that finds it for a hit.
 class NestedLuminaires {
  public:

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <unordered_set>
 
+#include "coincident_luminaires.h"
 #include "etendue/shader.h"
 #include "etendue/transport/medium_stack.h"
 #include "nested_luminaires.h"
@@ -97,6 +98,10 @@ const Scene* scene_within(const SceneObject& object) {
   return dynamic_cast<const Scene*>(&object);
 }
 
+bool shines(const SceneObject& object) {
+  return object.luminaire() && (object.delta() || object.infinite() || !object.bounds().empty());
+}
+
 void Scene::describe(Description<Scene>& d) {
   d.summary(
        "Objects, and a structure that finds what a ray meets. A scene is itself an object: scenes nest, and one that "
@@ -136,12 +141,14 @@ void Scene::prepare() {
   build(finite.seen);
   unseen_ = finite.unseen.empty() ? nullptr : ref_cast<Scene>(Registry::instance().create(structure_of_unseen));
   if (unseen_) unseen_->build(finite.unseen);
+  find_coincident();
 }
 
 // The structure knows where objects are, which stays.
 void Scene::prepare_again() {
   require_good_objects();
   survey();
+  find_coincident();
 }
 
 void Scene::require_good_objects() {
@@ -199,6 +206,25 @@ bool Scene::note_unseen(const SceneObject& object) {
   return !object.infinite();
 }
 
+void Scene::find_coincident() {
+  coincident_.reset();
+  careful_ = bool(unseen_);
+  coincident_ = CoincidentLuminaires::of(*this);
+  careful_ |= bool(coincident_);
+}
+
+bool Scene::nearest_with_care(const Ray& ray, Hit& hit) const {
+  if (!(unseen_ ? nearest_with_unseen(ray, hit) : find_nearest(ray, hit))) return false;
+  if (coincident_) coincident_->settle(*this, ray, hit);
+  return true;
+}
+
+void Scene::widen_coincident(const Hit& hit, SurfacePoint& point) const { coincident_->widen(*this, hit, point); }
+
+bool Scene::in_front_of_coincident(SurfacePoint& point, const Vector3& direction) const {
+  return coincident_->in_front(*this, point, direction);
+}
+
 bool Scene::nearest_with_unseen(const Ray& ray, Hit& hit) const {
   const bool found = find_nearest(ray, hit);
   if (ray.of_camera) return found;
@@ -241,6 +267,8 @@ Scene::Finite Scene::survey() {
     inner.luminaires_.clear();
     inner.infinite_.clear();
     inner.nested_.reset();
+    inner.coincident_.reset();
+    inner.careful_ = bool(inner.unseen_);
   });
   const std::shared_ptr<NestedLuminaires> nested = NestedLuminaires::of(*this);
   nested_ = nested;
@@ -252,7 +280,7 @@ Scene::Finite Scene::survey() {
     object->luminaire_index = -1;
     if (object->luminaire() && !object->infinite() && object->emission->only_at_infinity())
       object->fail("emission", "this emission is of light from infinity: it belongs on an Environment");
-    if (object->luminaire() && !inner) {
+    if (shines(*object) && !inner) {
       object->luminaire_index = int(luminaires_.size());
       luminaires_.push_back(object.get());
       if (object->infinite() && !object->delta()) infinite_.push_back(object.get());

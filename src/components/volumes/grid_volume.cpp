@@ -49,6 +49,10 @@ class GridVolume final : public ColoredVolume {
             "albedo_file", "",
             "a grid (.vol, .npy, or the first of a .nvdb), of the same place, that says instead how much of the extinction "
             "scatters: one channel, or RGB")
+        .member<&GridVolume::albedo_as>("albedo_as", "",
+                                        "what RGB albedos become; reflectance: the spectrum of a surface of that colour; "
+                                        "coefficient: one made as those of densities are, cut at 1",
+                                        choices("reflectance", "coefficient"), when("albedo_file"))
         .member<&GridVolume::color_space>("color_space", "", "primaries and white of RGB in grids", rgb_space_names());
   }
 
@@ -103,6 +107,7 @@ class GridVolume final : public ColoredVolume {
   VoxelFilter filter = VoxelFilter::trilinear;
   Beyond outside = Beyond::clamp;
   std::string color_space = "srgb";
+  enum class AlbedoUse { reflectance, coefficient } albedo_as = AlbedoUse::reflectance;
 
  private:
   Point3 in_grid(const Point3& p, float time) const {
@@ -122,7 +127,8 @@ class GridVolume final : public ColoredVolume {
     // Where there is no density the albedo does not matter.
     albedo_grid_.look_up(unit, filter, outside == Beyond::empty || outside == Beyond::cut ? Beyond::clamp : outside, v);
     if (albedo_grid_.channels == 1) return Spectrum(std::min(v[0], 1.0f));
-    return rgb_spectrum(*space_, v[0], v[1], v[2], ColorUse::reflectance, w);
+    if (albedo_as == AlbedoUse::reflectance) return rgb_spectrum(*space_, v[0], v[1], v[2], ColorUse::reflectance, w);
+    return map(rgb_spectrum(*space_, v[0], v[1], v[2], ColorUse::coefficient, w), [](float x) { return std::min(x, 1.0f); });
   }
 
   const RgbSpace* space_ = nullptr;

@@ -60,6 +60,12 @@ bool OperandShader::reciprocal() const {
 bool OperandShader::stochastic() const {
   return any([](const Shader& s) { return s.stochastic(); });
 }
+float OperandShader::albedo_error() const {
+  float largest = 0;
+  for (const Shader* shader : shaders_)
+    if (shader) largest = std::max(largest, shader->albedo_error());
+  return largest;
+}
 bool OperandShader::moves_exit() const {
   return any([](const Shader& s) { return s.moves_exit(); });
 }

@@ -1,6 +1,7 @@
 // SignedDistanceGrid: the surface where numbers given on a grid, and interpolated between, are 0.
 
 #include "components/objects/meshes/mesh_data.h"
+#include "components/volumes/volume_grid.h"
 #include "files/regular_file.h"
 #include "geometry/bernstein.h"
 #include "geometry/own_centre.h"
@@ -28,8 +29,8 @@ class SignedDistanceGrid final : public ImplicitObject {
         .group("Shape")
         .member<&SignedDistanceGrid::file>(
             "file", "",
-            "a NumPy array (.npy) of shape (nz, ny, nx); if given, 'resolution' and 'distances' are "
-            "not used",
+            "a NumPy array (.npy) of shape (nz, ny, nx), or a grid of Mitsuba (.vol) or NanoVDB (.nvdb), whose own box does "
+            "not count; if given, 'resolution' and 'distances' are not used",
             Effect::rebuild)
         .member<&SignedDistanceGrid::resolution>("resolution", "1", "how many distances there are along x, y and z",
                                                  Effect::rebuild, unless("file"))
@@ -197,6 +198,7 @@ class SignedDistanceGrid final : public ImplicitObject {
   void read_file() {
     const std::string path = file.resolved();
     try {
+      if (!path.ends_with(".npy")) return take_grid(read_volume_grid(path));
       const FileContents contents(path);
       const NumpyArray array = parse_numpy_header(contents.text());
       if (array.shape.size() != 3 || *std::min_element(array.shape.begin(), array.shape.end()) < 2)
@@ -209,6 +211,13 @@ class SignedDistanceGrid final : public ImplicitObject {
     } catch (const std::bad_alloc&) {
       fail("file", "'" + path + "': " + no_memory_to_read);
     }
+  }
+
+  void take_grid(VolumeGrid&& grid) {
+    if (grid.channels != 1) throw Error(fmt::format("it has {} numbers at each point, and one is needed", grid.channels));
+    for (size_t k = 0; k < 3; ++k) points_[k] = grid.size[k];
+    if (*std::ranges::min_element(grid.size) < 2) throw Error("at least 2 numbers are needed along each axis");
+    values_ = std::move(grid.values);
   }
 
   size_t point_index(int x, int y, int z) const {

@@ -5,9 +5,11 @@
 #include <map>
 
 #include "etendue/describe/component.h"
+#include "files/file_kind.h"
 #include "files/gzip.h"
 #include "files/regular_file.h"
 #include "files/text_encoding.h"
+#include "geometry/usable_triangles.h"
 #include "polygon_triangulation.h"
 
 namespace etendue {
@@ -56,8 +58,11 @@ MeshData read_mesh(const std::string& path, const std::string& part) {
     if (other != formats().end() && (!part.empty() || ending != "obj")) return other->second(path, part);
     if (!part.empty()) throw Error("files of this format have no parts");
     return read_whole(path, ending);
+  } catch (const NoTriangles& error) {
+    throw NoTriangles("'" + path + "': " + error.what());
   } catch (const Error& error) {
-    throw Error("'" + path + "': " + error.what());
+    const std::string mistaken = mistaken_contents(path);
+    throw Error("'" + path + "': " + (mistaken.empty() ? std::string(error.what()) : mistaken));
   } catch (const std::bad_alloc&) {
     throw Error("'" + path + "': " + no_memory_to_read);
   }
@@ -83,28 +88,6 @@ void smooth_normals(MeshData& mesh) {
   }
 }
 
-namespace {
-
-bool countable(const Point3& p) {
-  constexpr float largest = 1e18f;  // squares of coordinates must stay finite, and so does Embree require
-  return std::abs(p.x) < largest && std::abs(p.y) < largest && std::abs(p.z) < largest;  // false for NaN
-}
-
-/// Whether twice the area is below 1e-7 of the longest side's square: the height is lost in the rounding of the corners.
-bool without_height(const Point3& a, const Point3& b, const Point3& c) {
-  double e1[3], e2[3], longest = 0;
-  for (int k = 0; k < 3; ++k) {
-    e1[k] = double(b[k]) - double(a[k]);
-    e2[k] = double(c[k]) - double(a[k]);
-    longest = std::max({longest, std::abs(e1[k]), std::abs(e2[k])});
-  }
-  const double x = e1[1] * e2[2] - e1[2] * e2[1], y = e1[2] * e2[0] - e1[0] * e2[2], z = e1[0] * e2[1] - e1[1] * e2[0];
-  const double least = 1e-7 * longest * longest;
-  return !(x * x + y * y + z * z > least * least) || longest < 1e-18;
-}
-
-}  // namespace
-
 void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Point3> later, bool counted) {
   size_t kept = 0, not_finite = 0, without_area = 0;
   const size_t vertices = mesh.positions.size();
@@ -127,9 +110,9 @@ void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Poi
     mesh.triangles[kept++] = t;
   }
   if (kept == 0 && !mesh.triangles.empty())
-    throw Error(whose + ": none of its " + std::to_string(mesh.triangles.size()) + " triangles can be used (" +
-                std::to_string(not_finite) + " with coordinates that are not finite, " + std::to_string(without_area) +
-                " without area)");
+    throw NoTriangles(whose + ": none of its " + std::to_string(mesh.triangles.size()) + " triangles can be used (" +
+                      std::to_string(not_finite) + " with coordinates that are not finite, " + std::to_string(without_area) +
+                      " without area)");
   mesh.triangles.resize(kept);
   for (VertexAttribute& a : mesh.face_attributes) a.values.resize(kept * size_t(a.width));
   const auto tell = [&](size_t count, const char* which) {

@@ -6,6 +6,7 @@
 
 #include "geometry/own_centre.h"
 #include "geometry/triangle_test.h"
+#include "geometry/usable_triangles.h"
 #include "mesh_data.h"
 #include "obj_lines.h"
 #include "obj_vertices.h"
@@ -181,7 +182,7 @@ class FaceCutter {
 MeshData parse(std::string_view file, PolygonMesh* polygons) {
   const ObjCounts all = count(file);
   if (all.positions == 0) throw Error("it has no vertices");
-  if (all.faces == 0) throw Error("it has no faces");
+  if (all.faces == 0) throw NoTriangles("it has no faces");
   if (all.positions >= Vertices::none || all.uvs >= Vertices::none || all.normals >= Vertices::none)
     throw Error("more than 2^32 vertices");
   const bool plain = all.uvs == 0 && all.normals == 0 && !all.smoothed;
@@ -251,7 +252,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
       }
     }
   }
-  if (not_faces == all.faces) throw Error("it has no faces of three or more vertices");
+  if (not_faces == all.faces) throw NoTriangles("it has no faces of three or more vertices");
   if (polygons) {
     polygons->positions = std::move(mesh.positions);
     polygons->centre = mesh.centre;

@@ -5,6 +5,7 @@
 
 #include "etendue/core/error.h"
 #include "etendue/describe/color.h"
+#include "geometry/usable_triangles.h"
 #include "mesh_data.h"
 #include "obj_lines.h"
 
@@ -135,7 +136,7 @@ MeshData read_off(std::string_view file) {
     face_colors.read(lines, mesh, first);
   }
   face_colors.give(mesh);
-  if (mesh.triangles.empty()) throw Error("it has no faces");
+  if (mesh.triangles.empty()) throw NoTriangles("it has no faces");
   return mesh;
 }
 

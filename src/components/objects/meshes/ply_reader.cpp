@@ -6,6 +6,7 @@
 
 #include "etendue/core/error.h"
 #include "geometry/own_centre.h"
+#include "geometry/usable_triangles.h"
 #include "mesh_data.h"
 #include "ply_attributes.h"
 #include "polygon_mesh.h"
@@ -221,7 +222,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   }
   mesh.texture = header.texture;
   if (!vertices) throw Error("it has no vertices");
-  if (polygons ? polygons->face_sizes.empty() : mesh.triangles.empty()) throw Error("it has no faces");
+  if (polygons ? polygons->face_sizes.empty() : mesh.triangles.empty()) throw NoTriangles("it has no faces");
   return mesh;
 }
 

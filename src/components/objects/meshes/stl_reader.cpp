@@ -12,6 +12,7 @@
 
 #include "etendue/core/error.h"
 #include "etendue/describe/color.h"
+#include "geometry/usable_triangles.h"
 #include "mesh_data.h"
 #include "obj_lines.h"
 
@@ -180,7 +181,7 @@ MeshData read_stl(std::string_view file) {
   const bool solid = begin.starts_with("solid");
   const bool text = solid && file.size() != head + 4 + record * binary_count(file) && begin.find("facet") != std::string::npos;
   MeshData mesh = text || (solid && file.size() < head + 4) ? read_text(file) : read_binary(file);
-  if (mesh.triangles.empty()) throw Error("it has no triangles");
+  if (mesh.triangles.empty()) throw NoTriangles("it has no triangles");
   return mesh;
 }
 

@@ -3,6 +3,7 @@
 #include "etendue/describe/read_ahead.h"
 #include "geometry/own_centre.h"
 #include "geometry/triangle_test.h"
+#include "geometry/usable_triangles.h"
 #include "mesh_files.h"
 #include "triangle_object.h"
 
@@ -85,6 +86,37 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
   }
 
   void prepare() override {
+    try {
+      prepare_triangles();
+    } catch (const NoTriangles& nothing) {
+      if (file.empty()) throw;  // what a file holds is not what the scene's author wrote: of many meshes one may be flat
+      warn(std::string(nothing.what()) + ": it is left out", nothing.location);
+      auto none = std::make_shared<MeshData>();
+      make_shareable(*none);
+      attributes_.clear();
+      ahead_ = nullptr;
+      adopt(std::move(none));
+    }
+  }
+
+  int attribute(int number, const SurfacePoint& p, float* values) const override {
+    for (const Attribute& a : attributes_) {
+      if (a.number != number) continue;
+      if (a.of_faces) {
+        std::copy_n(a.values + size_t(p.primitive) * size_t(a.width), a.width, values);
+        return a.width;
+      }
+      const auto& t = corner_indices(p.primitive);
+      const size_t width = size_t(a.width);
+      const float *v0 = &a.values[t[0] * width], *v1 = &a.values[t[1] * width], *v2 = &a.values[t[2] * width];
+      for (size_t i = 0; i < width; ++i) values[i] = (1 - p.u - p.v) * v0[i] + p.u * v1[i] + p.v * v2[i];
+      return a.width;
+    }
+    return 0;
+  }
+
+ private:
+  void prepare_triangles() {
     std::shared_ptr<const MeshData> mesh;
     if (!file.empty()) {
       if (!positions.empty() || !triangles.empty() || !normals.empty() || !uvs.empty() || !colors.empty() ||
@@ -121,23 +153,15 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     adopt(std::move(mesh), std::move(motion));
   }
 
-  int attribute(int number, const SurfacePoint& p, float* values) const override {
-    for (const Attribute& a : attributes_) {
-      if (a.number != number) continue;
-      if (a.of_faces) {
-        std::copy_n(a.values + size_t(p.primitive) * size_t(a.width), a.width, values);
-        return a.width;
-      }
-      const auto& t = corner_indices(p.primitive);
-      const size_t width = size_t(a.width);
-      const float *v0 = &a.values[t[0] * width], *v1 = &a.values[t[1] * width], *v2 = &a.values[t[2] * width];
-      for (size_t i = 0; i < width; ++i) values[i] = (1 - p.u - p.v) * v0[i] + p.u * v1[i] + p.v * v2[i];
-      return a.width;
+  /// Fails in the same words as other errors.
+  [[noreturn]] void refuse(const char* member, const NoTriangles& nothing) const {
+    try {
+      fail(member, nothing.what());
+    } catch (const Error& located) {
+      throw NoTriangles(located.what(), located.location);
     }
-    return 0;
   }
 
- private:
   struct Attribute {
     int number;  // see attribute_number
     int width;
@@ -148,6 +172,8 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
   std::shared_ptr<const MeshData> from_file(const char* member, const FilePath& path, bool whole) const {
     try {
       return mesh_from_file(path.resolved(), part, whole);
+    } catch (const NoTriangles& nothing) {
+      refuse(member, nothing);
     } catch (const Error& error) {
       fail(member, error.what());
     }
@@ -159,8 +185,8 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     const std::string own_name = origin && !origin->name.empty() ? origin->name : "TriangleMesh";
     try {
       drop_unusable(mesh, file.empty() ? own_name : "'" + file.resolved() + "'", later);
-    } catch (const Error& error) {
-      fail(file.empty() ? "positions" : "file", error.what());
+    } catch (const NoTriangles& nothing) {
+      refuse(file.empty() ? "positions" : "file", nothing);
     }
   }
 

@@ -134,6 +134,8 @@ class AshikhminShirley final : public Shader {
     return arena.make<AshikhminShirleyScatter>(p, frame, Lobes(glossy_reflection | (base ? diffuse_reflection : 0)), matte,
                                                glossy, shape, *table_);
   }
+  /// Of the table.
+  float albedo_error() const override { return 0.05f; }
   Lobes possible_lobes() const override { return diffuse_reflection | glossy_reflection; }
 
   Ref<ObjectMap> color = constant(0.5f), specular = constant(0.05f), exponent_u = constant(10.0f),

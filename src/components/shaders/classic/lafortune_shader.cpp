@@ -208,6 +208,8 @@ class LafortuneShader final : public Shader {
     const Frame frame = isotropic_ ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
     return arena.make<LafortuneScatter>(p, frame, lobes, lobes_, diffuse * scale, colors);
   }
+  /// Of the tables.
+  float albedo_error() const override { return 0.02f; }
   Lobes possible_lobes() const override { return diffuse_reflection | glossy_reflection; }
 
   Ref<ObjectMap> color = constant(0.3f), rotation = constant(0.0f);

@@ -114,6 +114,8 @@ class OrenNayar final : public Shader {
     if (reflectance.black()) return nullptr;
     return arena.make<OrenNayarScatter>(p, reflectance, scalar_at(*roughness, p));
   }
+  /// Of the fit of the model's authors.
+  float albedo_error() const override { return 0.01f; }
   Lobes possible_lobes() const override { return diffuse_reflection; }
   bool lossless() const override {
     const Color same = color->constant();

@@ -110,6 +110,8 @@ class PhongShader final : public Shader {
     const Spectrum scale = Spectrum(1.0f) / max(diffuse + glossy, 1.0f);
     return arena.make<PhongScatter>(p, lobes, diffuse * scale, glossy * scale, exponent, grazing_albedo_);
   }
+  /// A straight line stands for a convex curve (PhongScatter).
+  float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return diffuse_reflection | glossy_reflection; }
 
   Ref<ObjectMap> color = constant(0.5f), specular = constant(0.3f);

@@ -225,6 +225,8 @@ class SchlickShader final : public Shader {
     if (base_color) base = Layer(reflectance_at(*base_color, p, w), scalar_at(*base_roughness, p), p2);
     return arena.make<SchlickScatter>(p, frame, top, base, *table_);
   }
+  /// Of the table.
+  float albedo_error() const override { return 0.05f; }
   Lobes possible_lobes() const override { return reflection_lobes; }
 
   Ref<ObjectMap> color = constant(0.5f), roughness = constant(0.3f), isotropy = constant(1.0f), base_color,

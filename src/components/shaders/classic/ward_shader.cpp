@@ -114,6 +114,8 @@ class WardShader final : public Shader {
     const Frame frame = slopes.ax == slopes.ay ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
     return arena.make<WardScatter>(p, frame, lobes, diffuse * scale, glossy * scale, slopes, *table_);
   }
+  /// Of the table.
+  float albedo_error() const override { return 0.05f; }
   Lobes possible_lobes() const override { return diffuse_reflection | glossy_reflection; }
 
   Ref<ObjectMap> color = constant(0.5f), specular = constant(0.3f), roughness_u = constant(0.1f), roughness_v = constant(0.3f),

@@ -86,6 +86,7 @@ class MaskShader final : public Shader {
   // As in a mixture: a walk beneath the surface comes out without asking how much surface is there.
   bool reciprocal() const override { return shader->reciprocal() && !(moves_exit() && !opacity->constant()); }
   bool stochastic() const override { return shader->stochastic(); }
+  float albedo_error() const override { return shader->albedo_error(); }
   bool moves_exit() const override { return shader->moves_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
                                             NumberStream& random, Arena& arena) const override {

@@ -131,6 +131,7 @@ class MixShader final : public Shader {
     return first->reciprocal() && second->reciprocal() && !(moves_exit() && !amount->constant());
   }
   bool stochastic() const override { return first->stochastic() || second->stochastic(); }
+  float albedo_error() const override { return std::max(first->albedo_error(), second->albedo_error()); }
   bool moves_exit() const override { return first->moves_exit() || second->moves_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
                                             NumberStream& random, Arena& arena) const override {

@@ -19,6 +19,8 @@ class PerturbedNormalShader : public Shader {
   /// By its own, turned, cosines it is, not by those of what it is part of.
   bool reciprocal() const override { return false; }
   bool stochastic() const override { return shader->stochastic(); }
+  /// What is lost to shadowing is not counted.
+  float albedo_error() const override { return shadowing ? 0.5f : shader->albedo_error(); }
   bool moves_exit() const override { return shader->moves_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
                                             NumberStream& random, Arena& arena) const override {

@@ -71,6 +71,7 @@ class TwoSidedShader final : public Shader {
   bool lossless() const override { return front->lossless() && back->lossless(); }
   bool reciprocal() const override { return front->reciprocal() && back->reciprocal(); }
   bool stochastic() const override { return front->stochastic() || back->stochastic(); }
+  float albedo_error() const override { return std::max(front->albedo_error(), back->albedo_error()); }
 
   Ref<Shader> front, back;
 };

@@ -220,6 +220,8 @@ class HairShader final : public Shader {
     if (!round) return scatter;
     return arena.make<WallScatter>(p, *scatter);
   }
+  /// Attenuation is taken for the middle of each lobe.
+  float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return WallScatter::all; }
   // Light that goes through a fibre is outside again: there is no inside to be in.
   bool transmits() const override { return false; }

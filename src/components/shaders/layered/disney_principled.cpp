@@ -8,6 +8,7 @@
 #include "disney_lobes.h"
 #include "etendue/core/warp.h"
 #include "etendue/transport/medium_stack.h"
+#include "principled_scatter.h"
 
 namespace etendue {
 namespace {
@@ -19,6 +20,37 @@ struct DisneyParts {
   bool opaque;  ///< no light goes through anywhere on the surface
   MicrofacetDistribution facets;
 };
+
+/// What becomes of the light that the added lobes would make or lose.
+enum class Energy : std::uint8_t { limited, kept };
+
+// The same material as layers that make no light and lose none (principled_scatter.cpp): what the shine reflects does not come
+// to the body, light that facets scatter more than once is added, and whatever meets the body from within the glass is
+// scattered there.
+PrincipledLayers layers_of(const DisneyParts& d) {
+  constexpr float rough = 1.01f * MicrofacetDistribution::smooth_below, highest_ratio = 4;
+  PrincipledLayers l;
+  l.facets = d.facets;
+  l.facets.alpha_x = std::max(l.facets.alpha_x, rough);
+  l.facets.alpha_y = std::max(l.facets.alpha_y, rough);
+  l.metal = d.metallic;
+  l.clear = d.glass;
+  l.opaque = std::max(1 - l.metal - l.clear, 0.0f);
+  l.metal_normal = l.diffuse_color = d.color;
+  l.specular_color = clamp(disney::mix(d.spec_tint, Spectrum(1.0f), d.tint), 0, 1);
+  l.transmission_color = map(d.color, [](float c) { return std::sqrt(c); });
+  const float eta = clamp(d.eta, 1 / highest_ratio, highest_ratio);
+  l.eta = Spectrum(eta);
+  l.reflect_eta = Spectrum(std::max(eta, 1 / eta));
+  l.fuzz = d.sheen * (1 - d.metallic);
+  l.fuzz_color = clamp(disney::mix(d.sheen_tint, Spectrum(1.0f), d.tint), 0, 1);
+  if (d.clearcoat > 0) {
+    l.coat = 0.25f * d.clearcoat;  // Burley 2012, section 5.6
+    l.coat_facets = {MicrofacetDistribution::ggx, std::max(d.coat_alpha, rough)};
+    l.coat_eta = 1.5f;
+  }
+  return l;
+}
 
 // With h the half-vector, u its cosine with either direction and D, G1 those of GGX:
 //   f = body color diffuse / pi + sheen (1 - metallic) (1 - u)^5 tint
@@ -235,8 +267,7 @@ class DisneyPrincipled final : public Shader {
   static void describe(Description<DisneyPrincipled>& d) {
     d.summary(
          "The principled material of Disney, as Mitsuba's `principled` has it, to reproduce pictures made with that. "
-         "Principled is "
-         "the newer model. Where its parts together would send away more light than arrives they are scaled down.",
+         "Principled is the newer model.",
          "Burley 2012, Physically based shading at Disney; Burley 2015, Extending the Disney BRDF to a BSDF with integrated "
          "subsurface scattering")
         .group("Base")
@@ -254,7 +285,14 @@ class DisneyPrincipled final : public Shader {
         .member<&DisneyPrincipled::spec_tint>("spec_tint", "1", "how much the shine of what is no metal has the base's colour",
                                               Meaning::number, soft(0, 1))
         .member<&DisneyPrincipled::flatness>("flatness", "1", "how much of the diffuse part looks like subsurface scattering",
-                                             Meaning::number, soft(0, 1))
+                                             Meaning::number, soft(0, 1), when("energy", "limited"))
+        .member<&DisneyPrincipled::energy>(
+            "energy", "",
+            "limited: the parts are added as Disney has them, scaled down where together they would send away more light than "
+            "arrives, and what they lose is lost; kept: they are layers as those of Principled, of which a white one returns "
+            "all "
+            "light",
+            choices("limited", "kept"))
         .group("Upper layers")
         .member<&DisneyPrincipled::sheen>("sheen", "1", "as of cloth, at grazing angles", Meaning::number, soft(0, 1))
         .member<&DisneyPrincipled::sheen_tint>("sheen_tint", "1", "how much it has the base's colour", Meaning::number,
@@ -298,8 +336,12 @@ class DisneyPrincipled final : public Shader {
     if (d.spec_tint > 0 || (d.sheen > 0 && d.sheen_tint > 0)) d.tint = disney::tint_of(*base_color, d.color, p);
     const float stretch = scalar_at(*anisotropic, p);
     d.facets = disney::facets(d.roughness, stretch);
+    if (energy == Energy::kept)
+      return arena.make<PrincipledScatter>(p, stretch > 0 ? tangent_frame(p) : Frame(p.shading_normal), layers_of(d));
     return arena.make<DisneyScatter>(p, stretch > 0 ? tangent_frame(p) : Frame(p.shading_normal), d);
   }
+  /// Shares are the middle between bounds, and what keeps the sum below 1 is taken for `out` alone.
+  float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override {
     return Lobes(diffuse_reflection | glossy_reflection | (everywhere(spec_trans, 0) ? 0 : glossy_transmission));
   }
@@ -310,6 +352,7 @@ class DisneyPrincipled final : public Shader {
                  sheen = constant(0.0f), sheen_tint = constant(0.0f), clearcoat = constant(0.0f),
                  clearcoat_gloss = constant(0.0f);
   float ior = 1.5f;
+  Energy energy = Energy::limited;
 
  private:
   bool opaque_ = true;

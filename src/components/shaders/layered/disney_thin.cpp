@@ -200,6 +200,8 @@ class DisneyThin final : public Shader {
     d.behind = disney::facets((0.65f * d.eta - 0.35f) * d.roughness, stretch);
     return arena.make<SheetScatter>(p, stretch > 0 ? tangent_frame(p) : Frame(p.shading_normal), d);
   }
+  /// Shares are bounds, and what keeps the sum below 1 is taken for `out` alone.
+  float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override {
     return Lobes(diffuse_reflection | (everywhere(diff_trans, 0) ? 0 : diffuse_transmission) |
                  (everywhere(spec_trans, 0) ? 0 : glossy_reflection | glossy_transmission));

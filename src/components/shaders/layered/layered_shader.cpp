@@ -88,6 +88,8 @@ class LayeredShader final : public Shader {
     return arena.make<LayeredScatter>(point, stacks[0], stacks[1], count, walks, seed.bits(), lobes);
   }
 
+  /// Of light that goes to and fro between the layers only the directions of the first ways are known.
+  float albedo_error() const override { return 0.5f; }
   Lobes possible_lobes() const override {
     const Lobes above = top->possible_lobes(), below = bottom->possible_lobes();
     // What may be diffuse somewhere may be glossy elsewhere.

@@ -56,6 +56,8 @@ class Principled final : public Shader {
         p, turned ? tangent_frame(p, geometry_tangent_rotation->scalar(p)) : Frame(p.shading_normal), layers);
   }
 
+  /// What the layers above let through is taken for `out` alone, and for facets in the mean.
+  float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return possible_lobes_; }
   Spectrum interior_index(const Wavelengths& w) const override {
     return refracts_ ? index_at(inside_index_, w) : Spectrum(1.0f);

@@ -146,6 +146,8 @@ class SheenShader final : public Shader {
     return arena.make<CoveredScatter>(p, *sheen, lobe, covered, *below, base->stochastic());
   }
 
+  /// Of the base, what fibres let through is taken for `out` alone.
+  float albedo_error() const override { return base ? std::max(0.3f, base->albedo_error()) : 0.02f; }
   Lobes possible_lobes() const override { return Lobes(glossy_reflection | (base ? base->possible_lobes() : no_lobes)); }
   Spectrum interior_index(const Wavelengths& w) const override { return base ? base->interior_index(w) : Spectrum(1.0f); }
   bool transmits() const override { return base && base->transmits(); }

@@ -169,6 +169,8 @@ class MerlShader final : public Shader {
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     return arena.make<MerlScatter>(p, *data_, *space_, w);
   }
+  /// Of the table, which is finer than the measurement but at grazing angles.
+  float albedo_error() const override { return 0.2f; }
   Lobes possible_lobes() const override { return glossy_reflection; }
 
   FilePath file;

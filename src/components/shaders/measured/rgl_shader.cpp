@@ -100,6 +100,8 @@ class RglShader final : public Shader {
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     return arena.make<RglScatter>(p, data_->isotropic() ? Frame(p.shading_normal) : tangent_frame(p), *data_, w, symmetric);
   }
+  /// Of the table, from 64 directions for each that was measured.
+  float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return glossy_reflection; }
   /// As measured, f is reciprocal up to noise only.
   bool reciprocal() const override { return symmetric; }

@@ -203,6 +203,8 @@ class Conductor final : public Shader {
     const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
     return arena.make<RoughConductor>(p, frame, d, boundary, tint, multiple_scattering);
   }
+  /// Rough, reflectance is taken at one angle for all facets, and a table is looked up.
+  float albedo_error() const override { return possible_lobes() == specular_reflection ? 0 : 0.1f; }
   Lobes possible_lobes() const override {
     const Color x = roughness->constant(), y = roughness_v ? roughness_v->constant() : x;
     if (!x || !y) return glossy_reflection | specular_reflection;

@@ -165,6 +165,8 @@ class Dielectric final : public Shader {
     const bool varies = eta.minimum() != eta.maximum();
     return arena.make<DielectricScatter>(p, eta, varies, varies && !w.single(), tint);
   }
+  /// Rough, tables are looked up; of facets that are not alike in all directions, in the mean of two.
+  float albedo_error() const override { return !(lobes_ & glossy_lobes) ? 0 : roughness_v ? 0.15f : 0.05f; }
   Lobes possible_lobes() const override { return lobes_; }
   Spectrum interior_index(const Wavelengths& w) const override { return ior->evaluate(w, ColorUse::coefficient); }
   /// Rough, it loses up to a hundredth at some angles: tables are as exact as that.

@@ -195,6 +195,8 @@ class LossyPlastic final : public Shader {
     return arena.make<LossyPlasticScatter>(p, *coat_, reflectance_at(*color, p, w), reflectance_at(*reflection_tint, p, w),
                                            nonlinear);
   }
+  /// Of the table.
+  float albedo_error() const override { return 0.02f; }
   Lobes possible_lobes() const override {
     return Lobes(diffuse_reflection |
                  (MicrofacetDistribution(distribution, roughness).smooth() ? specular_reflection : glossy_reflection));

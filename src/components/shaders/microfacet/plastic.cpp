@@ -147,6 +147,8 @@ class Plastic final : public Shader {
     const MicrofacetDistribution d = distribution_at(distribution, *roughness, nullptr, p);
     return arena.make<PlasticScatter>(p, d, Coat(eta, d), reflectance_at(*color, p, w), nonlinear);
   }
+  /// Of the table.
+  float albedo_error() const override { return everywhere(roughness, 0) ? 0 : 0.02f; }
   Lobes possible_lobes() const override {
     return Lobes(diffuse_reflection | specular_reflection | (everywhere(roughness, 0) ? 0 : glossy_reflection));
   }

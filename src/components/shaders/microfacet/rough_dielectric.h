@@ -105,22 +105,22 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
   // What is reflected once, and what is lost to more than one facet, stand in tables for isotropic distributions. Of others
   // it is taken for a mean of that of the alphas along and across `out`.
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    const float eta = towards(out, eta_[0]), s2 = out.x * out.x + out.y * out.y, x2 = s2 > 0 ? out.x * out.x / s2 : 1;
-    float missing = 0, reflected = 0;
-    const auto add = [&](float weight, float along_x) {
-      const float alpha = std::sqrt(lerp(along_x, square(distribution_.alpha_y), square(distribution_.alpha_x)));
-      const MicrofacetDistribution d(distribution_.kind, alpha);
-      missing += weight * MultipleRefraction(d, eta_[0]).missing(out);
-      reflected += weight * (1 - CoatTransmittance(d, eta)(out));
-    };
-    const float along = distribution_.isotropic() ? 1 : 0.5f + 0.2f * s2;
-    add(along, x2);
-    if (along < 1) add(1 - along, 1 - x2);
-    const float back = multiple_ ? missing * (1 - multiple_refraction_.transmitted_share(out)) : 0;
+    Spectrum reflected, refracted;
+    float missing = 0;
+    for (int i = 0; i < (varies_ ? spectrum_size : 1); ++i) {
+      const Once once = scattered_once(out, eta_[i]);
+      reflected.set(i, once.reflected);
+      refracted.set(i, std::max(1 - once.missing - once.reflected, 0.0f));
+      if (i == 0 && multiple_) missing = once.missing;
+    }
+    if (!varies_) {
+      reflected = Spectrum(reflected[0]);
+      refracted = Spectrum(refracted[0]);
+    }
+    const float through = missing > 0 ? missing * multiple_refraction_.transmitted_share(out) : 0;
     Spectrum sum;
-    if (which & glossy_reflection) sum += tint_.reflected * (reflected + back);
-    if (which & glossy_transmission)
-      sum += tint_.transmitted * std::max(1 - (multiple_ ? 0 : missing) - reflected - back, 0.0f);
+    if (which & glossy_reflection) sum += tint_.reflected * (reflected + Spectrum(missing - through));
+    if (which & glossy_transmission) sum += tint_.transmitted * (refracted + side_factor(out, -out) * through);
     return sum;
   }
   Spectrum relative_index(const Vector3& out, const Vector3& in) const override {
@@ -129,6 +129,46 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
   }
 
  private:
+  /// Of light from all sides, what leaves towards `out` by one facet's reflection, and what leaves by more than one facet.
+  struct Once {
+    float reflected = 0, missing = 0;
+  };
+  Once scattered_once(const Vector3& out, float eta) const {
+    const float s2 = out.x * out.x + out.y * out.y, x2 = s2 > 0 ? out.x * out.x / s2 : 1;
+    Once once;
+    if (!(eta > 0.25f && eta < 4)) return beyond_tables(out, towards(out, eta));
+    const auto add = [&](float weight, float along_x) {
+      const float alpha = std::sqrt(lerp(along_x, square(distribution_.alpha_y), square(distribution_.alpha_x)));
+      const MicrofacetDistribution d(distribution_.kind, alpha);
+      once.missing += weight * MultipleRefraction(d, eta).missing(out);
+      once.reflected += weight * (1 - CoatTransmittance(d, towards(out, eta))(out));
+    };
+    const float along = distribution_.isotropic() ? 1 : 0.5f + 0.2f * s2;
+    add(along, x2);
+    if (along < 1) add(1 - along, 1 - x2);
+    return once;
+  }
+
+  /// The same for indices that are in no table: the mean weight of samples, 8 x 8 of them.
+  Once beyond_tables(const Vector3& out, float eta) const {
+    constexpr int side = 8;
+    float reflected = 0, refracted = 0;
+    for (int i = 0; i < side * side; ++i) {
+      const Vector3 m = distribution_.sample_visible(out, {(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side});
+      const float out_m = std::abs(dot(out, m)), facets = distribution_.D(m) / distribution_.visible_density(out, m);
+      float cosine_behind = 0;
+      const float fresnel = fresnel_dielectric(out_m, eta, cosine_behind);
+      const Vector3 back = reflect(out, m), on = refract(out, m, eta, cosine_behind);
+      if (back.z * out.z > 0)
+        reflected += fresnel * facets * distribution_.visibility(out, back) * std::abs(back.z) / reflection_jacobian(out_m);
+      if (fresnel < 1 && on.z * out.z < 0)
+        refracted += (1 - fresnel) * facets * distribution_.G2_through(out, on) * out_m / std::abs(out.z);
+    }
+    reflected /= side * side;
+    refracted /= side * side;
+    return {reflected, std::max(1 - reflected - refracted, 0.0f)};
+  }
+
   /// Index behind the boundary over index in front, seen from `out`.
   static float towards(const Vector3& out, float eta) { return out.z > 0 ? eta : 1 / eta; }
 
