@@ -46,9 +46,8 @@ void advise(const Job& job) {
 
 std::vector<std::string> renderers_that_find_all(const SceneTraits& traits) {
   std::vector<std::string> names;
-  const ClassInfo* interface = Registry::instance().find("Renderer");
-  for (const ClassInfo* info : Registry::instance().subclasses(*interface))
-    if (info != interface && ref_cast<Renderer>(create(*info))->misses(traits).empty()) names.push_back(info->name);
+  for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Renderer")))
+    if (ref_cast<Renderer>(create(*info))->misses(traits).empty()) names.push_back(info->name);
   return names;
 }
 

@@ -133,6 +133,7 @@ class Objects {
             object.location_of("transform"));
       return;
     }
+    lost_light_.look(object, list_);
     const bool enters = is_enterable(object, shader);
     blackness(object, shader);
     if (!shader) without_effect(object, {"sides"}, "it has no shader, so both sides are black");
@@ -260,6 +261,7 @@ class Objects {
 
   const Job& job_;
   std::vector<SceneWarning>& list_;
+  LostLight lost_light_;
   std::set<std::pair<const Scene*, const Shader*>> seen_;
   std::set<const Scene*> nested_;        // among objects
   std::vector<const Scene*> instanced_;  // in instances

@@ -12,6 +12,7 @@
 #include "components/importers/permissions.h"
 #include "etendue/language/language.h"
 #include "etendue/render/job.h"
+#include "files/gzip.h"
 
 namespace etendue {
 
@@ -93,10 +94,13 @@ Ref<Job> SceneOptions::load() const {
 ImportedJob SceneOptions::load_imported() const {
   const LoadOptions options = load_options();
   const Ref<Importer> importer = importer_of(file);
-  if (!importer)
-    throw Error(
-        fmt::format("files of this ending are not imported; those that are: {}", fmt::join(imported_extensions(), ", ")),
-        {intern(file), 0, 0});
+  if (!importer) {
+    const std::string ending = ending_of_contents(file);
+    throw Error(fmt::format("{} are not imported; these are: .{}",
+                            ending.empty() ? "files without an ending" : "files ending in ." + ending,
+                            fmt::join(imported_extensions(), ", .")),
+                {intern(file), 0, 0});
+  }
   ImportedJob imported = import_job(*importer, file, options);
   apply_sets(*imported.job);
   return imported;

@@ -57,7 +57,7 @@ int run(const std::string& path, std::vector<std::string> folders) {
   if (!scene || !scene->mRootNode) {
     const std::string said = clean(importer.GetErrorString());
     if (said.find("bad_alloc") != std::string::npos) throw std::bad_alloc();  // the library catches it
-    if (said.find("mNumMeshes is 0") != std::string::npos)
+    if (said.find("mNumMeshes is 0") != std::string::npos || said.find("File came out empty") != std::string::npos)
       throw std::runtime_error("Assimp finds nothing in it that can be seen");
     std::fprintf(stderr, "%s\n", said.c_str());
     return 1;

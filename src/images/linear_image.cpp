@@ -4,6 +4,7 @@
 
 #include "etendue/core/error.h"
 #include "etendue/describe/color.h"
+#include "files/file_kind.h"
 #include "files/regular_file.h"
 #include "image_library.h"
 
@@ -16,7 +17,8 @@ auto reading(const std::string& path, Use use) {
   try {
     return use(image_library());
   } catch (const Error& e) {
-    throw Error("cannot read '" + path + "': " + e.what());
+    const std::string mistaken = mistaken_contents(path);
+    throw Error("cannot read '" + path + "': " + (mistaken.empty() ? std::string(e.what()) : mistaken));
   } catch (const std::bad_alloc&) {
     throw Error("cannot read '" + path + "': " + no_memory_to_read);
   }

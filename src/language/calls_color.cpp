@@ -97,6 +97,17 @@ Value complex(const Arguments& a) {
   return Value(complex_index(part(0), part(1)));
 }
 
+Value read_as(const Arguments& a) {
+  if (a.count() != 2) a.wrong_count();
+  const auto* color = a.as<Color>(1);
+  if (!color) a.wrong(1, "a colour");
+  try {
+    return Value(used_spectrum(a.string(0), *color));
+  } catch (const Error& e) {
+    a.fail(0, e.what());
+  }
+}
+
 constexpr Function functions[] = {
     {"rgb", "rgb(red, green, blue) or rgb(\"space\", red, green, blue)", rgb},
     {"srgb", "srgb(red, green, blue) or srgb(\"#rrggbb\")", srgb},
@@ -107,6 +118,7 @@ constexpr Function functions[] = {
     {"glass", "glass(\"name\")", [](const Arguments& a) { return named(a, glass_index); }},
     {"metal", "metal(\"name\")", [](const Arguments& a) { return named(a, metal_index); }},
     {"complex", "complex(n, k)", complex},
+    {"read_as", "read_as(\"use\", color)", read_as},
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "files/no_description.h"
 #include "json.h"
 
 namespace etendue::language {
@@ -72,6 +73,13 @@ bool Loader::load(const std::string& path, Location named_at, Space& space, bool
     source = {intern(path), std::filesystem::path(path).parent_path().string(), read_text_file(path, named_at)};
   } catch (const Error& e) {
     diagnostics_.add(e);
+    whole_ = false;
+    return false;
+  }
+  const std::string wrong = why_no_description(path, source.text, main_ == intern(path) && active_.empty(),
+                                               other_files_ ? other_files_->endings() : std::vector<std::string>());
+  if (!wrong.empty()) {
+    diagnostics_.add(Error(wrong, named_at));
     whole_ = false;
     return false;
   }

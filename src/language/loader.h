@@ -32,6 +32,8 @@ class OtherFile {
 /// How they are read; both throw nothing but Error and Errors.
 struct OtherFiles {
   bool (*are_read)(const std::string& path) = nullptr;
+  /// What the names of those that are read end in, without dots.
+  std::vector<std::string> (*endings)() = nullptr;
   /// With values for its parameters.
   std::unique_ptr<OtherFile> (*read)(const std::string& path, const ImportOptions&,
                                      const std::vector<std::pair<std::string, std::string>>& parameters) = nullptr;

@@ -216,7 +216,21 @@ std::optional<Value> Evaluator::name(Node& node, const Context& context) {
   const Member* member = context.member;
   const bool choice = member && member->kind == Kind::choice;
   if (choice && std::find(member->choices.begin(), member->choices.end(), text) != member->choices.end()) {
-    if (const Entry* entry = find(text))
+    // A definition that might be a choice of the member, too, may have been meant, and so may a number, by who takes the member
+    // for a switch; a part, a list or a colour was not. By how it is written, as nothing is evaluated for a warning.
+    const auto may_be_meant = [&](const auto& again, const Entry& entry, int depth) -> bool {
+      const auto fits = [&](const auto& self, const Node& value) -> bool {
+        if (value.type == NodeType::number || value.type == NodeType::boolean) return true;
+        if (value.type == NodeType::string) return std::ranges::count(member->choices, value.text) > 0;
+        if (value.type == NodeType::conditional) return self(self, value.children[1]) || self(self, value.children[2]);
+        constexpr int deepest = 8;  // names that stand for names
+        if (value.type != NodeType::name || depth == deepest) return false;
+        const Entry* other = find(value.text);
+        return other ? again(again, *other, depth + 1) : std::ranges::count(member->choices, value.text) > 0;
+      };
+      return !entry.definition.function && fits(fits, entry.definition.value);
+    };
+    if (const Entry* entry = find(text); entry && may_be_meant(may_be_meant, *entry, 0))
       warn(fmt::format("'{0}' is the choice here, not the '{0}' defined at {1}", text,
                        place(entry->definition.name.at, node.at)),
            node.at);

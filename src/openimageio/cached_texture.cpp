@@ -100,6 +100,7 @@ std::shared_ptr<const CachedTexture> CachedTexture::open(const std::string& path
 
 void CachedTexture::read_header(const OIIO::ImageSpec& spec) {
   channels_ = spec.nchannels;
+  from_cube_ = spec.get_int_attribute(made_of_cube) != 0;
   left_ = spec.full_x;
   top_ = spec.full_y;
   begin_x_ = spec.x - left_;

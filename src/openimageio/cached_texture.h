@@ -24,6 +24,7 @@ class CachedTexture final : public ImageTexture {
                                                    const std::string& channel);
 
   int channels() const override { return channels_; }
+  bool from_cube() const override { return from_cube_; }
   float largest() const override { return largest_; }
   void nearest(Point2 at, Wraps, float* out) const override;
   void bilinear(Point2 at, Wraps, float* out) const override;
@@ -54,6 +55,7 @@ class CachedTexture final : public ImageTexture {
   bool kept_whole_ = false;           // kept, and there is a pixel for each place of the display window
   OIIO::ImageCache::ImageHandle* handle_ = nullptr;
   int channels_ = 3;
+  bool from_cube_ = false;
   float largest_ = 0;
   int left_ = 0, top_ = 0;           // of the display window, in the file's pixels
   int begin_x_ = 0, begin_y_ = 0;    // of the pixels that are there, in the display window

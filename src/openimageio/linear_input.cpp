@@ -152,6 +152,7 @@ class LinearInput final : public OIIO::ImageInput {
     m_spec.x = m_spec.y = m_spec.full_x = m_spec.full_y = 0;
     m_spec.width = m_spec.full_width = cube_->width();
     m_spec.height = m_spec.full_height = cube_->height();
+    m_spec.attribute(made_of_cube, 1);
     return true;
   }
 

@@ -9,6 +9,9 @@ namespace etendue {
 
 struct LinearImage;
 
+/// The attribute of what is made of a cube of surroundings.
+inline constexpr const char* made_of_cube = "etendue:cube";
+
 /// An image reader for OpenImageIO's caches, which gives a file's numbers decoded. It opens files by a key that tells the
 /// path, the transfer function, the channel and when the file was last changed.
 OIIO::ImageInput* make_linear_input();

@@ -46,5 +46,22 @@ TEST(GltfImages, WebpComesBeforeWhatStandsBesideIt) {
   EXPECT_EQ(told, "");
 }
 
+// gltfpack writes a scale of 0 where all surface coordinates lie in one line.
+TEST(GltfImages, OneRowOfAnImage) {
+  const TemporaryFolder folder;
+  Square square = textured("EXT_texture_webp");
+  square.material()["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0.25, 0.5}}, {"scale", {3, 0}}};
+  std::string told;
+  const Component& map = part(square.shader(folder, told), "base_color");
+  ASSERT_EQ(map.class_info().name, "UvTransformMap");
+  const Value value = get(map, "scale");
+  const std::vector<double> scale = value.as<Numbers>()->values;
+  EXPECT_EQ(scale.at(0), 3);
+  EXPECT_GT(scale.at(1), 0);
+  EXPECT_LT(scale.at(1), 1e-5);
+  EXPECT_NO_THROW(const_cast<Component&>(map).prepare());
+}
+
 }  // namespace
 }  // namespace etendue

@@ -122,7 +122,7 @@ TEST(PbrtExport, Materials) {
   expect_same(ball("Conductor { ior: complex(1.5, 2), roughness: 0.3, roughness_v: 0.1, multiple_scattering: false }"));
   expect_same(ball("Dielectric { ior: 1.4, multiple_scattering: false }"));
   expect_same(ball("Dielectric { ior: 1.6, exterior: 1.2, multiple_scattering: false }"));
-  expect_same(ball("ThinDielectric { ior: 1.7 }"));
+  expect_same(ball("ThinDielectric { ior: 1.7, polarizations: averaged }"));
   expect_same(ball("DiffuseTransmitter { reflectance: rgb(0.1, 0.4, 0.2), transmittance: 0.3 }"));
   expect_same(ball("MixShader { first: Lambertian { color: 0.1 }, second: Lambertian { color: 0.9 }, amount: 0.25 }"));
   expect_same(

@@ -46,25 +46,36 @@ TEST_F(UsdSkins, StatedNormalsAreBentWithTheSurface) {
   const std::string rigid =
       "int[] primvars:skel:jointIndices = [0, 1] (\nelementSize = 2\ninterpolation = \"constant\"\n)\nfloat[] "
       "primvars:skel:jointWeights = [1, 0] (\nelementSize = 2\ninterpolation = \"constant\"\n)\n";
+  // All in one file, each with a skeleton and an animation of its own.
+  std::string text = y_up;
+  std::vector<std::string> rows;
   for (const auto& [how, count] : {std::pair{"vertex", 4}, {"varying", 4}, {"faceVarying", 4}, {"uniform", 1}, {"constant", 1}})
     for (const char* name : {"normals", "primvars:normals"})
       for (const char* method : {"classicLinear", "dualQuaternion"})
         for (const std::string& influences : {std::string(), rigid}) {
-          // A rigid skin and the other method once are enough.
+          // Rigid skins and the other method with one kind are enough.
           if ((!influences.empty() || method[0] == 'd') && std::string(how) != "vertex") continue;
-          const std::string what = std::string(how) + " " + name + " " + method + (influences.empty() ? "" : " rigid");
-          const Ref<Scene> s =
-              scene(y_up + skinned(std::string("normal3f[] ") + name + " = [" + list("(0.6, 0, 0.8)", count) +
-                                       "] (interpolation = \"" + how + "\")\n",
-                                   bind + "uniform token primvars:skel:skinningMethod = \"" + method + "\"\n", influences));
-          ASSERT_TRUE(s) << error_ << " " << what;
-          EXPECT_TRUE(notes_.empty()) << what << ": " << notes_[0];
-          const MeshData mesh = mesh_of(*s->objects.at(0));
-          expect_normals(mesh, {0.8f, 0, -0.3f}, what);
-          Bounds3 box;
-          for (const Point3& p : mesh.positions) box.add(p);
-          EXPECT_NEAR(box.low.z, -2, 1e-4) << what;
+          std::string one = skinned(std::string("normal3f[] ") + name + " = [" + list("(0.6, 0, 0.8)", count) +
+                                        "] (interpolation = \"" + how + "\")\n",
+                                    bind + "uniform token primvars:skel:skinningMethod = \"" + method + "\"\n", influences);
+          const std::string root = "r" + std::to_string(rows.size());
+          one.replace(one.find("\"r\""), 3, "\"" + root + "\"");
+          for (size_t at = 0; (at = one.find("</r/", at)) != std::string::npos; at += root.size())
+            one.replace(at, 4, "</" + root + "/");
+          text += one;
+          rows.push_back(std::string(how) + " " + name + " " + method + (influences.empty() ? "" : " rigid"));
         }
+  const Ref<Scene> s = scene(text);
+  ASSERT_TRUE(s) << error_;
+  EXPECT_TRUE(notes_.empty()) << notes_[0];
+  ASSERT_EQ(s->objects.size(), rows.size());
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const MeshData mesh = mesh_of(*s->objects[i]);
+    expect_normals(mesh, {0.8f, 0, -0.3f}, rows[i]);
+    Bounds3 box;
+    for (const Point3& p : mesh.positions) box.add(p);
+    EXPECT_NEAR(box.low.z, -2, 1e-4) << rows[i];
+  }
 }
 
 // Half of an offset is added to a normal before it is bent. Of a shape that states none the normal leans as the surface does,

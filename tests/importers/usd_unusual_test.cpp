@@ -16,23 +16,24 @@ TEST_F(UsdUnusual, LayersThatCannotBeReadAreLeftOut) {
   folder_.write("m.mtlx", "<?xml version=\"1.0\"?><materialx version=\"1.38\"></materialx>");
   folder_.write("x.abc", "none");
   folder_.write("broken.usda", "#usda 1.0\ndef Sphere {\n");
-  for (const auto& [name, words] :
-       {std::pair{"m.mtlx", "MaterialX"}, {"x.abc", "no USD file"}, {"broken.usda", "cannot be read"}}) {
-    const std::string layer = std::string("@") + name + "@";
-    for (const std::string& text :
-         {"def Scope \"n\" ( references = " + layer + "</M> ) {\n}\n", "def Scope \"n\" ( payload = " + layer + "</M> ) {\n}\n",
-          "def Scope \"n\" (\nvariants = { string v = \"a\" }\nprepend variantSets = \"v\"\n) {\nvariantSet \"v\" = {\n\"a\" ( "
-          "prepend references = " +
-              layer + "</M> ) {\n}\n}\n}\n"}) {
-      const Ref<Scene> s = scene(y_up + "def Sphere \"s\" {\n}\n" + text);
-      ASSERT_TRUE(s) << error_ << text;
-      EXPECT_EQ(s->objects.size(), 1u);
-      EXPECT_TRUE(told(words)) << (notes_.empty() ? "nothing was told" : notes_[0]) << text;
-      EXPECT_EQ(notes_.size(), 1u) << text << notes_.back();
-    }
-    ASSERT_TRUE(scene("#usda 1.0\n( upAxis = \"Y\"\nsubLayers = [" + layer + "] )\ndef Sphere \"s\" {\n}\n")) << error_;
-    EXPECT_TRUE(told(words));
+  // As sublayers, references, payloads, and in a variant that is chosen and one that is not; what is chosen would be told again
+  // by whoever puts the stage together.
+  std::string sublayers, rest;
+  for (const std::string name : {"m.mtlx", "x.abc", "broken.usda"}) {
+    const std::string layer = "@" + name + "@", prim = std::string(1, name[0]);
+    sublayers += (sublayers.empty() ? "" : ", ") + layer;
+    rest += "def Scope \"" + prim + "1\" ( references = " + layer + "</M> ) {\n}\ndef Scope \"" + prim +
+            "2\" ( payload = " + layer + "</M> ) {\n}\ndef Scope \"" + prim +
+            "3\" (\nvariants = { string v = \"a\" }\nprepend variantSets = \"v\"\n) {\nvariantSet \"v\" = {\n\"a\" ( prepend "
+            "references = " +
+            layer + "</M> ) {\n}\n\"b\" ( prepend references = " + layer + "</N> ) {\n}\n}\n}\n";
   }
+  const Ref<Scene> s = scene("#usda 1.0\n( upAxis = \"Y\"\nsubLayers = [" + sublayers + "] )\ndef Sphere \"s\" {\n}\n" + rest);
+  ASSERT_TRUE(s) << error_;
+  EXPECT_EQ(s->objects.size(), 1u);
+  for (const char* words : {"'m.mtlx' is a MaterialX file", "'x.abc' is no USD file", "'broken.usda' cannot be read"})
+    EXPECT_TRUE(told(words)) << words;
+  EXPECT_EQ(notes_.size(), 3u) << notes_.back();
 }
 
 TEST_F(UsdUnusual, ValuesOfOtherTypesAreReadAsWhatTheyStandFor) {

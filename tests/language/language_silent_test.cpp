@@ -67,6 +67,25 @@ TEST(NothingSilent, WhatToWriteInstead) {
       std::string::npos);
 }
 
+// A part cannot have been meant by the name of a choice, but a text of another choice can.
+TEST(NothingSilent, NamesOfChoicesThatWereMeant) {
+  const auto told = [](const std::string& definition) {
+    return warnings([&] {
+      load_job_text(
+          definition + "\nJob { camera: PerspectiveCamera {}, scene: BvhScene { objects: [ Curve { form: ribbon } ] } }", "t");
+    });
+  };
+  EXPECT_EQ(told("ribbon = Curve { form: ribbon }\nothers = BvhScene { objects: [ ribbon ] }").find("is the choice here"),
+            std::string::npos);
+  EXPECT_EQ(told("ribbon = rgb(1, 0, 0)").find("is the choice here"), std::string::npos);
+  EXPECT_EQ(told("ribbon = [1, 2]").find("is the choice here"), std::string::npos);
+  EXPECT_EQ(told("param ribbon = \"leather\"").find("is the choice here"), std::string::npos);
+  EXPECT_NE(told("param ribbon = \"tube\"").find("'ribbon' is the choice here, not the 'ribbon' defined at line 1:7"),
+            std::string::npos);
+  EXPECT_NE(told("k = 1\nribbon = if k == 1 then \"tube\" else \"ribbon\"").find("is the choice here"), std::string::npos);
+  EXPECT_NE(told("flat = \"tube\"\n\nribbon = flat").find("is the choice here"), std::string::npos);
+}
+
 TEST(NothingSilent, NamesThatMeanSomethingElse) {
   EXPECT_NE(warnings([] {
               part("visible = 3\nLanguagePart {   mode: visible, count: visible }");

@@ -1,9 +1,13 @@
 // What all importers have in common: they have no members of their own; and which of them reads a file.
 
 #include "etendue/importer.h"
+#include "etendue/import_by.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
+#include "files/file_kind.h"
 #include "files/gzip.h"
 
 namespace etendue {
@@ -29,6 +33,22 @@ Ref<Importer> importer_of(const std::string& path) {
   for (Ref<Importer>& importer : all_importers())
     if (std::ranges::count(importer->extensions(), ending)) return importer;
   return nullptr;
+}
+
+Ref<Component> import_by(const Importer& importer, Importing& importing) {
+  const auto tell_contents = [&] {
+    const std::string told = mistaken_contents(importing.path());
+    if (!told.empty()) throw Error(fmt::format("'{}': {}", importing.path(), told), importing.at());
+  };
+  try {
+    return importer.import(importing);
+  } catch (const Errors&) {
+    tell_contents();
+    throw;
+  } catch (const Error&) {
+    tell_contents();
+    throw;
+  }
 }
 
 std::vector<std::string> imported_extensions() {

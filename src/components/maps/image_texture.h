@@ -30,6 +30,9 @@ class ImageTexture {
   /// 3 or 1.
   virtual int channels() const = 0;
 
+  /// Whether it was made of a cube of surroundings (images/linear_image.h): above its top there is the top still.
+  virtual bool from_cube() const { return false; }
+
   /// The largest of its numbers.
   virtual float largest() const = 0;
 

@@ -133,6 +133,8 @@ void Writer::bsdf(Node parent, const Component& s, bool both_sides, Uv uv) {
     dielectric(parent, s, uv);
   } else if (type == "ThinDielectric") {
     Node n = plugin(parent, "thindielectric");
+    if (word_of(s, "polarizations") == "apart")
+      exporting.inexact("thin panes reflect a little less at a slant in Mitsuba, where polarizations are averaged", &s);
     number(n, "int_ior", double(color_of(s, "ior")->at(587.6f, ColorUse::coefficient)));
     number(n, "ext_ior", 1);
     map(n, "specular_reflectance", s, "reflection_tint", ColorUse::reflectance, uv);

@@ -164,6 +164,8 @@ std::string Writer::parameters_of(const Component& shader, std::string& type) {
   }
   if (name == "ThinDielectric") {
     type = "thindielectric";
+    if (word_of(shader, "polarizations") == "apart")
+      exporting.inexact("thin panes reflect a little less at a slant in pbrt, where polarizations are averaged", &shader);
     return index_of(shader, "eta");
   }
   if (name == "DiffuseTransmitter") {

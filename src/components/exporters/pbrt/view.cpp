@@ -173,9 +173,11 @@ void Writer::integrator() {
   out_ += fmt::format("Sampler \"{}\" \"integer pixelsamples\" {}\n", independent ? "independent" : "zsobol",
                       job.renderer->samples);
   const std::pair<const char*, const char*> known[] = {
-      {"PathTracer", "volpath"},           {"BidirectionalPathTracer", "bdpt"}, {"LightTracer", "lightpath"},
-      {"PathSpaceMetropolis", "mlt"},      {"PrimarySampleMetropolis", "mlt"},  {"MultiplexedMetropolis", "mlt"},
-      {"ProgressivePhotonMapper", "sppm"}, {"AmbientOcclusionRenderer", "ao"},  {"DirectRenderer", "volpath"}};
+      {"PathTracer", "volpath"},           {"BidirectionalPathTracer", "bdpt"},
+      {"LightTracer", "lightpath"},        {"PathSpaceMetropolis", "mlt"},
+      {"PrimarySampleMetropolis", "mlt"},  {"MultiplexedMetropolis", "mlt"},
+      {"ProgressivePhotonMapper", "sppm"}, {"AmbientOcclusionRenderer", "ambientocclusion"},
+      {"DirectRenderer", "volpath"}};
   const char* type = nullptr;
   for (const auto& [ours, theirs] : known)
     if (name == ours) type = theirs;

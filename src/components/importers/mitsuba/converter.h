@@ -115,6 +115,8 @@ class Converter {
   void set_roughness(Component& shader, const Element&, Uv, double otherwise);
   double index(const Element&, const char* name, const char* otherwise);
   Color spectrum_of(const Element&, const std::string& name, double otherwise);
+  /// Of a medium, per distance or an albedo: read as Mitsuba's spectral variants do.
+  Color medium_color(const Element&, const std::string& name, double otherwise);
 
   // textures and colours
   /// What a member that takes a colour or a map is set to.
@@ -158,7 +160,7 @@ class Converter {
   void set_albedo(Component& medium, const Element&, const Element* volume, const Component& object);
   /// From the unit cube to the box that a heterogeneous medium fills whose extinction is the same everywhere.
   static Transform box_of_constant(const Element& medium);
-  Ref<Component> even_everywhere(const Element& medium, const Color& extinction, const Element* albedo);
+  Ref<Component> even_everywhere(const Element& medium, const Color& extinction);
   static Transform to_world_of(const Component& object);
   void shine(Component& medium, const Element& glow, const Component& object);
   void set_grid(Component& grid, const Element& volume, const Component& object);

@@ -29,12 +29,11 @@ Ref<Component> Converter::heterogeneous(const Element& e, const Component& body,
   const std::optional<GridPlace> place = even ? std::nullopt : std::optional(place_of_grid(*volume));
   const bool apart = place && place->apart;
   const double scale = e.number("scale", 1);
-  const Color all_of_it = even ? scaled_spectrum(scale, volume ? spectrum_of(*volume, "value", 1) : spectrum_of(e, name, 1))
-                               : flat_spectrum(float(scale));
+  const Color all_of_it = even ? scaled_spectrum(scale, medium_color(e, name, 1)) : flat_spectrum(float(scale));
   const bool of_maps = glow || apart || (albedos && (even || !same_place(*albedo, *volume)));
   const bool boxed = !even || !e.old;  // before version 2 a constant volume had no bounds
   const Location at = e.location_of(name);
-  if (!boxed && !of_maps) return even_everywhere(e, all_of_it, albedo);
+  if (!boxed && !of_maps) return even_everywhere(e, all_of_it);
   // A box that the cells do not fill limits the medium, whose maps are then in its coordinates.
   const Ref<Component> frame = apart ? make("Box", e, "") : nullptr;
   if (frame) set_member(*frame, "transform", place->box, at);
@@ -76,10 +75,10 @@ Ref<Component> Converter::heterogeneous(const Element& e, const Component& body,
 }
 
 /// A heterogeneous medium of version 0.x whose volumes are constant: it fills its shape.
-Ref<Component> Converter::even_everywhere(const Element& e, const Color& extinction, const Element* albedo) {
+Ref<Component> Converter::even_everywhere(const Element& e, const Color& extinction) {
   Ref<Component> medium = make("HomogeneousVolume", e);
   set_member(*medium, "extinction", extinction, e.at);
-  set_member(*medium, "albedo", albedo ? spectrum_of(*albedo, "value", 0.75) : spectrum_of(e, "albedo", 0.75), e.at);
+  set_member(*medium, "albedo", medium_color(e, "albedo", 0.75), e.at);
   set_phase(*medium, e);
   return medium;
 }
@@ -110,16 +109,19 @@ bool Converter::same_place(const Element& a, const Element& b) {
 /// `volume`: the volume that says it; null: the medium itself says it.
 void Converter::set_albedo(Component& medium, const Element& e, const Element* volume, const Component& object) {
   if (!volume || volume->type != "gridvolume") {
-    const Color same = volume ? spectrum_of(*volume, "value", 0.75) : spectrum_of(e, "albedo", 0.75);
-    set_member(medium, "albedo", same, e.location_of("albedo"));
+    set_member(medium, "albedo", medium_color(e, "albedo", 0.75), e.location_of("albedo"));
   } else if (medium.class_info().name == "MapVolume") {
     const Ref<Component> grid = make("GridMap", *volume);
     set_grid(*grid, *volume, object);
     set_member(*grid, "outside", beyond_grid(*volume), volume->at);
-    set_member(medium, "albedo", grid, volume->at);
+    const Ref<Component> read = make("ReadAsMap", *volume, "");  // colours in grids are not those of surfaces there
+    set_member(*read, "map", grid, volume->at);
+    set_member(*read, "as", "coefficient", volume->at);
+    set_member(medium, "albedo", read, volume->at);
   } else {
     set_member(medium, "albedo", 1, volume->at);
     set_member(medium, "albedo_file", file(*volume), volume->location_of("filename"));
+    set_member(medium, "albedo_as", "coefficient", volume->at);
     volume->ignore({"wrap_mode"});
   }
 }

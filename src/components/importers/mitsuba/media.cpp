@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "components/importers/measured_media.h"
 #include "converter.h"
 #include "etendue/describe/color.h"
+#include "tabulated_color.h"
 
 namespace etendue::mitsuba {
 
@@ -20,7 +22,41 @@ const std::vector<std::string> known_media = {"homogeneous", "heterogeneous"};
 /// Of a medium or a phase function: the lobe of an 'hg'.
 void set_lobe(Component& part, const Element& hg) { set_member(part, "anisotropy", hg.number("g", 0.8), hg.at); }
 
+/// Of red, green and blue that a property gives, itself or by the spectrum that it names; null: it gives something else.
+const ColorValue* written_rgb(const Element& e, const std::string& name) {
+  const Property* p = e.find(name);
+  if (!p) return nullptr;
+  if (const auto* c = std::get_if<ColorValue>(&p->value)) return c->kind == ColorValue::Kind::rgb ? c : nullptr;
+  const Element* inner = std::holds_alternative<Nested>(p->value) ? e.nested(name) : nullptr;
+  return inner && inner->type == "srgb" ? written_rgb(*inner, "color") : nullptr;
+}
+
 }  // namespace
+
+// Red, green and blue of a medium, where none is above 1, become the spectrum of a surface of that colour there, be they an
+// albedo or coefficients, which 'scale' multiplies later. Above 1 the spectral variants refuse them, and they are read as
+// everywhere here: a spectrum within twice the largest component. docs/colour.md tells what the two have in common.
+Color Converter::medium_color(const Element& e, const std::string& name, double otherwise) {
+  const Property* const given_by = e.find(name);
+  const Element* inner = given_by && std::holds_alternative<Nested>(given_by->value) ? e.nested(name) : nullptr;
+  if (inner && inner->type != "constvolume") inner = nullptr;
+  std::optional<Reading> reading;  // who asks may be reading the volume already
+  if (inner && !inner->being_read) reading.emplace(*inner);
+  const Element& says = inner ? *inner : e;
+  const std::string property = inner ? "value" : name;
+  const Color read = spectrum_of(says, property, otherwise);
+  const ColorValue* const written = written_rgb(says, property);
+  if (!written || std::ranges::any_of(written->rgb, [](double x) { return x > 1; })) return read;
+  if (name != "albedo") return used_spectrum(ColorUse::reflectance, read);
+  const std::array<double, 3> given{written->rgb[0], written->rgb[1], written->rgb[2]}, there = tabulated_color(given);
+  // Where what is absorbed differs by more than can be seen.
+  const bool differs = std::ranges::any_of(std::array<size_t, 3>{0, 1, 2}, [&](size_t i) {
+    return std::abs(there[i] - given[i]) > 0.05 * (1 - given[i]) && std::abs(there[i] - given[i]) > 2e-4;
+  });
+  if (!differs) return read;
+  const auto digits = [](double x) { return std::round(std::clamp(x, 0.0, 1.0) * 1e5) / 1e5; };
+  return rgb_color("srgb", digits(there[0]), digits(there[1]), digits(there[2]));
+}
 
 Ref<Component> Converter::medium(const Element& e, const Component& object, const Element* glow) {
   if (e.tag != "medium") throw Error(fmt::format("a medium is expected, not a {}", e.tag), e.at);
@@ -157,8 +193,8 @@ Ref<Component> Converter::homogeneous(const Element& e) {
   const double scale = e.number("scale", 1);
   const auto scaled = [&](const Color& c) { return scale == 1 ? c : scaled_spectrum(scale, c); };
   if (!e.old && !e.has("material") && !e.has("sigma_a") && !e.has("sigma_s")) {
-    set_member(*volume, "extinction", scaled(spectrum_of(e, "sigma_t", 1)), e.location_of("sigma_t"));
-    set_member(*volume, "albedo", spectrum_of(e, "albedo", 0.75), e.location_of("albedo"));
+    set_member(*volume, "extinction", scaled(medium_color(e, "sigma_t", 1)), e.location_of("sigma_t"));
+    set_member(*volume, "albedo", medium_color(e, "albedo", 0.75), e.location_of("albedo"));
     return volume;
   }
   // Before version 2 all that is not given is of a measured medium, there in 1/mm.
@@ -183,7 +219,7 @@ Ref<Component> Converter::homogeneous(const Element& e) {
     albedo[i] = scattered[i] / whole[i];
   }
   const auto given = [&](const char* name, const std::array<double, 3>& otherwise) {
-    return e.has(name) ? spectrum_of(e, name, 0) : rgb_color("srgb", otherwise[0], otherwise[1], otherwise[2]);
+    return e.has(name) ? medium_color(e, name, 0) : rgb_color("srgb", otherwise[0], otherwise[1], otherwise[2]);
   };
   if (!e.has("sigma_a") && !e.has("sigma_s") && (e.has("sigma_t") || e.has("albedo"))) {
     set_member(*volume, "extinction", scaled(given("sigma_t", whole)), e.location_of("sigma_t"));

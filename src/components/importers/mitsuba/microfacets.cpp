@@ -75,6 +75,7 @@ Converter::Surface Converter::dielectric(const Element& e, Uv uv, const std::str
   Ref<Component> shader = make(thin ? "ThinDielectric" : "Dielectric", e, name);
   if (thin) {
     set_member(*shader, "ior", inside / outside, e.location_of("int_ior"));
+    set_member(*shader, "polarizations", "averaged", e.at);
   } else {
     set_member(*shader, "ior", inside, e.location_of("int_ior"));
     set_member(*shader, "exterior", outside, e.location_of("ext_ior"));

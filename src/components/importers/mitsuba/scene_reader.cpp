@@ -45,6 +45,8 @@ void SceneReader::read_file(const std::string& path, Element& into, Location fro
   if (open_files_.size() >= deepest_include)
     throw Error(fmt::format("more than {} files that include one another", deepest_include), from);
   const XmlFile file(path, open_files_.empty() ? importing_.at().file : intern(path));
+  if (file.entities().known())
+    importing_.inexact("entities that the file declares are put in their places, which Mitsuba 3 does not do", file.entities());
   bytes_ += file.size();
   if (bytes_ > most_included)
     throw Error(fmt::format("the files that are included amount to more than {} MB", most_included >> 20), from);

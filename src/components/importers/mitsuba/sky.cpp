@@ -123,6 +123,10 @@ Ref<Component> Converter::sky(const Element& e) {
     importing_.inexact("the sun is brightened with its sky: the scale of the sun is taken to be that of the sky",
                        own ? own->location_of("scale") : e.location_of("sun_scale"));
   inexact(e, fmt::format("'{}' is a model of measured skies whose brightness differs from Mitsuba's", e.type));
+  if (e.number("stretch", 1) != 1)
+    importing_.inexact("'stretch' is left out: the sky ends at the horizon", e.location_of("stretch"));
+  if (e.boolean("extend", false))
+    importing_.inexact("'extend' is left out: there is no light from below the horizon", e.location_of("extend"));
   e.ignore({"resolution"});
   Ref<Component> object = make("Environment", e);
   set_member(*object, "emission", emission, e.at);

@@ -239,9 +239,10 @@ TransformValue parse_transform(const pugi::xml_node& node, const Attributes& att
       const auto angle = attribute(child, "angle");
       if (!angle) throw Error("<rotate> needs an angle", place(child));
       const DoubleVector3 axis = parse_vector(child, attribute, place, 0);
-      if (!(length(axis) > 0)) throw Error("<rotate> needs an axis other than zero", place(child));
       const double radians = parse_number(*angle) * std::numbers::pi / 180;
-      step = old ? Transform::rotate(radians, axis) : rotation_as_there(radians, axis);
+      // Of no turn programs write no axis. Mitsuba 3.9 refuses it; with an angle nobody knows what it means.
+      if (!(length(axis) > 0) && radians != 0) throw Error("<rotate> needs an axis other than zero", place(child));
+      step = radians == 0 ? Transform() : old ? Transform::rotate(radians, axis) : rotation_as_there(radians, axis);
     } else if (tag == "matrix") {
       const auto value = attribute(child, "value");
       if (!value) throw Error("<matrix> needs a value", place(child));

@@ -1,7 +1,7 @@
 #include "xml_file.h"
 
 #include <algorithm>
-#include <new>
+#include <optional>
 
 #include "files/regular_file.h"
 
@@ -27,12 +27,19 @@ XmlFile::XmlFile(const std::string& path, const char* name) : name_(name) {
     if (c == 0) throw Error("the file holds a zero byte: it is not XML in UTF-8", at(std::ptrdiff_t(i)));
   }
   if (text_.find_first_not_of(" \t\r\n") == std::string::npos) throw Error("'" + path + "' is empty", {name, 0, 0});
+  try {
+    std::optional<ExpandedText> expanded = expand_entities(text_);
+    if (expanded) {
+      entities_ = at(std::ptrdiff_t(expanded->declared));
+      text_ = std::move(expanded->text);
+      expansions_ = std::move(expanded->expansions);
+    }
+  } catch (const EntityError& error) {
+    throw Error(error.what(), at(std::ptrdiff_t(error.place)));
+  }
   const pugi::xml_parse_result result =
-      document_.load_buffer_inplace(text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
+      document_.load_buffer_inplace(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!result) throw Error("this is not XML: " + std::string(result.description()), at(result.offset));
-  for (const pugi::xml_node& node : document_.children())
-    if (node.type() == pugi::node_doctype && std::string_view(node.value()).find("ENTITY") != std::string_view::npos)
-      throw Error("entities that a document declares are not read", at(node.value() - text_.data()));
 }
 
 Location XmlFile::at(const pugi::xml_attribute& attribute, const pugi::xml_node& of) const {
@@ -41,7 +48,7 @@ Location XmlFile::at(const pugi::xml_attribute& attribute, const pugi::xml_node&
 }
 
 Location XmlFile::at(std::ptrdiff_t offset) const {
-  const size_t place = size_t(std::clamp(offset, std::ptrdiff_t(0), std::ptrdiff_t(text_.size())));
+  const size_t place = written_at(expansions_, size_t(std::clamp(offset, std::ptrdiff_t(0), std::ptrdiff_t(text_.size()))));
   const auto line = std::ranges::upper_bound(lines_, place) - 1;
   const auto wide = std::ranges::lower_bound(wide_bytes_, place) - std::ranges::lower_bound(wide_bytes_, *line);
   return {name_, int(line - lines_.begin()) + 1, int(place - *line) - int(wide) + 1};

@@ -67,17 +67,19 @@ Ref<Component> SurfaceMaps::image(const SurfaceTexture& t, const std::string& ch
   if (differ) set_member(*map, "wrap_v", t.wrap_v, at_);
   if (t.nearest) set_member(*map, "interpolation", "nearest", at_);
   const auto pair = [](const std::array<double, 2>& p) { return Numbers{{p[0], p[1]}, 1, Dimension::none}; };
-  std::array<double, 2> shift = t.shift;
+  std::array<double, 2> shift = t.shift, scale = t.scale;
+  for (double& x : scale)
+    if (x == 0) x = 1e-6;  // one row or column of the image: maps need an inverse
   if (t.wrap == "repeat" && !differ && std::abs(t.angle) < 1e-9)
     for (double& x : shift)
       if (std::abs(x - std::round(x)) < 1e-9) x = 0;
   if (std::abs(t.angle) < 1e-9 && shift[0] == 0 && shift[1] == 0) {
-    if (t.scale[0] != 1 || t.scale[1] != 1) set_member(*map, "repeat", pair(t.scale), at_);
+    if (scale[0] != 1 || scale[1] != 1) set_member(*map, "repeat", pair(scale), at_);
     return map;
   }
   Ref<Component> moved = part("UvTransformMap");
   put(*moved, "map", map);
-  if (t.scale[0] != 1 || t.scale[1] != 1) set_member(*moved, "scale", pair(t.scale), at_);
+  if (scale[0] != 1 || scale[1] != 1) set_member(*moved, "scale", pair(scale), at_);
   if (t.angle != 0) set_member(*moved, "angle", Number{t.angle, Dimension::angle}, at_);
   set_member(*moved, "shift", pair(shift), at_);
   return moved;

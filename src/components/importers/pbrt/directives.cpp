@@ -66,7 +66,7 @@ void Directives::read(std::string_view text) {
   Source first;
   first.path = r.importing.path();
   first.folder = std::filesystem::path(first.path).parent_path().string();
-  first.lexer = std::make_unique<Lexer>(text, intern(first.path));
+  first.lexer = lexer_of(text, first.path);
   sources_.push_back(std::move(first));
   r.materials[0].type = r.version == 4 ? "diffuse" : "matte";
   r.materials[0].parameters.of = "the material that is there when none is given";
@@ -82,6 +82,12 @@ void Directives::read(std::string_view text) {
 
 Lexer& Directives::lexer() { return *sources_.back().lexer; }
 
+std::unique_ptr<Lexer> Directives::lexer_of(std::string_view text, const std::string& path) {
+  auto made = std::make_unique<Lexer>(text, intern(path));
+  if (r.version == 3) made->lenient = &r.importing;
+  return made;
+}
+
 void Directives::step() {
   bool lexing = true;
   try {
@@ -95,6 +101,12 @@ void Directives::step() {
     const Handler handler = token_.is(Token::Kind::word) ? handler_of(token_.text) : nullptr;
     if (!handler) throw Error(unknown(), at_);
     (this->*handler)();
+  } catch (const LeftOut& e) {
+    if (r.version == 3)
+      r.importing.inexact(fmt::format("{}: {}, as by version 3 of pbrt", e.what(), e.instead()), e.location);
+    else
+      errors_.push_back(e);
+    recover(lexing);
   } catch (const Error& e) {
     errors_.push_back(e.location.known() ? e : Error(e.what(), at_));
     recover(lexing);
@@ -150,11 +162,11 @@ Parameters Directives::parameters(const std::string& type, int target) {
 }
 
 void Directives::need_world() {
-  if (!world_) throw Error(fmt::format("{} must stand after WorldBegin", token_.text), at_);
+  if (!world_) throw LeftOut(fmt::format("{} must stand after WorldBegin", token_.text), at_);
 }
 
 void Directives::need_options() {
-  if (world_) throw Error(fmt::format("{} must stand before WorldBegin", token_.text), at_);
+  if (world_) throw LeftOut(fmt::format("{} must stand before WorldBegin", token_.text), at_);
 }
 
 void read_directives(Reader& reader, std::string_view text) { Directives(reader).read(text); }

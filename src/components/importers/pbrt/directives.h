@@ -44,6 +44,9 @@ class Directives {
 
   std::string unknown() const;
 
+  /// A text that is read for this version, and whose errors name `path`.
+  std::unique_ptr<Lexer> lexer_of(std::string_view text, const std::string& path);
+
   /// Goes on at the next directive, if the text can still be taken apart.
   void recover(bool lexing);
 
@@ -57,7 +60,7 @@ class Directives {
     std::array<double, count> all{};
     for (double& n : all) {
       const Token t = lexer().next();
-      if (!t.is(Token::Kind::word) || !parse_number(t.text, n))
+      if (!lexer().number(t, n))
         throw Error(fmt::format("{} needs {} numbers", token_.text, count), t.end() ? at_ : lexer().place(t));
     }
     if (list && !lexer().next().is(Token::Kind::close))

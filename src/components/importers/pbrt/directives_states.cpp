@@ -20,7 +20,7 @@ void Directives::keep(const char* what) {
 
 void Directives::give_back(const char* what, bool transform_only) {
   if (kept_.empty() || (sources_.size() > 1 && sources_.back().import && kept_.size() <= sources_.back().nested + 1))
-    throw Error(fmt::format("{}End without {}Begin", what, what), at_);
+    throw LeftOut(fmt::format("{}End without {}Begin", what, what), at_);
   if (std::string_view(kept_.back().what) != what)
     throw Error(fmt::format("{}End ends the {}Begin of line {}", what, kept_.back().what, kept_.back().at.line), at_);
   if (transform_only) {
@@ -95,7 +95,7 @@ void Directives::include_file(bool import) {
   } catch (const Error& e) {
     throw Error(fmt::format("cannot read '{}': {}", name, e.what()), at);
   }
-  source.lexer = std::make_unique<Lexer>(source.contents->text(), intern(source.path));
+  source.lexer = lexer_of(source.contents->text(), source.path);
   source.import = import;
   source.nested = kept_.size();
   if (import) keep("Import");

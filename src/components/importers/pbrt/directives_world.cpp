@@ -26,11 +26,14 @@ void Directives::make_named_material() {
 }
 
 void Directives::named_material() {
-  r.state.named_material = text();
+  const std::string before = std::exchange(r.state.named_material, text());
   // v3 may give a name to another material later; v4 may give it for the first time.
   if (const auto found = r.named_materials.find(r.state.named_material); found != r.named_materials.end()) {
     r.state.material = found->second;
     if (r.version == 3) r.state.named_material.clear();
+  } else if (r.version == 3) {
+    const std::string name = std::exchange(r.state.named_material, before);
+    throw LeftOut(fmt::format("there is no material named '{}'", name), at_, "the one before stays");
   }
 }
 
@@ -56,8 +59,9 @@ void Directives::area_light_source() {
   auto light = std::make_shared<AreaLight>();
   light->type = text();
   light->parameters = parameters(light->type, 1);
+  r.state.light = nullptr;
   if (light->type != "diffuse" && light->type != "area")
-    throw Error(fmt::format("there is no area light '{}', but 'diffuse'", light->type), at_);
+    throw LeftOut(fmt::format("there is no area light '{}', but 'diffuse'", light->type), at_);
   r.state.light = std::move(light);
 }
 

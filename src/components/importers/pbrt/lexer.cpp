@@ -76,13 +76,31 @@ void Lexer::numbers(std::vector<double>& to) {
     if (error != std::errc() || !std::isfinite(value) || (rest != end_ && !ends_word(*rest))) {
       // Too small a number is 0; anything else is no number.
       const char* stop = std::find_if(now_, end_, ends_word);
-      if (!parse_number({now_, size_t(stop - now_)}, value)) return;
+      const std::string_view word{now_, size_t(stop - now_)};
+      if (!parse_number(word, value) && !beginning(word, value)) return;
       now_ = stop;
     } else {
       now_ = rest;
     }
     to.push_back(value);
   }
+}
+
+bool Lexer::number(const Token& word, double& number) {
+  return word.is(Token::Kind::word) && (parse_number(word.text, number) || beginning(word.text, number));
+}
+
+// strtof() stops at the first character that belongs to no number, and version 3 does not ask where it stopped.
+bool Lexer::beginning(std::string_view word, double& number) {
+  if (!lenient || word.empty()) return false;
+  const char *first = word.data() + (word.front() == '+' ? 1 : 0), *last = word.data() + word.size();
+  const auto [rest, error] = std::from_chars(first, last, number);
+  if (error != std::errc() || !std::isfinite(number)) return false;
+  const bool comma = rest + 1 == last && *rest == ',';
+  lenient->inexact(comma ? "a comma behind a number says nothing, as in version 3 of pbrt"
+                         : "what stands behind a number without a blank is not read, as in version 3 of pbrt",
+                   place(word.data()));
+  return true;
 }
 
 Location Lexer::place(const char* at) {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "etendue/core/error.h"
+#include "etendue/importer.h"
 
 namespace etendue::pbrt {
 
@@ -26,10 +26,15 @@ class Lexer {
   /// `file` is interned.
   Lexer(std::string_view text, const char* file);
 
+  /// Of version 3, which reads on where version 4 stops: whom it tells. Null: what is wrong is an Error.
+  Importing* lenient = nullptr;
+
   const Token& peek();
   Token next();
   /// Reads numbers as long as there are some.
   void numbers(std::vector<double>& to);
+  /// A word as a number; false: it is none. What stands behind the digits version 3 does not look at.
+  bool number(const Token& word, double& number);
 
   /// Where a token stands. Quick when asked in the order of the text.
   Location place(const char* at);
@@ -43,6 +48,7 @@ class Lexer {
   void skip_space();
   Token read();
   Token read_string();
+  bool beginning(std::string_view word, double& number);
 
   const char* begin_;
   const char* end_;

@@ -249,9 +249,9 @@ void make_light(Reader& reader, const std::string& type, Parameters&& p) {
   else if (type == "goniometric")
     goniometric(reader, p);
   else
-    throw Error(fmt::format("there is no light '{}'{}", type,
-                            suggestion(type, {"point", "spot", "distant", "infinite", "projection", "goniometric"})),
-                p.at);
+    throw LeftOut(fmt::format("there is no light '{}'{}", type,
+                              suggestion(type, {"point", "spot", "distant", "infinite", "projection", "goniometric"})),
+                  p.at);
   p.tell_unused(reader.importing);
 }
 

@@ -37,9 +37,16 @@ Ref<Component> mix(Reader& reader, const Material& m) {
     throw Error("a mixture needs the names of two materials", p.place("materials"));
   const Ref<Component> shader = reader.make("MixShader", p.at, m.name);
   const bool v3 = p.has("namedmaterial1");
+  const auto part = [&](const std::string& name) {
+    if (reader.version != 3 || reader.named_materials.contains(name)) return shader_named(reader, name, p.at);
+    reader.tolerate(fmt::format("there is no material named '{}'", name), "it is 'matte'", p.at);
+    const Ref<Component> matte = reader.make("Lambertian", p.at);
+    set_member(*matte, "color", 0.5, p.at);
+    return matte;
+  };
   // v3's amount is the share of the first, v4's of the second.
-  set_map(*shader, v3 ? "second" : "first", Value(shader_named(reader, names[0], p.at)), p.at);
-  set_map(*shader, v3 ? "first" : "second", Value(shader_named(reader, names[1], p.at)), p.at);
+  set_map(*shader, v3 ? "second" : "first", Value(part(names[0])), p.at);
+  set_map(*shader, v3 ? "first" : "second", Value(part(names[1])), p.at);
   if (v3) {
     const Value amount = color_map(reader, p, {"amount"}, 0.5, Use::reflectance);
     if (const Color* c = amount.as<Color>())
@@ -190,8 +197,12 @@ Ref<Component> shader_of(Reader& reader, size_t index, Location used_at) {
   const Deeper deeper(reader.mixing);
   Ref<Component> shader = m.type == "mix" ? mix(reader, m) : make_v4_shader(reader, m);
   if (!shader) shader = make_v3_shader(reader, m);
-  if (!shader)
-    throw Error(fmt::format("there is no material '{}'{}", m.type, suggestion(m.type, material_names())), m.parameters.at);
+  if (!shader) {
+    reader.tolerate(fmt::format("there is no material '{}'{}", m.type, suggestion(m.type, material_names())), "it is 'matte'",
+                    m.parameters.at);
+    m.type = "matte";
+    shader = make_v3_shader(reader, m);
+  }
   shader = with_relief(reader, m.parameters, shader);
   if (shader->origin) shader->origin->name = m.name;
   m.parameters.tell_unused(reader.importing);

@@ -201,6 +201,7 @@ Ref<Component> make_v4_shader(Reader& reader, const Material& m) {
   if (type == "thindielectric") {
     const Ref<Component> shader = reader.make("ThinDielectric", at);
     set_map(*shader, "ior", index_of(reader, p, {"eta"}, 1.5), at);
+    set_member(*shader, "polarizations", "averaged", at);
     return shader;
   }
   if (type == "diffusetransmission") {

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "components/objects/meshes/mesh_data.h"
+#include "geometry/own_centre.h"
+#include "geometry/usable_triangles.h"
 #include "meshes.h"
 
 namespace etendue::pbrt {
@@ -25,8 +27,8 @@ Vertex across(const Vertex& a, const Vertex& b) {
 void check_indices(const Parameters& p, const std::vector<double>& indices, size_t vertices) {
   for (const double i : indices)
     if (!(i >= 0 && i < double(vertices) && i == std::floor(i)))
-      throw Error(fmt::format("{} names the vertex {}, but there are {}, counted from 0", p.of, i, vertices),
-                  p.place("indices"));
+      throw LeftOut(fmt::format("{} names the vertex {}, but there are {}, counted from 0", p.of, i, vertices),
+                    p.place("indices"));
 }
 
 /// pbrt's front is where the vertices' normals point; here it is where a triangle's corners run counter-clockwise.
@@ -41,23 +43,26 @@ void face_normals(const std::vector<double>& positions, const std::vector<double
   }
 }
 
-/// Whether any triangle has an area.
-bool has_area(const Mesh& mesh) {
-  for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-    const size_t a = size_t(mesh.indices[t]), b = size_t(mesh.indices[t + 1]), c = size_t(mesh.indices[t + 2]);
-    const Vertex face = across(difference(mesh.positions, b, a), difference(mesh.positions, c, a));
-    if (face != Vertex{}) return true;
-  }
+/// Whether any of the faces, of this many corners in the order of their rows, has an area, as what is made of them will see it.
+/// That none has is told.
+bool has_area(Reader& reader, const std::vector<double>& p, const std::vector<double>& indices, size_t corners, Location at) {
+  std::vector<DoublePoint3> positions;
+  for (size_t i = 0; i + 2 < p.size(); i += 3) positions.push_back({p[i], p[i + 1], p[i + 2]});
+  const std::vector<Point3> counted = counted_from(own_centre(positions), positions);
+  for (size_t f = 0; f + corners <= indices.size(); f += corners)
+    for (size_t last = 2; last < corners; ++last) {
+      const std::array<std::uint32_t, 3> triangle{std::uint32_t(indices[f + last - 2]), std::uint32_t(indices[f + last - 1]),
+                                                  std::uint32_t(indices[f + last])};
+      if (any_usable(counted, {&triangle, 1})) return true;
+    }
+  reader.importing.inexact("a mesh whose triangles have no area is left out", at);
   return false;
 }
 
 }  // namespace
 
 Shape object_of(Reader& reader, Mesh&& mesh, Location at) {
-  if (!has_area(mesh)) {
-    reader.importing.inexact("a mesh whose triangles have no area is left out", at);
-    return {};
-  }
+  if (!has_area(reader, mesh.positions, mesh.indices, 3, at)) return {};
   if (!mesh.normals.empty()) face_normals(mesh.positions, mesh.normals, mesh.indices);
   if (reader.state.reversed) {
     for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
@@ -83,7 +88,7 @@ Shape triangle_mesh(Reader& reader, Parameters& p) {
   mesh.positions = p.take_numbers("P", 3);
   mesh.indices = p.take_numbers("indices");
   const size_t vertices = mesh.positions.size() / 3;
-  if (vertices == 0) throw Error(fmt::format("{} needs vertices, 'P'", p.of), p.place("P"));
+  if (vertices == 0) throw LeftOut(fmt::format("{} needs vertices, 'P'", p.of), p.place("P"));
   if (mesh.indices.empty() && vertices == 3) mesh.indices = {0, 1, 2};
   if (mesh.indices.size() % 3 != 0) {
     reader.importing.inexact(
@@ -91,7 +96,7 @@ Shape triangle_mesh(Reader& reader, Parameters& p) {
         p.place("indices"));
     mesh.indices.resize(mesh.indices.size() / 3 * 3);
   }
-  if (mesh.indices.empty()) throw Error(fmt::format("{} has no triangles", p.of), p.place("indices"));
+  if (mesh.indices.empty()) throw LeftOut(fmt::format("{} has no triangles", p.of), p.place("indices"));
   check_indices(p, mesh.indices, vertices);
   const auto by_vertex = [&](std::vector<double> list, size_t width, const char* name) {
     if (list.empty() || list.size() == vertices * width) return list;
@@ -148,6 +153,9 @@ Shape ply_mesh(Reader& reader, const Parameters& p) {
       const MeshData data = read_mesh(path);
       if (reader.state.reversed || against_normals(data)) return object_of(reader, written_out(data), p.at);
       triangles = data.triangles.size();
+    } catch (const NoTriangles& e) {
+      reader.importing.inexact(fmt::format("{}: it is left out", e.what()), p.place("filename"));
+      return {};
     } catch (const Error& e) {
       throw Error(e.what(), p.place("filename"));
     }
@@ -174,6 +182,10 @@ Shape bilinear_mesh(Reader& reader, Parameters& p) {
   if (indices.empty() || indices.size() % 4 != 0)
     throw Error(fmt::format("{} has {} indices, but each patch takes 4", p.of, indices.size()), p.place("indices"));
   check_indices(p, indices, vertices);
+  if (!has_area(reader, points, indices, 4, p.at)) {
+    p.forget();
+    return {};
+  }
   if (p.has("N")) reader.importing.inexact("normals of vertices of bilinear patches are left out", p.place("N"));
   const std::vector<double>& uvs = p.numbers("uv", 2);
   if (uvs.size() / 2 == vertices && !corners_of_square(uvs, indices))
@@ -207,6 +219,10 @@ Shape loop_subdivision(Reader& reader, Parameters& p) {
   if (indices.empty() || indices.size() % 3 != 0)
     throw Error(fmt::format("{} has {} indices, but each triangle takes 3", p.of, indices.size()), p.place("indices"));
   check_indices(p, indices, points.size() / 3);
+  if (!has_area(reader, points, indices, 3, p.at)) {
+    p.forget();
+    return {};
+  }
   const int levels = p.integer(p.has("nlevels") ? "nlevels" : "levels", 3);
   const Ref<Component> object = reader.make("SubdivisionSurface", p.at);
   set_member(*object, "positions", Numbers{std::move(points), 3, Dimension::none}, p.at);
@@ -252,10 +268,11 @@ Shape make_mesh(Reader& reader, const std::string& type, Parameters& p) {
     p.forget();
     return {};
   }
-  throw Error(fmt::format("there is no shape '{}'{}", type,
-                          suggestion(type, {"sphere", "cylinder", "disk", "cone", "paraboloid", "hyperboloid", "curve",
-                                            "trianglemesh", "plymesh", "bilinearmesh", "loopsubdiv", "heightfield", "nurbs"})),
-              p.at);
+  throw LeftOut(
+      fmt::format("there is no shape '{}'{}", type,
+                  suggestion(type, {"sphere", "cylinder", "disk", "cone", "paraboloid", "hyperboloid", "curve", "trianglemesh",
+                                    "plymesh", "bilinearmesh", "loopsubdiv", "heightfield", "nurbs"})),
+      p.at);
 }
 
 }  // namespace etendue::pbrt

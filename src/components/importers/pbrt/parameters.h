@@ -35,6 +35,7 @@ class Parameters {
   Location at;                      ///< of the directive
   std::string folder;               ///< of the file it stands in
   const RgbSpace* space = nullptr;  ///< of its "rgb" numbers
+  Importing* lenient = nullptr;     ///< of version 3, which takes a value that does not fit for none: whom it is told
   std::vector<Parameter> own;
   std::vector<std::pair<std::string, Location>> overridden;  ///< which were given again, with another value
   std::shared_ptr<const std::vector<Parameter>> defaults;    ///< from v4's Attribute directive
@@ -48,6 +49,8 @@ class Parameters {
   // One value of a type. Throws Error at the parameter for another type or number of values.
   double number(std::string_view name, double otherwise) const;
   std::optional<double> number(std::string_view name) const;
+  /// What may be a texture as well, of which version 3 takes the first number of several.
+  double first_number(std::string_view name, double otherwise) const;
   int integer(std::string_view name, int otherwise) const;
   bool boolean(std::string_view name, bool otherwise) const;
   std::string text(std::string_view name, const std::string& otherwise = {}) const;
@@ -59,6 +62,8 @@ class Parameters {
   std::vector<std::string> texts(std::string_view name) const;
   Location place(std::string_view name) const;
 
+  /// Whether something asked for a parameter of this name.
+  bool asked_for(std::string_view name) const;
   /// Notes each parameter that nothing asked for.
   void tell_unused(Importing&) const;
   /// Parameters that make no difference here, which is not worth a word.
@@ -67,6 +72,9 @@ class Parameters {
   void forget() const;
 
  private:
+  void add(Parameter);
+  /// An Error at a parameter; version 3 goes on as if it were not given, which is told.
+  void misfit(const Parameter&, const std::string& what) const;
   const Parameter* single(std::string_view name, bool text) const;
   mutable std::vector<std::string> asked_;  // for suggestions
 };

@@ -72,6 +72,17 @@ struct MediumSides {
   Location at;
 };
 
+/// What version 3 warns of and goes on without, where version 4 stops: a note or an Error, which Directives decides.
+class LeftOut : public Error {
+ public:
+  LeftOut(const std::string& what, Location at, std::string instead = "it is left out")
+      : Error(what, at), instead_(std::move(instead)) {}
+  const std::string& instead() const { return instead_; }
+
+ private:
+  std::string instead_;
+};
+
 enum class Use : unsigned char { reflectance, light, coefficient };
 
 /// What is before WorldBegin: each directive as it was written last.
@@ -117,6 +128,12 @@ class Reader {
     return importing.make(class_name, at, name);
   }
 
+  /// What version 3 warns of, and what it does then; of version 4 an Error.
+  void tolerate(const std::string& what, const std::string& instead, Location at) {
+    if (version != 3) throw Error(what, at);
+    importing.inexact(what + ": " + instead + ", as by version 3 of pbrt", at);
+  }
+
   // world.cpp
   void shape(const std::string& type, Parameters&&);
   void begin_object(const std::string& name, Location at);
@@ -131,6 +148,9 @@ class Reader {
 
  private:
   Ref<Component> shader_for(const Waiting&);
+  /// The present material with what a shape says of it, too.
+  size_t material_for(const Parameters& shape);
+  void add_shape(const std::string& type, Parameters&&);
   void finish_materials();
   /// surroundings.cpp: what has to be added for the medium around the camera; null: nothing.
   Ref<SceneObject> settle_media();
@@ -145,6 +165,7 @@ class Reader {
   std::vector<Waiting> waiting_;
   std::vector<MediumSides> sides_;
   std::map<std::pair<Component*, std::string>, Ref<Component>> masked_;
+  std::map<std::string, size_t> changed_materials_;  // by what shapes say of those that they have
 };
 
 /// Reads all directives of a file and of those it includes. Throws Errors with all that is wrong.
@@ -240,6 +261,16 @@ void make_medium(Reader&, const std::string& name, Parameters&&);
 const MeasuredMedium* measured_medium(Reader&, const Parameters&, const char* parameter);
 /// The medium of a name for an object that stands in the world so; null: it was left out.
 Ref<Component> medium_for(Reader&, const std::string& name, const AnimatedTransform& object, Location at);
+
+// integrators.cpp
+struct Integrator {
+  Ref<Component> renderer;
+  int samples;
+};
+/// `samples`: those that the sampler says, for each pixel.
+Integrator make_integrator(Reader&, int samples);
+/// Whether pbrt's integrator finds its way through media; with others there are none.
+bool knows_media(const Reader&);
 
 // job.cpp, camera.cpp, view.cpp
 void set_renderer(Reader&, Component& job);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "color/planck.h"
@@ -28,18 +29,20 @@ constexpr std::pair<const char*, const char*> glasses[] = {
 }
 
 /// From pairs of wavelength [nm] and value. v3 goes on with the first and last value, v4 with nothing.
+/// v3 takes them in any order.
 Color from_pairs(const Reader& reader, const Parameter& p) {
   if (p.numbers.empty() || p.numbers.size() % 2 != 0)
     throw Error(fmt::format("'{}' must be pairs of a wavelength and a value", p.name), p.at);
+  std::vector<std::pair<double, double>> pairs;
+  for (size_t i = 0; i < p.numbers.size(); i += 2) pairs.emplace_back(p.numbers[i], p.numbers[i + 1]);
   std::vector<float> wavelengths, values;
   const auto add = [&](double nm, double value) {
     wavelengths.push_back(float(nm));
     values.push_back(float(value));
   };
-  for (size_t i = 0; i < p.numbers.size(); i += 2) {
-    if (reader.version == 3 && i == 0 && p.numbers[0] > 360) add(360, p.numbers[1]);
-    add(p.numbers[i], p.numbers[i + 1]);
-  }
+  if (reader.version == 3) std::ranges::stable_sort(pairs);
+  if (reader.version == 3 && pairs[0].first > 360) add(360, pairs[0].second);
+  for (const auto& [nm, value] : pairs) add(nm, value);
   if (reader.version == 3 && wavelengths.back() < 830) add(830, values.back());
   return table_spectrum(wavelengths, values);
 }
@@ -63,7 +66,11 @@ Color by_name(Reader& reader, const Parameters& parameters, const Parameter& p) 
 }
 
 Color components(Reader& reader, const Parameters& parameters, const Parameter& p, Use use) {
-  if (p.numbers.size() != 3) throw Error(fmt::format("'{}' must be three numbers, not {}", p.name, p.numbers.size()), p.at);
+  if (p.numbers.size() > 3 && reader.version == 3)
+    reader.importing.inexact(fmt::format("'{}' must be three numbers, not {}: the first three count", p.name, p.numbers.size()),
+                             p.at);
+  else if (p.numbers.size() != 3)
+    throw Error(fmt::format("'{}' must be three numbers, not {}", p.name, p.numbers.size()), p.at);
   std::array<double, 3> n{p.numbers[0], p.numbers[1], p.numbers[2]};
   if (p.is("xyz")) return xyz_color(n[0], n[1], n[2]);
   for (double& x : n) {

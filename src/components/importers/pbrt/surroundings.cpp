@@ -10,17 +10,6 @@
 
 namespace etendue::pbrt {
 
-namespace {
-
-/// Of pbrt's integrators those that know media; with the others there are none.
-bool knows_media(const std::string& integrator) {
-  for (const char* known : {"", "volpath", "simplevolpath", "bdpt", "mlt"})
-    if (integrator == known) return true;
-  return false;
-}
-
-}  // namespace
-
 Ref<SceneObject> Reader::settle_media() {
   const auto has_outside = [&](const std::string& medium) {
     return medium == around_camera || std::ranges::any_of(sides_, [&](const MediumSides& s) { return s.inside == medium; });
@@ -33,7 +22,7 @@ Ref<SceneObject> Reader::settle_media() {
               s.outside),
           s.at);
   if (around_camera.empty()) return nullptr;
-  if (!knows_media(version == 3 && integrator.type.empty() ? "path" : integrator.type)) {
+  if (!knows_media(*this)) {
     importing.inexact(fmt::format("the medium '{}' around the camera is left out, as pbrt's integrator '{}' does",
                                   around_camera, integrator.type.empty() ? "path" : integrator.type),
                       around_camera_at);

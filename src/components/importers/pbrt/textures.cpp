@@ -211,13 +211,14 @@ Ref<Component> make_map(Reader& reader, const std::string& type, bool spectrum, 
     p.forget();
     return reader.make("ConstantMap", at);
   }
-  throw Error(fmt::format("there is no texture '{}'{}", type,
-                          suggestion(type, {"constant", "imagemap", "checkerboard", "bilerp", "scale", "mix", "directionmix",
-                                            "fbm", "wrinkled", "windy", "marble", "dots", "uv", "ptex"})),
-              at);
+  throw LeftOut(fmt::format("there is no texture '{}'{}", type,
+                            suggestion(type, {"constant", "imagemap", "checkerboard", "bilerp", "scale", "mix", "directionmix",
+                                              "fbm", "wrinkled", "windy", "marble", "dots", "uv", "ptex"})),
+                at);
 }
 
-Value texture(Reader& reader, const Parameter& p, bool spectrum) {
+/// Version 3 has only those that were made before, and otherwise what it takes without any.
+Value texture(Reader& reader, const Parameter& p, bool spectrum, double otherwise) {
   if (p.strings.size() != 1) throw Error(fmt::format("'{}' must name one texture", p.name), p.at);
   const auto& textures = spectrum ? reader.spectrum_textures : reader.float_textures;
   const auto& others = spectrum ? reader.float_textures : reader.spectrum_textures;
@@ -227,10 +228,11 @@ Value texture(Reader& reader, const Parameter& p, bool spectrum) {
   }
   std::vector<std::string> known;
   for (const auto& [name, map] : textures) known.push_back(name);
-  throw Error(fmt::format("there is no {} texture '{}'{}", spectrum ? "spectrum" : "float", p.strings[0],
-                          others.contains(p.strings[0]) ? fmt::format(", but a {} texture", spectrum ? "float" : "spectrum")
-                                                        : suggestion(p.strings[0], known)),
-              p.at);
+  reader.tolerate(fmt::format("there is no {} texture '{}'{}", spectrum ? "spectrum" : "float", p.strings[0],
+                              others.contains(p.strings[0]) ? fmt::format(", but a {} texture", spectrum ? "float" : "spectrum")
+                                                            : suggestion(p.strings[0], known)),
+                  fmt::format("'{}' is {}", p.name, otherwise), p.at);
+  return Value(Number{otherwise}, p.at);
 }
 
 }  // namespace
@@ -267,20 +269,20 @@ Ref<Component> formula(Reader& reader, Location at, const std::string& text,
 Value number_map(Reader& reader, const Parameters& p, std::initializer_list<std::string_view> names, double otherwise) {
   const Parameter* found = p.first_of(names);
   if (!found) return Value(Number{otherwise}, p.at);
-  if (found->is("texture")) return texture(reader, *found, false);
-  return Value(Number{p.number(found->name, otherwise)}, found->at);
+  if (found->is("texture")) return texture(reader, *found, false, otherwise);
+  return Value(Number{p.first_number(found->name, otherwise)}, found->at);
 }
 
 Value color_map(Reader& reader, const Parameters& p, std::initializer_list<std::string_view> names, double otherwise, Use use) {
   const Parameter* found = p.first_of(names);
   if (!found) return Value(Number{otherwise}, p.at);
-  if (found->is("texture")) return texture(reader, *found, true);
+  if (found->is("texture")) return texture(reader, *found, true, otherwise);
   return Value(spectrum_of(reader, p, *found, use), found->at);
 }
 
 void make_texture(Reader& reader, const std::string& name, const std::string& kind, const std::string& type, Parameters&& p) {
   const bool spectrum = kind == "spectrum" || kind == "color";
-  if (!spectrum && kind != "float") throw Error(fmt::format("a texture is of float or spectrum, not of '{}'", kind), p.at);
+  if (!spectrum && kind != "float") throw LeftOut(fmt::format("a texture is of float or spectrum, not of '{}'", kind), p.at);
   reader.named_depth = 0;
   Ref<Component> map = make_map(reader, type, spectrum, p);
   if (reader.named_depth >= Reader::most_nested)

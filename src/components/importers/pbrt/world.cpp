@@ -1,6 +1,9 @@
 // What stands in the world: objects, their materials and emission, instances.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "reader.h"
 
@@ -85,7 +88,45 @@ void light_unseen(Reader& reader, Component& object, const Ref<Component>& emiss
 
 }  // namespace
 
+// v3 asks a shape's parameters before those of its material, whatever the material asks for.
+size_t Reader::material_for(const Parameters& shape) {
+  if (version != 3) return state.material;
+  constexpr std::string_view of_shapes[] = {"alpha", "shadowalpha", "filename", "type", "scheme"};  // whatever a material asks
+  const Parameters& of = materials[state.material].parameters;
+  std::vector<const Parameter*> said;
+  for (const Parameter& p : shape.own)
+    if (std::ranges::count(of_shapes, p.name) == 0 && of.asked_for(p.name)) said.push_back(&p);
+  if (said.empty()) return state.material;
+  std::string key = std::to_string(state.material);
+  Material changed{materials[state.material].type, {}, of, {}};
+  changed.parameters.forget();  // what nothing reads of it was told
+  changed.parameters.overridden.clear();
+  for (const Parameter* p : said) {
+    p->used = true;
+    key += fmt::format("|{}|{}|{}|{}", p->type, p->name, fmt::join(p->numbers, ","), fmt::join(p->strings, ","));
+    std::erase_if(changed.parameters.own, [&](const Parameter& other) { return other.name == p->name; });
+    changed.parameters.own.push_back(*p);
+  }
+  const auto [known, added] = changed_materials_.try_emplace(key, materials.size());
+  if (added) {
+    materials.push_back(std::move(changed));
+    make_with_present_textures(*this, known->second);
+  }
+  return known->second;
+}
+
 void Reader::shape(const std::string& type, Parameters&& p) {
+  const size_t material = std::exchange(state.material, material_for(p));
+  try {
+    add_shape(type, std::move(p));
+  } catch (...) {
+    state.material = material;
+    throw;
+  }
+  state.material = material;
+}
+
+void Reader::add_shape(const std::string& type, Parameters&& p) {
   const Location at = p.at;
   const Value alpha = opacity_of(*this, p);
   const Number* whole = alpha.as<Number>();
@@ -146,12 +187,12 @@ void Reader::end_object(Location at) {
 }
 
 void Reader::instance(const std::string& name, Location at) {
-  if (in_object()) throw Error("an object cannot be instanced within the definition of another", at);
+  if (in_object()) throw LeftOut("an object cannot be instanced within the definition of another", at);
   const auto found = instanced_.find(name);
   if (found == instanced_.end()) {
     std::vector<std::string> known;
     for (const auto& [n, scene] : instanced_) known.push_back(n);
-    throw Error(fmt::format("there is no object named '{}'{}", name, suggestion(name, known)), at);
+    throw LeftOut(fmt::format("there is no object named '{}'{}", name, suggestion(name, known)), at);
   }
   if (found->second->objects.empty()) return;
   const Ref<Component> object = make("Instance", at);

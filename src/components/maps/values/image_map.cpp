@@ -121,6 +121,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
         fail("file", e.what());
       }
     }
+    cube_ = !tiled_ && tiles_.front()->from_cube();
   }
 
   /// Returns how many channels the image has.
@@ -128,7 +129,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
     rgb[0] = rgb[1] = rgb[2] = 0;
     float u = p.uv.x * repeat.x, v = p.uv.y * repeat.y;
     const ImageTexture* texture = tiles_.front().get();
-    Wraps outside(wrap, wrap_v == WrapV::same ? wrap : Wrap(int(wrap_v) - 1));
+    Wraps outside(wrap, wrap_v != WrapV::same ? Wrap(int(wrap_v) - 1) : (cube_ ? Wrap::clamp : wrap));
     if (tiled_) {
       float column = std::floor(u), row = std::floor(v);
       // The far border of a square belongs to it where no other begins.
@@ -170,7 +171,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
 
   const RgbSpace* space_ = nullptr;
   float weights_[3] = {};  // of red, green and blue in a number
-  bool tiled_ = false;
+  bool tiled_ = false, cube_ = false;
   std::vector<std::shared_ptr<const ImageTexture>> ahead_;
   std::vector<std::shared_ptr<const ImageTexture>> tiles_;  // the only one, or that of square (u, v) at 10 v + u
 };

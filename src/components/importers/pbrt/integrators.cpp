@@ -1,0 +1,159 @@
+// Integrators: which renderer finds the same light, and what of its settings is pbrt's.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reader.h"
+
+namespace etendue::pbrt {
+
+namespace {
+
+struct Algorithm {
+  const char *type, *renderer;
+  const char* difference;  ///< null: the same
+  bool media;              ///< whether pbrt's finds its way through media
+};
+constexpr Algorithm algorithms[] = {
+    {"path", "PathTracer", nullptr, false},
+    {"volpath", "PathTracer", nullptr, true},
+    {"simplepath", "PathTracer", nullptr, false},
+    {"simplevolpath", "PathTracer", nullptr, true},
+    {"randomwalk", "PathTracer", nullptr, false},
+    {"bdpt", "BidirectionalPathTracer", nullptr, true},
+    {"lightpath", "LightTracer", nullptr, false},
+    {"mlt", "PathSpaceMetropolis", "Metropolis light transport by mutations of paths, where pbrt mutates their numbers", true},
+    {"sppm", "ProgressivePhotonMapper", nullptr, false},
+    // Direct light and what mirrors and glass show: version 3's two ways to find it, one without combined strategies.
+    {"directlighting", "DirectRenderer", nullptr, false},
+    {"whitted", "DirectRenderer", nullptr, false},
+    {"ao", "AmbientOcclusionRenderer", nullptr, false},
+    {"ambientocclusion", "AmbientOcclusionRenderer", nullptr, false},
+};
+
+constexpr double pi = 3.14159265358979323846;
+
+void set_depth(Reader& reader, Component& renderer, const Parameters& p) {
+  const bool direct = renderer.class_info().name == "DirectRenderer";
+  if (!direct && !renderer.class_info().find("max_depth")) return;
+  const int bounces = p.integer("maxdepth", 5);
+  if (bounces < 0) throw Error(fmt::format("'maxdepth' must not be negative"), p.place("maxdepth"));
+  if (!direct)  // pbrt counts where light is scattered, here the segments between: one more
+    return set_member(renderer, "max_depth", std::min(bounces, 99'999) + 1, p.at);
+  // Version 3 counts the surfaces that are seen, from the camera from mirror to mirror; each gets the light of all luminaires.
+  constexpr int deepest = 64;
+  if (bounces > deepest) reader.importing.inexact(fmt::format("'maxdepth' is at most {} here", deepest), p.place("maxdepth"));
+  set_member(renderer, "mirrors", "surfaces", p.at);
+  set_member(renderer, "view_depth", std::clamp(bounces, 1, deepest), p.at);
+}
+
+void set_light_sampler(Reader& reader, Component& renderer, const Parameters& p) {
+  const Parameter* given = p.first_of({"lightsampler", "lightsamplestrategy"});
+  if (!given || !renderer.class_info().find("light_sampler")) return;
+  const std::string type = p.text(given->name);
+  const char* name = type == "uniform"                                            ? "UniformLightSampler"
+                     : type == "power"                                            ? "PowerLightSampler"
+                     : type == "bvh" || type == "exhaustive" || type == "spatial" ? "TreeLightSampler"
+                                                                                  : nullptr;
+  if (name)
+    set_member(renderer, "light_sampler", reader.make(name, given->at), given->at);
+  else
+    reader.importing.inexact(fmt::format("the light sampler '{}' is not known", type), given->at);
+}
+
+/// pbrt's is dark where the camera sees nothing, and looks about true normals. Version 3 has not divided by pi.
+void set_openness(Reader& reader, Component& renderer, const Parameters& p) {
+  if (const double distance = p.number("maxdistance", 0); distance > 0 && distance < 1e30)
+    set_member(renderer, "distance", distance, p.at);
+  set_member(renderer, "background", 0, p.at);
+  set_member(renderer, "shading_normals", false, p.at);
+  const double open = (reader.version == 3 ? pi : 1) * reader.exposure;
+  if (open != 1) set_member(renderer, "open", open, p.at);
+  p.ignore({"cossample", "nsamples"});
+}
+
+/// Whether a material scatters light in one direction alone, as far as its parameters say so.
+bool may_be_smooth(const Material& m) {
+  for (const char* smooth : {"mirror", "thindielectric"})
+    if (m.type == smooth) return true;
+  for (const char* either : {"glass", "dielectric", "conductor", "metal", "coateddiffuse", "coatedconductor", "uber"}) {
+    if (m.type != either) continue;
+    return std::ranges::none_of(m.parameters.own, [](const Parameter& p) {
+      return p.name.find("roughness") != p.name.npos && p.name != "remaproughness" &&
+             !(p.numbers.size() == 1 && p.numbers[0] == 0);
+    });
+  }
+  return false;
+}
+
+/// Directions that the surface has no part in: of mirrors and smooth glass pbrt then finds nothing.
+void tell_blind_walks(Reader& reader, const Parameters& p) {
+  if (std::ranges::any_of(reader.materials, may_be_smooth))
+    reader.importing.inexact(
+        fmt::format("the integrator '{}' tries all directions alike, so that mirrors and smooth glass are black in pbrt; here "
+                    "they are not",
+                    reader.integrator.type),
+        p.at);
+}
+
+/// The integrator that a scene has; null: it is not known.
+const Algorithm* algorithm_of(const Reader& reader) {
+  std::string_view type = reader.integrator.type;
+  if (type.empty()) type = reader.version == 4 ? "volpath" : "path";
+  const auto* const found = std::ranges::find_if(algorithms, [&](const Algorithm& a) { return type == a.type; });
+  return found == std::end(algorithms) ? nullptr : found;
+}
+
+}  // namespace
+
+bool knows_media(const Reader& reader) {
+  const Algorithm* const found = algorithm_of(reader);
+  return found && found->media;
+}
+
+Integrator make_integrator(Reader& reader, int samples) {
+  const Setting& s = reader.integrator;
+  const Parameters& p = s.parameters;
+  const Algorithm* const found = algorithm_of(reader);
+  if (!found)
+    reader.importing.inexact(fmt::format("the integrator '{}' is not known: path tracing is taken", s.type), p.at);
+  else if (found->difference)
+    reader.importing.inexact(found->difference, p.at);
+  const Ref<Component> renderer = reader.make(found ? found->renderer : "PathTracer", p.at);
+  const bool light = renderer->class_info().name != "AmbientOcclusionRenderer";
+  if (found && !found->media && light && !reader.media.empty())
+    reader.importing.inexact(
+        fmt::format("the integrator '{}' leaves media out in pbrt; those within objects are there here", found->type), p.at);
+  set_depth(reader, *renderer, p);
+  set_light_sampler(reader, *renderer, p);
+  int count = samples;
+  if (s.type == "mlt") {
+    count = p.integer("mutationsperpixel", 100);
+    p.ignore({"bootstrapsamples", "chains", "largestepprobability", "sigma"});
+  } else if (s.type == "sppm") {
+    count = p.integer(p.has("numiterations") ? "numiterations" : "iterations", reader.version == 3 ? 64 : count);
+    if (p.has("radius"))
+      reader.importing.inexact("the radius of photons is found from the picture, not the one given", p.place("radius"));
+    if (const int walks = p.integer("photonsperiteration", -1); walks > 0) set_member(*renderer, "photon_walks", walks, p.at);
+    p.ignore({"imagewritefrequency"});
+    if (p.has("seed")) reader.seed = p.integer("seed", 0);
+  } else if (!light) {
+    set_openness(reader, *renderer, p);
+  } else if (s.type == "directlighting") {
+    const std::string strategy = p.text("strategy", "all");  // whether one luminaire is asked or each, for the same mean
+    if (strategy != "all" && strategy != "one")
+      reader.importing.inexact(fmt::format("there is no strategy '{}'", strategy), p.place("strategy"));
+  } else if (s.type == "randomwalk" || s.type == "simplevolpath" ||
+             (s.type == "simplepath" && !p.boolean("samplelights", true))) {
+    set_member(*renderer, "next_event", false, p.at);
+  }
+  if (s.type == "randomwalk" || (s.type == "simplepath" && !p.boolean("samplebsdf", true))) tell_blind_walks(reader, p);
+  if (p.boolean("regularize", false))
+    reader.importing.inexact("'regularize' is left out: nothing is made rougher than it is", p.place("regularize"));
+  p.ignore({"rrthreshold", "samplebsdf", "visualizestrategies", "visualizeweights"});
+  if (p.has("pixelbounds")) reader.importing.inexact("'pixelbounds' of an integrator are left out", p.place("pixelbounds"));
+  return {renderer, count};
+}
+
+}  // namespace etendue::pbrt

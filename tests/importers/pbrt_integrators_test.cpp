@@ -1,0 +1,91 @@
+// Integrators of pbrt, by pictures that follow from what they are.
+
+#include "pbrt_support.h"
+
+namespace etendue::pbrt_test {
+namespace {
+
+const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
+const std::string matt = "Material \"matte\" \"rgb Kd\" [.5 .5 .5]\n", mirror = "Material \"mirror\" \"rgb Kr\" [.9 .9 .9]\n";
+
+std::string ball(double z) { return "AttributeBegin Translate 0 0 " + std::to_string(z) + " Shape \"sphere\" AttributeEnd\n"; }
+/// A triangle across the z axis, of about this size.
+std::string plate(double z, double size) {
+  const std::string s = std::to_string(size), at = std::to_string(z);
+  return "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [-" + s + " -" + s + " " + at + " " + s + " -" + s +
+         " " + at + " 0 " + s + " " + at + "]\n";
+}
+
+Imported by(const std::string& integrator, const std::string& world) {
+  return import_text(v3(world, "\"float fov\" 1", "Integrator " + integrator + "\n"));
+}
+double brightness(const std::string& integrator, const std::string& world) {
+  const Imported i = by(integrator, world);
+  EXPECT_EQ(i.told(), "");
+  return seen(i, 1024).y;
+}
+
+// Both of version 3 find the direct light of all luminaires, with an extent or without: of the albedo 0.5 under a white sky
+// half of it comes back, of a point of intensity 10 at distance 5 along the normal 10 / 25 * 0.5 / pi.
+TEST(PbrtIntegrators, WhittedAndDirectLightingSeeAllLuminaires) {
+  for (const std::string integrator : {"\"whitted\"", "\"directlighting\"", "\"directlighting\" \"string strategy\" \"one\""}) {
+    EXPECT_NEAR(brightness(integrator, sky + matt + ball(5)), 0.5, 0.005) << integrator;
+    EXPECT_NEAR(brightness(integrator, "LightSource \"point\" \"rgb I\" [10 10 10]\n" + matt + plate(5, 1)),
+                10.0 / 25 * 0.5 / M_PI, 0.001)
+        << integrator;
+    // A luminous sphere all around.
+    EXPECT_NEAR(brightness(integrator,
+                           "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] ReverseOrientation Shape \"sphere\" "
+                           "\"float radius\" 50 AttributeEnd\n" +
+                               matt + ball(5)),
+                0.5, 0.005)
+        << integrator;
+  }
+}
+
+// Depths count surfaces that are seen: the first one alone is no mirror, and of glass what is reflected first.
+TEST(PbrtIntegrators, MirrorsAndGlassAreFollowed) {
+  const std::string behind = sky + matt + plate(-5, 5) + mirror + plate(5, 0.2);
+  const std::string glass = sky + "Material \"glass\" \"float eta\" 1.5\n" + ball(5);
+  for (const std::string integrator : {"\"whitted\"", "\"directlighting\""}) {
+    EXPECT_NEAR(brightness(integrator, behind), 0.9 * 0.5, 0.005) << integrator;
+    EXPECT_NEAR(brightness(integrator + " \"integer maxdepth\" 2", behind), 0.9 * 0.5, 0.005) << integrator;
+    EXPECT_EQ(brightness(integrator + " \"integer maxdepth\" 1", behind), 0) << integrator;
+    EXPECT_NEAR(brightness(integrator + " \"integer maxdepth\" 2", glass), 0.04, 0.001) << integrator;
+    EXPECT_NEAR(brightness(integrator + " \"integer maxdepth\" 3", glass), 0.04 + 0.96 * 0.96, 0.002) << integrator;
+    EXPECT_NEAR(brightness(integrator, glass), 1, 0.002) << integrator;
+  }
+  // What surfaces send each other is not found.
+  EXPECT_EQ(brightness("\"whitted\"", "LightSource \"point\" \"rgb I\" [1 1 1] \"point from\" [0 9 0]\n" + matt + plate(5, 1) +
+                                          "Translate 0 9 0\n" + ball(0)),
+            0);
+}
+
+// Version 3 has not divided by pi; where nothing is seen it is dark.
+TEST(PbrtIntegrators, AmbientOcclusion) {
+  EXPECT_NEAR(brightness("\"ambientocclusion\"", ball(5)), M_PI, 0.01);
+  EXPECT_EQ(brightness("\"ambientocclusion\"", ""), 0);
+  const auto v4_seen = [](const std::string& world) {
+    return seen(import_text(v4(world, "", "\"float fov\" 1", "Integrator \"ambientocclusion\"\n")), 256).y;
+  };
+  EXPECT_NEAR(v4_seen(ball(5)), 1, 0.005);
+  EXPECT_EQ(v4_seen(""), 0);
+}
+
+TEST(PbrtIntegrators, DifferencesAreTold) {
+  const auto told = [](const std::string& integrator, const std::string& world) {
+    return import_text(v4(world, "", "\"float fov\" 1", "Integrator " + integrator + "\n")).told();
+  };
+  const std::string glass = "Material \"dielectric\"\n" + ball(5), rough = "Material \"dielectric\" \"float roughness\" .1\n";
+  EXPECT_NE(told("\"randomwalk\"", glass).find("1:1: the integrator 'randomwalk' tries all directions alike"),
+            std::string::npos);
+  EXPECT_NE(told("\"simplepath\" \"bool samplebsdf\" false", glass).find("tries all directions alike"), std::string::npos);
+  EXPECT_EQ(told("\"simplepath\"", glass), "");
+  EXPECT_EQ(told("\"randomwalk\"", rough + ball(5)), "");
+  const std::string medium = "MakeNamedMedium \"m\" \"string type\" \"homogeneous\"\nMediumInterface \"m\" \"\"\n" + glass;
+  EXPECT_NE(told("\"path\"", medium).find("the integrator 'path' leaves media out in pbrt"), std::string::npos);
+  EXPECT_EQ(told("\"volpath\"", medium).find("leaves media out"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace etendue::pbrt_test
