@@ -107,14 +107,18 @@ def grove(name, kinds):
 
 
 def ground(x, z):
-    """The height of forest.etd's ground at a place."""
-    return 2.2 * math.sin(0.045 * x + 0.6) * math.cos(0.037 * z) + 0.9 * math.sin(0.11 * z + 0.05 * x)
+    """The height of forest.etd's ground at a place: hills that rise inland, and the bed of a lake, whose water stands at -0.5 m."""
+    shore = z + 1.6 * math.sin(0.13 * x) + 0.9 * math.sin(0.31 * x + 1)
+    inland = max(0.0, min(1.0, (-4 - z) / 36))
+    bed = max(0.0, min(1.0, (shore + 3) / 12))
+    hills = 2.2 * math.sin(0.045 * x + 0.6) * math.cos(0.037 * z) + 0.9 * math.sin(0.11 * z + 0.05 * x)
+    return inland * (hills + 0.07 * (-4 - z)) - 3 * bed * bed * (3 - 2 * bed)
 
 
 parts = ["# The trees of forest.etd, as make_forest.py wrote them: leaves in twigs in trees in groves in the forest.\n",
          """bark = Lambertian { color: srgb(0.36, 0.28, 0.21) }
-leaf_green = DiffuseTransmitter { reflectance: srgb(0.3, 0.42, 0.13), transmittance: srgb(0.32, 0.45, 0.08) }
-birch_green = DiffuseTransmitter { reflectance: srgb(0.45, 0.52, 0.15), transmittance: srgb(0.5, 0.56, 0.1) }
+leaf_green = DiffuseTransmitter { reflectance: srgb(0.25, 0.36, 0.15), transmittance: srgb(0.3, 0.42, 0.1) }
+birch_green = DiffuseTransmitter { reflectance: srgb(0.38, 0.45, 0.17), transmittance: srgb(0.45, 0.52, 0.14) }
 autumn = DiffuseTransmitter { reflectance: srgb(0.62, 0.36, 0.1), transmittance: srgb(0.62, 0.33, 0.06) }
 fir_green = DiffuseTransmitter { reflectance: srgb(0.16, 0.28, 0.17), transmittance: srgb(0.08, 0.16, 0.07) }
 """,
@@ -144,7 +148,7 @@ heights = [ground(-80 + 4 * i, -(-40 + 4 * j)) for j in range(ny) for i in range
 parts.append("""forest_floor = Heightfield {
     nx: %d, ny: %d, size: [160, 200] m, height: 1 m, smooth: true, transform: translate(0, 0, -60) * rotate(-90, "x")
     heights: [%s]
-    shader: Lambertian { color: FbmMap { first: srgb(0.32, 0.3, 0.16), second: srgb(0.42, 0.5, 0.2), size: 6 m } }
+    shader: Lambertian { color: FbmMap { first: srgb(0.3, 0.26, 0.17), second: srgb(0.38, 0.44, 0.2), size: 6 m } }
 }
 """ % (nx, ny, ", ".join("%.2f" % h for h in heights)))
 
