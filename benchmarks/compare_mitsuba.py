@@ -50,7 +50,7 @@ def mitsuba(variant, scene, samples, out, repeat):
 
 def etendue(program, samples, out, seed=0, more=()):
     seconds, text = run([program, "render", os.path.join(HERE, "..", "scenes", "cornell_box.etd"), "--samples", str(samples),
-                         "--seed", str(seed), "-o", out, "--progress", "json", *more])
+                         "-D", "size=256", "-D", "fov=39.3077deg", "--seed", str(seed), "-o", out, "--progress", "json", *more])
     done = [json.loads(line) for line in text.splitlines() if '"done"' in line][-1]
     return seconds, done["seconds"]
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "etendue/exporter.h"
 #include "support/process.h"
 #include "support/render_support.h"
 
@@ -103,6 +104,20 @@ TEST(CubeEnvironment, LongitudeAndLatitudeStayAsTheyAre) {
   for (const Vector3& d : {Vector3{1, 0.3f, 0.2f}, Vector3{-0.3f, -0.8f, 0.4f}})
     EXPECT_EQ(seen("EnvironmentEmission { file: \"" + said + "\" }", d),
               seen("EnvironmentEmission { file: \"" + silent + "\" }", d));
+}
+
+// Mitsuba knows no cubes: it gets the picture in longitude and latitude.
+TEST(CubeEnvironment, IsExportedAsWhatOthersRead) {
+  const TemporaryFolder folder;
+  const std::string cube =
+      folder.write("cube.exr", exr(8, 48, 1, [](int x, int y) { return float(radiance(direction(8, x, y))); }));
+  const Ref<Job> job = load_job_text(test::job_text("PathTracer {}", "PerspectiveCamera { from: [0, 0, 1], to: [0, 0, 0] }", 4,
+                                                    "Environment { emission: EnvironmentEmission { file: \"" + cube + "\" } }"),
+                                     "t.etd");
+  Exporting exporting(folder / "out.xml");
+  const std::string text = exporter_of(folder / "out.xml")->write(*job, exporting);
+  EXPECT_EQ(text.find("cube.exr"), std::string::npos) << text;
+  EXPECT_NE(text.find(".pfm"), std::string::npos) << text;
 }
 
 TEST(CubeEnvironment, WhatCannotBeOneIsRefused) {

@@ -48,8 +48,9 @@ class FaultyPathTracer final : public Renderer {
       if (walk.length >= max_depth) break;
       const NumberStream::Bounce u = walk.numbers.next_bounce();
       DirectLight direct;
-      if (v.scatters_smoothly() && propose_direct_light(*light_sampler, v, ray.time, sample.wavelengths, u.light_choice,
-                                                        u.light_point, Heuristic::power, direct, ScatteringOf{v}))
+      if (v.scatters_smoothly() &&
+          propose_direct_light(context.scene, *light_sampler, v, ray.time, sample.wavelengths, u.light_choice, u.light_point,
+                               Heuristic::power, direct, ScatteringOf{v}))
         add(walk.length + 1, walk.throughput * arriving(walk, direct));
       const auto next = walk.sample_direction(u.lobe_choice, u.direction);
       if (!next) break;
