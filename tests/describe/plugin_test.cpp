@@ -81,7 +81,7 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
   EXPECT_NEAR(darker, 0.4, 0.01);
 
   // The renderer of the other page renders what the built-in one does.
-  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
+  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd -D fov=39.3077deg --plugin " + f +
                     "/build/libstudent_tracer.so --renderers PathTracer,StudentTracer --samples 512 --size 48x48 --quiet",
                 &output),
             0)
@@ -115,14 +115,14 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
   EXPECT_GE(kills, 2);
   EXPECT_EQ(run("cmp " + f + "/undisturbed.npy " + f + "/killed.npy", &output), 0) << output;
   // What holds a path tracer inside finds what that finds.
-  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
+  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd -D fov=39.3077deg --plugin " + f +
                     "/build/libsmall_metropolis.so --renderers 'PathTracer,SmallMetropolis { inner: PathTracer "
                     "{}, bootstrap: 1024 }' --samples 256 --size 32x32 --quiet",
                 &output),
             0)
       << output;
   // A mutation takes part in those that are built in.
-  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + f +
+  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd -D fov=39.3077deg --plugin " + f +
                     "/build/libturn_mutation.so --renderers 'PathTracer,PathSpaceMetropolis { mutations: [ TurnMutation {} ], "
                     "bootstrap: 0.5 }' --samples 256 --size 32x32 --quiet",
                 &output),
