@@ -14,7 +14,7 @@
 namespace etendue::detail {
 
 /// Raised whenever a public header changes what plugins see.
-#define ETENDUE_INTERFACE_VERSION 9
+#define ETENDUE_INTERFACE_VERSION 10
 
 /// The width [bytes] of the widest vector registers the compiler may use. A Spectrum is handed over in one of them when it
 /// fits, else in memory or in several: who was compiled otherwise reads it from the wrong place.
