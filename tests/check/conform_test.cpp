@@ -75,7 +75,6 @@ const std::multimap<std::string, std::string> never_tried = {
     {"ProjectorEmission", "power is the integral of radiance, on a Environment"},
     {"IesEmission", "power is the integral of radiance, on a Environment"},
     {"GoniometricEmission", "power is the integral of radiance, on a Environment"},
-    {"SignedDistanceGrid", "reads a sample file as file"},
     {"TriangleMesh", "reads a sample file as motion_files"}};
 
 std::string untried(const std::vector<Outcome>& outcomes) {
