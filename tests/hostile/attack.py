@@ -22,6 +22,7 @@ import concurrent.futures
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import signal
@@ -95,8 +96,10 @@ def verdict(status, said, memory, seed, data, limit):
         return "memory"
     if status not in (0, 1, 2) or "unexpected failure" in said:
         return "odd"
-    # What an included file no longer defines is missed where it is used.
-    named = seed.name in said or (seed.format == "etd included" and "is not defined" in said)
+    # What an included file no longer defines is missed where it is used; and a number of it that is right by itself, but too
+    # large for the component that gets it, is told at that component.
+    used = r"is not defined|^\s*scene\.etd:\d+:\d+: [A-Z]\w+: "
+    named = seed.name in said or (seed.format == "etd included" and re.search(used, said, re.MULTILINE))
     if status != 0 and not named:
         return "nameless"
     return None

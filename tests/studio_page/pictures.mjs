@@ -94,7 +94,7 @@ async function webp(browser, png) {
     const canvas = document.createElement("canvas");
     [canvas.width, canvas.height] = [image.width, image.height];
     canvas.getContext("2d").drawImage(image, 0, 0);
-    return canvas.toDataURL("image/webp", 0.9).split(",")[1];
+    return canvas.toDataURL("image/webp", 0.8).split(",")[1];
   }, png.toString("base64"));
   await page.context().close();
   return Buffer.from(data, "base64");
