@@ -21,7 +21,7 @@ export const chromiumPath = process.env.ETENDUE_CHROMIUM ?? "/usr/bin/chromium";
  */
 export const patience = 180;
 /** Of a whole test, after which something hangs. */
-export const whole = { timeout: 3_000_000 };
+export const whole = { timeout: 600_000 };
 
 /** A folder of its own that goes away with the test. */
 export function scratch(t) {

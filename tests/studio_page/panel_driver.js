@@ -80,8 +80,17 @@ globalThis.driver = (() => {
   };
   const complaint = (id, member) => fieldOf(id, member)?.querySelector("[role=alert]")?.textContent ?? "";
 
+  /** Once the program has answered all edits. That one is on its way is shown when the page is drawn next, not at once. */
+  async function idle() {
+    await pause(8);
+    await until(() => document.querySelector(".panel")?.getAttribute("aria-busy") !== "true");
+  }
+
+  /** What became of an edit, once it is answered: null if it neither changed anything nor was refused. */
   async function settled(id, member, before) {
-    return until(() => (signature(id, member) !== before ? "changed" : complaint(id, member) ? "refused" : null));
+    await idle();
+    await studio.ask("watch", { what: "none" }); // whatever the edit has changed was told before this is answered
+    return signature(id, member) !== before ? "changed" : complaint(id, member) ? "refused" : null;
   }
 
   /** Takes away what was said of an earlier try, so that what is said next is seen. */
@@ -104,7 +113,8 @@ globalThis.driver = (() => {
       set(entry, text);
       key(entry, "Enter", { ctrlKey: true });
       const end = await settled(id, member, before);
-      entry.blur();
+      entry.blur(); // which tries what was refused once more
+      await idle();
       if (end === "changed") return "changed";
       refused = complaint(id, member) || refused;
       key(entry, "Escape");

@@ -62,6 +62,7 @@ test(`${wanted} random edits are undone to the first byte`, whole, async (t) => 
       const member = plain[random(plain.length)];
       const back = component.members[member.name].written && random(4) === 0;
       const outcome = await page.evaluate(([id, m, reset]) => (reset ? driver.reset(id, m.name) : driver.edit(id, m)), [component.id, member, back]);
+      if (process.env.ETENDUE_TELL) console.error(`${name}.${member.name}: ${back ? "reset" : "edit"}: ${outcome}, ${Math.round(performance.now())} ms`);
       outcomes.set(outcome.slice(0, 7), (outcomes.get(outcome.slice(0, 7)) ?? 0) + 1);
       if (outcome === "changed") ++made;
     }

@@ -46,8 +46,24 @@ export function dropKept(component: number, member: string, index?: number): voi
   setWrong(key(component, member, index), null);
 }
 
+/** Edits of members that the program has not answered yet. */
+export const unanswered = signal(0);
+
+async function answered<T>(edit: Promise<T>): Promise<T> {
+  ++unanswered.value;
+  try {
+    return await edit;
+  } finally {
+    --unanswered.value;
+  }
+}
+
 /** Sets a member; with what was refused before if both together are valid, in one step of undo. */
-export async function setMember(component: number, member: string, text: string, more: { index?: number; merge?: string } = {}): Promise<boolean> {
+export function setMember(component: number, member: string, text: string, more: { index?: number; merge?: string } = {}): Promise<boolean> {
+  return answered(set(component, member, text, more));
+}
+
+async function set(component: number, member: string, text: string, more: { index?: number; merge?: string }): Promise<boolean> {
   const at = key(component, member, more.index);
   const before = [...kept.value].filter(([k, e]) => k !== at && e.component === component);
   const one = { component, member, text, ...(more.index === undefined ? {} : { index: more.index }) };
@@ -75,7 +91,11 @@ export async function setMember(component: number, member: string, text: string,
   }
 }
 
-export async function resetMember(component: number, member: string): Promise<void> {
+export function resetMember(component: number, member: string): Promise<void> {
+  return answered(reset(component, member));
+}
+
+async function reset(component: number, member: string): Promise<void> {
   keep(key(component, member), null);
   try {
     await demand("reset", { component, member });

@@ -11,7 +11,7 @@ import { inline } from "../parts/markdown.tsx";
 import { Button } from "../parts/parts.tsx";
 import { texts } from "../texts.ts";
 import { choosing, renaming } from "../tree/actions.ts";
-import { forgetWrong } from "./edit.ts";
+import { forgetWrong, unanswered } from "./edit.ts";
 import { explain, Field } from "./field.tsx";
 
 const t = texts.panel;
@@ -27,7 +27,7 @@ export function Panel(): JSX.Element {
   const info = classes.value.find(component.class);
   const elsewhere = component.written === "elsewhere";
   return (
-    <section class="panel" data-component={component.id} aria-label={t.of(component.name ?? component.class)}>
+    <section class="panel" data-component={component.id} aria-busy={unanswered.value > 0} aria-label={t.of(component.name ?? component.class)}>
       <Head component={component} />
       {info && <p class="summary">{inline(info.summary)}</p>}
       {elsewhere && <p class="hint">{t.elsewhere(component.file ?? "")}</p>}

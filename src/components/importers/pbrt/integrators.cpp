@@ -12,24 +12,23 @@ namespace {
 
 struct Algorithm {
   const char *type, *renderer;
-  const char* difference;  ///< null: the same
-  bool media;              ///< whether pbrt's finds its way through media
+  bool media;  ///< whether pbrt's finds its way through media
 };
 constexpr Algorithm algorithms[] = {
-    {"path", "PathTracer", nullptr, false},
-    {"volpath", "PathTracer", nullptr, true},
-    {"simplepath", "PathTracer", nullptr, false},
-    {"simplevolpath", "PathTracer", nullptr, true},
-    {"randomwalk", "PathTracer", nullptr, false},
-    {"bdpt", "BidirectionalPathTracer", nullptr, true},
-    {"lightpath", "LightTracer", nullptr, false},
-    {"mlt", "PathSpaceMetropolis", "Metropolis light transport by mutations of paths, where pbrt mutates their numbers", true},
-    {"sppm", "ProgressivePhotonMapper", nullptr, false},
+    {"path", "PathTracer", false},
+    {"volpath", "PathTracer", true},
+    {"simplepath", "PathTracer", false},
+    {"simplevolpath", "PathTracer", true},
+    {"randomwalk", "PathTracer", false},
+    {"bdpt", "BidirectionalPathTracer", true},
+    {"lightpath", "LightTracer", false},
+    {"mlt", "MultiplexedMetropolis", true},
+    {"sppm", "ProgressivePhotonMapper", false},
     // Direct light and what mirrors and glass show: version 3's two ways to find it, one without combined strategies.
-    {"directlighting", "DirectRenderer", nullptr, false},
-    {"whitted", "DirectRenderer", nullptr, false},
-    {"ao", "AmbientOcclusionRenderer", nullptr, false},
-    {"ambientocclusion", "AmbientOcclusionRenderer", nullptr, false},
+    {"directlighting", "DirectRenderer", false},
+    {"whitted", "DirectRenderer", false},
+    {"ao", "AmbientOcclusionRenderer", false},
+    {"ambientocclusion", "AmbientOcclusionRenderer", false},
 };
 
 constexpr double pi = 3.14159265358979323846;
@@ -60,6 +59,26 @@ void set_light_sampler(Reader& reader, Component& renderer, const Parameters& p)
     set_member(renderer, "light_sampler", reader.make(name, given->at), given->at);
   else
     reader.importing.inexact(fmt::format("the light sampler '{}' is not known", type), given->at);
+}
+
+/// The number nearest to one of pbrt's that a member may have; told when it is another.
+void set_within(Reader& reader, Component& renderer, const char* member, const Parameters& p, const char* name) {
+  if (!p.has(name)) return;
+  const Range range = renderer.class_info().find(member)->range.value_or(Range{});
+  const double given = p.number(name, 0), value = std::clamp(given, range.low, range.high);
+  if (value != given) reader.importing.inexact(fmt::format("'{}' becomes {}, not {}", name, value, given), p.place(name));
+  set_member(renderer, member, value, p.place(name));
+}
+
+/// The chains of "mlt", which is Hachisuka's multiplexed Metropolis in both versions (pbrt-v3, MLTIntegrator). Gives the
+/// samples of a pixel that have as many mutations as it asks for.
+int set_chains(Reader& reader, Component& renderer, const Parameters& p) {
+  set_within(reader, renderer, "large_steps", p, "largestepprobability");
+  set_within(reader, renderer, "deviation", p, "sigma");
+  set_within(reader, renderer, "chains", p, "chains");
+  p.ignore({"bootstrapsamples"});  // a share of all samples here
+  const int each = int(get(renderer, "mutations_per_sample").as<Number>()->value);
+  return (std::clamp(p.integer("mutationsperpixel", 100), 1, 1 << 30) + each - 1) / each;
 }
 
 /// pbrt's is dark where the camera sees nothing, and looks about true normals. Version 3 has not divided by pi.
@@ -118,8 +137,6 @@ Integrator make_integrator(Reader& reader, int samples) {
   const Algorithm* const found = algorithm_of(reader);
   if (!found)
     reader.importing.inexact(fmt::format("the integrator '{}' is not known: path tracing is taken", s.type), p.at);
-  else if (found->difference)
-    reader.importing.inexact(found->difference, p.at);
   const Ref<Component> renderer = reader.make(found ? found->renderer : "PathTracer", p.at);
   const bool light = renderer->class_info().name != "AmbientOcclusionRenderer";
   if (found && !found->media && light && !reader.media.empty())
@@ -129,8 +146,7 @@ Integrator make_integrator(Reader& reader, int samples) {
   set_light_sampler(reader, *renderer, p);
   int count = samples;
   if (s.type == "mlt") {
-    count = p.integer("mutationsperpixel", 100);
-    p.ignore({"bootstrapsamples", "chains", "largestepprobability", "sigma"});
+    count = set_chains(reader, *renderer, p);
   } else if (s.type == "sppm") {
     count = p.integer(p.has("numiterations") ? "numiterations" : "iterations", reader.version == 3 ? 64 : count);
     if (p.has("radius"))

@@ -65,6 +65,22 @@ Color by_name(Reader& reader, const Parameters& parameters, const Parameter& p) 
   return from_file(reader, parameters, p);
 }
 
+void tell_cut(Reader& reader, const Parameter& p) {
+  reader.importing.inexact(fmt::format("'{}' is at most 1 here: more light would leave than arrives", p.name), p.at);
+}
+
+/// At most 1 at every wavelength.
+Color cut_reflectance(Reader& reader, const Color& color, const Parameter& p) {
+  if (range_of(*color, ColorUse::reflectance).most <= 1.0001) return color;
+  tell_cut(reader, p);
+  std::vector<float> wavelengths, values;
+  for (int nm = 360; nm <= 830; ++nm) {
+    wavelengths.push_back(float(nm));
+    values.push_back(std::min(color->at(float(nm), ColorUse::reflectance), 1.0f));
+  }
+  return table_spectrum(wavelengths, values);
+}
+
 Color components(Reader& reader, const Parameters& parameters, const Parameter& p, Use use) {
   if (p.numbers.size() > 3 && reader.version == 3)
     reader.importing.inexact(fmt::format("'{}' must be three numbers, not {}: the first three count", p.name, p.numbers.size()),
@@ -76,7 +92,7 @@ Color components(Reader& reader, const Parameters& parameters, const Parameter& 
   for (double& x : n) {
     if (x < 0) throw Error(fmt::format("'{}' must not be negative", p.name), p.at);
     if (use == Use::reflectance && x > 1) {
-      reader.importing.inexact(fmt::format("'{}' is at most 1 here: more light would leave than arrives", p.name), p.at);
+      tell_cut(reader, p);
       x = 1;
     }
   }
@@ -151,6 +167,7 @@ Color spectrum_of(Reader& reader, const Parameters& parameters, const Parameter&
     } else {
       throw Error(fmt::format("'{}' of {} must be a spectrum, not a {}", p.name, parameters.of, p.type), p.at);
     }
+    if (use == Use::reflectance) return cut_reflectance(reader, color, p);
     return normalize ? with_unit_luminance(color, p) : color;
   });
 }
