@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <span>
 
@@ -167,9 +168,29 @@ std::vector<RenderOptions::Override> RenderOptions::overrides() const {
   return list;
 }
 
+void RenderOptions::scale_crop(const Job& job, std::vector<Override>& list) const {
+  if (size.empty() || !crop.empty() || !job.image || job.image->crop.empty()) return;
+  int n[2];
+  parse_integers(size, 'x', 2, n, "--size", "WxH, such as 640x480");
+  const std::vector<int>& c = job.image->crop;
+  const int of[2] = {job.image->width, job.image->height};
+  int scaled[4];
+  for (size_t i = 0; i < 4; ++i) {
+    const double edge = double(c[i]) * n[i % 2] / of[i % 2];
+    scaled[i] = int(i < 2 ? std::floor(edge) : std::ceil(edge));
+  }
+  const auto crop_of = [](const int* r) { return fmt::format("[{}, {}, {}, {}]", r[0], r[1], r[2], r[3]); };
+  warn(fmt::format("the crop of the description, {} of {} x {} pixels, becomes {} of {} x {}", crop_of(c.data()), of[0], of[1],
+                   crop_of(scaled), n[0], n[1]),
+       {intern("--size"), 0, 0});
+  // The old one need not lie within the new picture, nor the new one within the old picture.
+  list.insert(list.begin(), {"--size", "image.crop", "[]"});
+  list.push_back({"--size", "image.crop", crop_of(scaled)});
+}
+
 Ref<Job> RenderOptions::load() const {
   // A command line that makes no sense is told before a long load.
-  const std::vector<Override> list = overrides();
+  std::vector<Override> list = overrides();
   settings();
   std::vector<SetOption> said = set_options();
   for (const Override& override : list) said.push_back({override.option, override.path});
@@ -177,6 +198,7 @@ Ref<Job> RenderOptions::load() const {
   if (const std::string from = resumed_file(); !from.empty()) read_checkpoint_header(from);
   const InputsRead inputs;
   Ref<Job> job = SceneOptions::load();
+  scale_crop(*job, list);
   std::vector<Error> errors;
   for (const Override& override : list) {
     try {

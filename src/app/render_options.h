@@ -59,6 +59,8 @@ struct RenderOptions : SceneOptions {
     std::string option, path, expression;
   };
   std::vector<Override> overrides() const;
+  /// Another size with a crop of the description's: the same part of the picture.
+  void scale_crop(const Job&, std::vector<Override>&) const;
   std::vector<CLI::Option*> add_checkpoint_options(CLI::App& command);
   std::optional<IndexRange> parse_passes() const;
 };

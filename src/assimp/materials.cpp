@@ -141,9 +141,12 @@ class MaterialWriter {
       extensions["KHR_materials_specular"] = {{"specularFactor", exponent <= 0 ? 0 : std::min(2 * most, 1.0)}};
   }
 
-  static double opacity_of(const aiMaterial& m) {
+  /// Many exporters of Collada write 0 where they mean that nothing is transparent, against its text (1.4, "transparency").
+  double opacity_of(const aiMaterial& m) const {
     const double opacity = clamped(number(m, AI_MATKEY_OPACITY, 1), 1);
-    return opacity;
+    if (opacity > 0 || ending_ != "dae") return opacity;
+    glb_.note("materials of Collada that are wholly transparent by the letter are opaque: others are not saved");
+    return 1;
   }
 
   void emission(const aiMaterial& m, Json& material, Json& extensions) {

@@ -47,6 +47,36 @@ std::string from_latin(std::string_view text) {
   return made;
 }
 
+/// The value of an attribute in a tag; null: it has none of this name.
+std::optional<std::string> attribute(std::string_view tag, const std::string& name) {
+  for (const char quote : {'"', '\''}) {
+    for (size_t at = 0; (at = tag.find(name + "=" + quote, at)) != std::string_view::npos; ++at) {
+      if (std::isspace(static_cast<unsigned char>(tag[at - 1])) == 0) continue;
+      const size_t begin = at + name.size() + 2, end = tag.find(quote, begin);
+      if (end != std::string_view::npos) return std::string(tag.substr(begin, end - begin));
+    }
+  }
+  return std::nullopt;
+}
+
+/// Cameras of Collada, each with a name: Assimp 5.2 reads the optics of those alone that have one (ColladaParser::ReadCamera).
+std::string with_named_cameras(const std::string& xml) {
+  const std::string_view opening = "<camera";
+  std::string made;
+  size_t done = 0;
+  for (size_t at = 0; (at = xml.find(opening, at)) != std::string::npos;) {
+    const size_t rest = at + opening.size(), end = xml.find('>', rest);
+    at = rest;
+    if (end == std::string::npos || std::isspace(static_cast<unsigned char>(xml[rest])) == 0) continue;
+    const std::string_view tag = std::string_view(xml).substr(rest, end - rest);
+    if (attribute(tag, "name")) continue;
+    made.append(xml, done, rest - done);
+    made += " name=\"" + attribute(tag, "id").value_or("camera") + "\"";
+    done = rest;
+  }
+  return made.append(xml, done);
+}
+
 }  // namespace
 
 const std::vector<std::string>& left_out() { return all_left_out(); }
@@ -57,7 +87,7 @@ std::optional<std::string> prepared(const std::string& path) {
   if (ending == ".dae" || ending == ".x3d") {
     if (!text) text = bytes_of(path);
     if (is_latin(*text)) text = from_latin(*text);
-    if (ending == ".dae") text = trimmed_xml(*text);
+    if (ending == ".dae") text = with_named_cameras(trimmed_xml(*text));
   } else if (ending == ".lwo") {
     bool textures = false;
     text = lwob_as_lwo2(bytes_of(path), textures);

@@ -200,6 +200,19 @@ TEST_F(ProgramTest, overrides_reach_the_picture) {
   EXPECT_EQ(npy_values(folder / "c.npy").size(), 10u * 4u * 3u);
 }
 
+// A crop of the description is the same part of a picture of another size, smaller or larger.
+TEST_F(ProgramTest, a_crop_keeps_its_part_at_another_size) {
+  std::string text = tiny_scene;
+  text.replace(text.find("width: 24"), 9, "width: 24, crop: [4, 4, 10, 13]");
+  const std::string cropped = folder.write("cropped.etd", text);
+  for (const auto& [size, told, pixels] : {std::tuple{"12x8", "becomes [2, 2, 5, 7] of 12 x 8", 3u * 5u},
+                                           {"240x160", "becomes [40, 40, 100, 130] of 240 x 160", 60u * 90u}}) {
+    ASSERT_EQ(run({"render", cropped, "-o", "a.npy", "--samples", "1", "--size", size}), 0) << err;
+    EXPECT_TRUE(has(err, told)) << err;
+    EXPECT_EQ(npy_values(folder / "a.npy").size(), pixels * 3u);
+  }
+}
+
 TEST_F(ProgramTest, the_number_of_threads_changes_no_bit_and_the_seed_does) {
   const auto picture = [&](const std::string& name, const std::vector<std::string>& options) {
     std::vector<std::string> arguments{"render", scene, "-o", name, "--quiet", "--size", "70x50"};

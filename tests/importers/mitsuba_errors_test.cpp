@@ -43,6 +43,8 @@ TEST(MitsubaErrors, AreToldAtTheirPlace) {
             "the parameter '$siz' has no value: neither <default> nor -D gives one (did you mean 'size'?)"));
   EXPECT_TRUE(tells("<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf><shape type=\"sphere\"><ref id=\"a\"/></shape>",
                     "holds itself"));
+  EXPECT_TRUE(
+      tells("<shape type=\"sphere\"/>\n  \xe2\x80\x8b x\n", "3:3: text between elements says nothing to Mitsuba: 'U+200B x'"));
   EXPECT_TRUE(tells("<scene", "this is not XML"));
   // Several at once.
   EXPECT_EQ(import_text(scene("<shape type=\"a\"/><shape type=\"b\"/>" + sensor() + integrator())).errors.size(), 2u);

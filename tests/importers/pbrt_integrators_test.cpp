@@ -72,6 +72,28 @@ TEST(PbrtIntegrators, AmbientOcclusion) {
   EXPECT_EQ(v4_seen(""), 0);
 }
 
+// Multiplexed Metropolis (pbrt-v3, MLTIntegrator), with a shutter that is open for a while as pbrt's is by itself.
+TEST(PbrtIntegrators, MetropolisIsTheSame) {
+  const Imported i =
+      by("\"mlt\" \"integer maxdepth\" 4 \"float largestepprobability\" .4 \"float sigma\" .02 \"integer chains\" 64 "
+         "\"integer bootstrapsamples\" 1000 \"integer mutationsperpixel\" 10",
+         sky + matt + ball(5));
+  ASSERT_TRUE(i.job) << i.told();
+  EXPECT_EQ(i.told(), "");
+  const Component& r = *i.job->renderer;
+  EXPECT_EQ(r.class_info().name, "MultiplexedMetropolis");
+  EXPECT_EQ(number(r, "max_depth"), 5);
+  EXPECT_NEAR(number(r, "large_steps"), 0.4, 1e-6);
+  EXPECT_NEAR(number(r, "deviation"), 0.02, 1e-6);
+  EXPECT_EQ(number(r, "chains"), 64);
+  EXPECT_EQ(number(r, "samples") * number(r, "mutations_per_sample"), 12);  // not fewer than 10
+  EXPECT_NE(by("\"mlt\" \"float largestepprobability\" 0", ball(5)).told().find("'largestepprobability' becomes 0.01, not 0"),
+            std::string::npos);
+  const double seen_by_paths = brightness("\"path\"", sky + matt + ball(5));
+  EXPECT_NEAR(brightness("\"mlt\" \"integer mutationsperpixel\" 4000", sky + matt + ball(5)), seen_by_paths,
+              0.02 * seen_by_paths);
+}
+
 TEST(PbrtIntegrators, DifferencesAreTold) {
   const auto told = [](const std::string& integrator, const std::string& world) {
     return import_text(v4(world, "", "\"float fov\" 1", "Integrator " + integrator + "\n")).told();

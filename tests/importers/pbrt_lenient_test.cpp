@@ -87,6 +87,27 @@ TEST(PbrtLenient, ValuesThatDoNotFit) {
   EXPECT_EQ(objects(beyond), 1u);
 }
 
+// Files that are not there; version 4 ends without them.
+TEST(PbrtLenient, MissingFiles) {
+  const std::string mesh = "Shape \"plymesh\" \"string filename\" \"gone.ply\"\n";
+  const Imported i = lenient(mesh + "LightSource \"point\" \"spectrum I\" \"gone.spd\"\n" + sphere);
+  EXPECT_TRUE(tells(i, "there is no file 'gone.ply': it is left out, as by version 3 of pbrt"));
+  EXPECT_TRUE(tells(i, "4:21: there is no file 'gone.spd': 'I' is black, as by version 3 of pbrt"));
+  EXPECT_GE(objects(i), 1u);
+  const Imported strict = import_text("Film \"rgb\"\nWorldBegin\n" + mesh);
+  EXPECT_FALSE(strict.job);
+  EXPECT_NE(strict.told().find("there is no file 'gone.ply'"), std::string::npos) << strict.told();
+}
+
+// A lamp whose matte Kd is its emission.
+TEST(PbrtLenient, SpectraThatReflectMoreThanArrives) {
+  const Imported i = lenient("Material \"matte\" \"spectrum Kd\" [400 0 500 8 600 15.6 700 18.4]\n" + sphere);
+  EXPECT_TRUE(tells(i, "3:18: 'Kd' is at most 1 here: more light would leave than arrives"));
+  const Value inner = get(**get(part(object(i, 0), "shader"), "color").as<Ref<Component>>(), "value");
+  EXPECT_NEAR((*inner.as<Color>())->at(410, ColorUse::reflectance), 0.8f, 1e-3f);
+  EXPECT_EQ((*inner.as<Color>())->at(600, ColorUse::reflectance), 1);
+}
+
 // One value more than pairs is left out, and wavelengths may stand in any order.
 TEST(PbrtLenient, OddSpectra) {
   const auto kd = [](const Imported& i, float nm) {

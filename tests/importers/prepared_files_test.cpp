@@ -81,6 +81,38 @@ TEST(PreparedFiles, BlanksAroundNumbersOfCollada) {
     expect_triangle(model(folder.write("t.dae", collada("<?xml version=\"1.0\"?>", color))), color);
 }
 
+// A camera's angle is read whether it has a name or an identifier alone.
+TEST(PreparedFiles, CamerasOfColladaWithoutAName) {
+  const TemporaryFolder folder;
+  const auto angle = [&](const std::string& name) {
+    std::string text = collada("<?xml version=\"1.0\"?>", "0.5 0.25 0.125 1");
+    const auto before = [&](const std::string& tag, const std::string& more) { text.insert(text.find(tag), more); };
+    before("<library_effects>", "<library_cameras><camera id=\"c\"" + name +
+                                    "><optics><technique_common><perspective><yfov>40</yfov><aspect_ratio>1</aspect_ratio>"
+                                    "<znear>0.1</znear><zfar>100</zfar></perspective></technique_common></optics></camera>"
+                                    "</library_cameras>");
+    before("</visual_scene>", "<node id=\"k\"><translate>0.5 1 5</translate><instance_camera url=\"#c\"/></node>");
+    const std::string path = folder.write("c.dae", text);
+    Importing importing(path, {});
+    const Ref<Job> job = ref_cast<Job>(importer_of(path)->import(importing));
+    return job ? get(*job->camera, "fov").as<Number>()->value * 180 / M_PI : 0;
+  };
+  EXPECT_NEAR(angle(" name='eye'"), 40, 1e-3);
+  EXPECT_NEAR(angle(""), 40, 1e-3);
+}
+
+// Exporters that write a transparency of 0, which by the letter leaves nothing to be seen.
+TEST(PreparedFiles, WhatIsWhollyTransparentInColladaIsOpaque) {
+  const TemporaryFolder folder;
+  std::string text = collada("<?xml version=\"1.0\"?>", "0.5 0.25 0.125 1");
+  text.insert(text.find("</lambert>"),
+              "<transparent><color>1 1 1 1</color></transparent><transparency><float>0</float></transparency>");
+  const Model m = model(folder.write("t.dae", text));
+  expect_triangle(m, "transparency 0");
+  EXPECT_EQ(write_description(*m.scene).find("MaskShader"), std::string::npos);
+  EXPECT_NE(m.told.find("wholly transparent by the letter are opaque"), std::string::npos) << m.told;
+}
+
 TEST(PreparedFiles, EncodingsOfCollada) {
   const TemporaryFolder folder;
   const auto wide = [](const std::string& text, bool little) {

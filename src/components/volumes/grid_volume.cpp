@@ -61,16 +61,16 @@ class GridVolume final : public ColoredVolume {
     space_ = &rgb_space(color_space);
     if (file.empty()) {
       grid_ = grid_of_list(*this, "density", resolution, density);
-      require_no_negative(*this, "density", grid_);
+      cut_negatives(*this, "density", grid_);
     } else {
       grid_ = grid_of_file(*this, "file", file, grid_name);
-      require_no_negative(*this, "file", grid_);
+      cut_negatives(*this, "file", grid_);
       if (file_box) require_box(*this, "file", grid_);
     }
     albedo_grid_ = {};
     if (!albedo_file.empty()) {
       albedo_grid_ = grid_of_file(*this, "albedo_file", albedo_file);
-      require_no_negative(*this, "albedo_file", albedo_grid_);
+      cut_negatives(*this, "albedo_file", albedo_grid_);
     }
     largest_ = grid_.largest() * (grid_.channels == 3 ? 2 : 1);
     const Color sums[] = {extinction ? extinction : absorption, extinction ? flat_spectrum(0) : scattering};

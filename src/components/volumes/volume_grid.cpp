@@ -176,9 +176,20 @@ VolumeGrid grid_of_list(const Component& of, const char* member, const std::vect
   return grid;
 }
 
-void require_no_negative(const Component& of, const char* member, const VolumeGrid& grid) {
-  for (const float v : grid.values)
-    if (!(v >= 0)) of.fail(member, fmt::format("it holds {}, and must not be negative", v));
+void cut_negatives(const Component& of, const char* member, VolumeGrid& grid) {
+  float least = 0, most = 0;
+  for (const float v : grid.values) {
+    least = std::min(least, v);
+    most = std::max(most, v);
+  }
+  if (!(least < 0)) return;
+  // Filters, and programs that cut at 0 in another precision, leave such behind.
+  constexpr float rounding = 1e-5f;
+  if (least < -rounding * most) of.fail(member, fmt::format("it holds {}, and must not be negative", least));
+  warn(fmt::format("{}.{}: numbers below 0, down to {}, are 0: they are less than {} of the largest", of.class_info().name,
+                   member, least, rounding),
+       of.location_of(member));
+  for (float& v : grid.values) v = std::max(v, 0.0f);
 }
 
 void require_box(const Component& of, const char* member, const VolumeGrid& grid) {

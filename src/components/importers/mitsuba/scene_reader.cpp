@@ -27,6 +27,26 @@ bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
+/// How a text begins, in quotation marks; what is no ASCII, some of which cannot be seen, by its number.
+std::string beginning(const std::string& text) {
+  constexpr size_t most = 20;
+  const size_t first = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  std::string made;
+  size_t shown = 0, i = first;
+  while (i < text.size() && shown++ < most) {
+    const auto lead = static_cast<unsigned char>(text[i++]);
+    if (lead < 0x80) {
+      made += lead < ' ' ? ' ' : char(lead);
+      continue;
+    }
+    unsigned code = lead >= 0xf0 ? lead & 0x07u : (lead >= 0xe0 ? lead & 0x0fu : lead & 0x1fu);
+    for (; i < text.size() && (static_cast<unsigned char>(text[i]) & 0xc0) == 0x80; ++i)
+      code = code << 6 | (static_cast<unsigned char>(text[i]) & 0x3fu);
+    made += fmt::format("U+{:04X}", code);
+  }
+  return "'" + made.substr(0, made.find_last_not_of(' ') + 1) + (i < text.size() ? "…'" : "'");
+}
+
 }  // namespace
 
 const Element& SceneReader::read() {
@@ -92,7 +112,8 @@ void SceneReader::read_content(const pugi::xml_node& node, Element& into) {
     if (child.type() == pugi::node_element)
       read_child(child, into);
     else if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
-      throw Error("text between elements says nothing to Mitsuba", at(node));
+      importing_.inexact(fmt::format("text between elements says nothing to Mitsuba: {}", beginning(child.value())),
+                         file_->at_text(child));
   }
 }
 

@@ -47,6 +47,11 @@ Location XmlFile::at(const pugi::xml_attribute& attribute, const pugi::xml_node&
   return offset > 0 && size_t(offset) < text_.size() ? at(offset) : at(of);
 }
 
+Location XmlFile::at_text(const pugi::xml_node& node) const {
+  const std::string_view text = node.value();
+  return at(text.data() - text_.data() + std::ptrdiff_t(std::min(text.find_first_not_of(" \t\r\n"), text.size())));
+}
+
 Location XmlFile::at(std::ptrdiff_t offset) const {
   const size_t place = written_at(expansions_, size_t(std::clamp(offset, std::ptrdiff_t(0), std::ptrdiff_t(text_.size()))));
   const auto line = std::ranges::upper_bound(lines_, place) - 1;

@@ -21,6 +21,8 @@ class XmlFile {
   Location at(const pugi::xml_node& node) const { return at(node.offset_debug()); }
   /// Where an attribute's value begins.
   Location at(const pugi::xml_attribute&, const pugi::xml_node& of) const;
+  /// Where the first character is that is no blank, of text between elements.
+  Location at_text(const pugi::xml_node&) const;
   size_t size() const { return text_.size(); }
   /// Where it declares entities; unknown: nowhere.
   Location entities() const { return entities_; }

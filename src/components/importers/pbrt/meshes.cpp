@@ -134,10 +134,21 @@ bool against_normals(const MeshData& data) {
   });
 }
 
-Shape ply_mesh(Reader& reader, const Parameters& p) {
+/// The file of a mesh. Version 3 goes on without the mesh where there is none.
+std::string mesh_file(const Reader& reader, const Parameters& p) {
   const std::string named = p.text("filename");
   if (named.empty()) throw Error(fmt::format("{} needs 'filename'", p.of), p.at);
-  const std::string path = reader.importing.file(named, p.place("filename"), p.folder);
+  const Location at = p.place("filename");
+  try {
+    return reader.importing.file(named, at, p.folder);
+  } catch (const Error& e) {
+    if (reader.version == 3) throw LeftOut(e.what(), at);
+    throw;
+  }
+}
+
+Shape ply_mesh(Reader& reader, const Parameters& p) {
+  const std::string path = mesh_file(reader, p);
   if (p.has("displacement")) {
     const Ref<Component> inner = reader.make("TriangleMesh", p.at);
     set_member(*inner, "file", FilePath{path, {}}, p.place("filename"));

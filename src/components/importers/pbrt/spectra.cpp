@@ -47,10 +47,15 @@ Color from_pairs(const Reader& reader, const Parameter& p) {
   return table_spectrum(wavelengths, values);
 }
 
-/// A file of wavelengths and values.
+/// A file of wavelengths and values. v3 goes on with black where there is none.
 Color from_file(Reader& reader, const Parameters& parameters, const Parameter& p) {
-  const std::string path = reader.importing.file(p.strings[0], p.at, parameters.folder);
-  return file_spectrum(FilePath{path, {}});
+  try {
+    return file_spectrum(FilePath{reader.importing.file(p.strings[0], p.at, parameters.folder), {}});
+  } catch (const Error& e) {
+    if (reader.version != 3) throw;
+    reader.importing.inexact(fmt::format("{}: '{}' is black, as by version 3 of pbrt", e.what(), p.name), p.at);
+    return flat_spectrum(0);
+  }
 }
 
 /// With a highest value of 1, wherever that lies.

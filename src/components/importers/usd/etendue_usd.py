@@ -14,6 +14,7 @@ sys.dont_write_bytecode = True
 # Each thread takes address space of its own, which is limited here: on a machine of many cores they would take all of it.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("PXR_WORK_THREAD_LIMIT", "4")
+os.environ.setdefault("PXR_USDC_EMIT_DEPRECATION_WARNINGS", "0")  # of files that are read all the same
 os.environ.setdefault("TF_ENV_SETTING_ALERTS_ENABLED", "0")  # or it says so among the errors
 
 try:
@@ -30,7 +31,7 @@ from etendue_usd_materials import Materials
 from etendue_usd_meshes import Meshes
 from etendue_usd_shapes import Shapes, camera_of
 from etendue_usd_skins import bend
-from etendue_usd_values import array
+from etendue_usd_values import array, metres_per_unit
 
 MOST_INSTANCES = 1 << 22
 # What a value of an unexpected type ends in: without the thing that has it a scene is still one.
@@ -42,7 +43,7 @@ class Converter:
         self.stage, self.glb = stage, glb
         moves = stage.HasAuthoredTimeCodeRange()
         self.time = Usd.TimeCode(stage.GetStartTimeCode() + seconds * stage.GetTimeCodesPerSecond()) if moves else Usd.TimeCode.Default()
-        self.metres = UsdGeom.GetStageMetersPerUnit(stage)
+        self.metres = metres_per_unit(stage)
         if not (0 < self.metres < float("inf")):
             raise ValueError(f"its metersPerUnit is {self.metres}")
         bend(stage, self.time, glb.note, UNUSABLE)

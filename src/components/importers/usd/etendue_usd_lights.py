@@ -5,7 +5,7 @@ import numpy
 from pxr import Ar, Gf, UsdGeom, UsdLux
 
 from etendue_usd_glb import plain
-from etendue_usd_values import of_kind
+from etendue_usd_values import metres_per_unit, of_kind
 
 TURN_UP = Gf.Matrix4d().SetRotate(Gf.Rotation(Gf.Vec3d(1, 0, 0), 90))  # +y to +z, +z to -y
 
@@ -13,7 +13,7 @@ TURN_UP = Gf.Matrix4d().SetRotate(Gf.Rotation(Gf.Vec3d(1, 0, 0), 90))  # +y to +
 class Lights:
     def __init__(self, glb, materials, time, stage):
         self.glb, self.materials, self.time, self.stage = glb, materials, time, stage
-        self.metres = UsdGeom.GetStageMetersPerUnit(stage)
+        self.metres = metres_per_unit(stage)
 
     def get(self, prim, place):
         """(ETENDUE_part, place) of a light, or None."""

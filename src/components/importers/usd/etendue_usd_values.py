@@ -1,7 +1,7 @@
 """Values of attributes as what they are needed for, whatever type a file gives them: a list's first, a text's file, a number for
 each of several. What is read as something else is told."""
 import numpy
-from pxr import Sdf
+from pxr import Sdf, UsdGeom
 
 
 def array(values, kind, width=None):
@@ -11,6 +11,11 @@ def array(values, kind, width=None):
         return found if width is None else found.reshape(-1, width)
     except (TypeError, ValueError):
         raise TypeError(f"a list of {'vectors' if width else 'numbers'} is of another type: {type(values).__name__}") from None
+
+
+def metres_per_unit(stage):
+    """[m]. UsdGeom's own function refuses files that state it as a float."""
+    return float(stage.GetMetadata("metersPerUnit")) if stage.HasAuthoredMetadata("metersPerUnit") else UsdGeom.GetStageMetersPerUnit(stage)
 
 
 def single(value, what, note):
