@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <unordered_map>
 
 #include "etendue/describe/description.h"
@@ -207,8 +208,13 @@ const ClassInfo* Registry::find(std::type_index type) const {
 std::vector<const ClassInfo*> Registry::all() const {
   const_cast<Registry*>(this)->adopt();
   const std::lock_guard lock(s->mutex);
+  // What nothing can be made of by name is nothing to write: a scene that only checks make, say.
+  std::set<const ClassInfo*> wanted;
+  for (const auto& [name, info] : s->by_name)
+    for (const ClassInfo* at = info->abstract() ? nullptr : info.get(); at; at = at->parent) wanted.insert(at);
   std::vector<const ClassInfo*> list;
-  for (const auto& [name, info] : s->by_name) list.push_back(info.get());
+  for (const auto& [name, info] : s->by_name)
+    if (wanted.contains(info.get())) list.push_back(info.get());
   return list;
 }
 

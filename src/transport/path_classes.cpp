@@ -18,8 +18,11 @@ Names joined(const Names& a, const Names& b) {
 Names delta(const SceneTraits& t) { return joined(t.points, t.distant); }
 Names extended(const SceneTraits& t) { return joined(t.areas, t.environments); }
 
+/// A verb as it follows names: "the Sphere sends", "the Sphere and the Box send".
+std::string verb(const Names& names, const std::string& plural) { return " " + plural + (names.size() == 1 ? "s" : ""); }
+
 /// "<before><names><after>"; empty when there are no names.
-std::string told(const char* before, const Names& names, const char* after = "") {
+std::string told(const char* before, const Names& names, const std::string& after = "") {
   return names.empty() ? std::string() : before + some_of(names) + after;
 }
 
@@ -31,7 +34,8 @@ std::string light_on_surfaces(const Names& luminaires, const SceneTraits& t) {
 std::string caustics(const Names& luminaires, const SceneTraits& t) {
   const Names onto = joined(t.smooth, t.media);
   if (luminaires.empty() || t.specular.empty() || onto.empty()) return {};
-  return "light of " + some_of(luminaires) + " that " + some_of(t.specular) + " throw onto " + some_of(onto) + " (caustics)";
+  return "light of " + some_of(luminaires) + " that " + some_of(t.specular) + verb(t.specular, "throw") + " onto " +
+         some_of(onto) + " (caustics)";
 }
 
 constexpr std::array<PathClassInfo, 15> classes{{
@@ -46,9 +50,9 @@ constexpr std::array<PathClassInfo, 15> classes{{
     {delta_light, "delta_light", "light of luminaires without extent on surfaces",
      [](const SceneTraits& t) { return light_on_surfaces(delta(t), t); }},
     {diffuse_light, "diffuse_light", "light that matt surfaces send on to others",
-     [](const SceneTraits& t) { return told("light that ", t.diffuse, " send on to other surfaces"); }},
+     [](const SceneTraits& t) { return told("light that ", t.diffuse, verb(t.diffuse, "send") + " on to other surfaces"); }},
     {glossy_light, "glossy_light", "light that glossy surfaces send on to others",
-     [](const SceneTraits& t) { return told("light that ", t.glossy, " send on to other surfaces"); }},
+     [](const SceneTraits& t) { return told("light that ", t.glossy, verb(t.glossy, "send") + " on to other surfaces"); }},
     {area_caustics, "area_caustics", "caustics of luminaires with an extent",
      [](const SceneTraits& t) { return caustics(extended(t), t); }},
     {delta_caustics, "delta_caustics", "caustics of luminaires without extent",
@@ -58,18 +62,22 @@ constexpr std::array<PathClassInfo, 15> classes{{
      [](const SceneTraits& t) {
        const Names lamps = delta(t);
        if (caustics(lamps, t).empty()) return std::string();
-       return "what " + some_of(t.specular) + " mirror or show of the caustics that they make of " + some_of(lamps);
+       return "what " + some_of(t.specular) + verb(t.specular, "show") + " of caustics of " + some_of(lamps);
      }},
     {scattering_media, "scattering_media", "absorption and scattering in media",
      [](const SceneTraits& t) { return told("absorption and scattering in ", t.media); }},
     {emitting_media, "emitting_media", "light that media emit",
-     [](const SceneTraits& t) { return told("light that ", t.emissive_media, " send out from within"); }},
+     [](const SceneTraits& t) {
+       return told("light that ", t.emissive_media, verb(t.emissive_media, "send") + " out from within");
+     }},
     {uneven_media, "uneven_media", "media that differ from place to place",
      [](const SceneTraits& t) { return told("what is uneven in the media of ", t.uneven_media); }},
     {subsurface_light, "subsurface_light", "light scattered inside bodies",
      [](const SceneTraits& t) { return told("light scattered inside ", t.moved_exits); }},
     {light_through_surfaces, "light_through_surfaces", "light that surfaces let pass straight on",
-     [](const SceneTraits& t) { return told("light that ", t.pass_through, " let pass straight on"); }},
+     [](const SceneTraits& t) {
+       return told("light that ", t.pass_through, verb(t.pass_through, "let") + " pass straight on");
+     }},
 }};
 
 }  // namespace

@@ -50,6 +50,18 @@ TEST(MitsubaErrors, AreToldAtTheirPlace) {
   EXPECT_EQ(import_text(scene("<shape type=\"a\"/><shape type=\"b\"/>" + sensor() + integrator())).errors.size(), 2u);
 }
 
+// What Disney's model does otherwise than Mitsuba's is told where it is seen: of bright colours, and of partly clear ones.
+TEST(MitsubaErrors, EnergyOfPrincipledIsTold) {
+  const auto principled = [](const std::string& inside) {
+    return told("<shape type=\"sphere\"><bsdf type=\"principled\">" + inside + "</bsdf></shape>");
+  };
+  const auto base = [](const std::string& value) { return "<rgb name=\"base_color\" value=\"" + value + "\"/>"; };
+  EXPECT_EQ(principled(base("0.5 0.8 0.2")), "");
+  EXPECT_NE(principled(base("0.2 0.95 0.2")).find("sends away more light than arrives in Mitsuba"), std::string::npos);
+  EXPECT_NE(principled("<float name=\"spec_trans\" value=\"0.5\"/>").find("'energy: kept' of DisneyPrincipled loses none"),
+            std::string::npos);
+}
+
 TEST(MitsubaErrors, WhatIsNotExpressedIsNoted) {
   EXPECT_EQ(told("<shape type=\"sphere\"/>"), "");
   EXPECT_TRUE(tells("<shape type=\"sphere\"><float name=\"radios\" value=\"1\"/></shape>",

@@ -6,6 +6,7 @@
 #include "etendue/object_map.h"
 #include "etendue/transport/medium_stack.h"
 #include "support/component_test_support.h"
+#include "support/render_support.h"
 
 namespace etendue {
 namespace {
@@ -183,6 +184,52 @@ TEST_F(OutsideMedium, Principled) {
     under.insert(under.end(), c.under.begin(), c.under.end());
     vacuum.insert(vacuum.end(), c.vacuum.begin(), c.vacuum.end());
     expect_alike(c.name, create<Shader>("Principled", under), create<Shader>("Principled", vacuum), grey_);
+  }
+}
+
+// A path is inside of what it has entered more often than left: also where a mesh that is inside out is left first.
+TEST(MediumStack, WhatIsLeftBeforeItIsEnteredIsNotEntered) {
+  test::TestSquare a, b;
+  for (test::TestSquare* each : {&a, &b}) each->reference();
+  MediumStack media;
+  media.leave(a);
+  media.enter(b);
+  EXPECT_EQ(media.current(), &b);
+  media.enter(a);
+  EXPECT_EQ(media.current(), &b);
+  media.enter(a);
+  EXPECT_EQ(media.current(), &a);
+  // What was forgotten for want of room was entered.
+  MediumStack full;
+  for (int i = 0; i < MediumStack::capacity + 2; ++i) full.enter(i < 2 ? a : b);
+  for (int i = 0; i < MediumStack::capacity; ++i) full.leave(b);
+  for (int i = 0; i < 2; ++i) full.leave(a);
+  full.enter(a);
+  EXPECT_EQ(full.current(), &a);
+}
+
+// A slab of glass above a polished coat, seen straight on under a white sky. Of F = 0.04 at each face of the slab, it reflects
+// R = 2 F / (1 + F) and lets T = (1 - F) / (1 + F) through; the coat reflects C = (0.2 / 2.2)^2; so R + T^2 C / (1 - R C) comes
+// back. The same whether its faces are turned outwards or inwards: then it refracts as the other way round, by which F at right
+// angles does not change. (While what is around an inside-out slab was taken for glass, C was that of 1.2 / 1.5.)
+TEST(MediumStack, AroundAMeshThatIsInsideOutIsNoGlass) {
+  const double r = 2 * 0.04 / 1.04, t = 0.96 / 1.04, c = 0.04 / 4.84;
+  const double expected = r + t * t * c / (1 - r * c);
+  for (const char* triangles :
+       {"[0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7]",
+        "[0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6, 0, 5, 1, 0, 4, 5, 1, 6, 2, 1, 5, 6, 2, 7, 3, 2, 6, 7, 3, 4, 0, 3, 7, 4]"}) {
+    const test::Measured seen = test::measure(test::job_text(
+        "PathTracer { samples: 262144 }", "OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 0.01 }",
+        1,
+        std::string(
+            "TriangleMesh { shader: Dielectric { ior: 1.5 }, positions: [[-9, -9, 1], [9, -9, 1], [9, 9, 1], [-9, 9, 1], "
+            "[-9, -9, 2], [9, -9, 2], [9, 9, 2], [-9, 9, 2]], triangles: ") +
+            triangles +
+            " }\nRectangle { corner: [-9, -9, 0], edge_u: [18, 0, 0], edge_v: [0, 18, 0], shader: Plastic { color: 0, ior: "
+            "1.2, "
+            "roughness: 0 } }\nEnvironment { emission: DiffuseEmission { radiance: 1 } }"));
+    EXPECT_NEAR(seen.mean.y, expected, 4 * seen.error);
+    EXPECT_LT(seen.error, 0.0007);
   }
 }
 

@@ -30,6 +30,9 @@ inline bool has_own_index(const SceneObject& object) {
 
 /// A small set of objects, each entered some number of times. The effective medium is that of the highest priority; of
 /// equal ones, that entered last. More than `capacity` objects at one point: the deepest are forgotten.
+///
+/// A mesh that is inside out is left before it is entered, and then entered: a path is inside of what it has entered more often
+/// than left. So its glass refracts by its normals, and what is around it is not taken for its inside.
 class MediumStack {
  public:
   static constexpr int capacity = 12;
@@ -79,9 +82,15 @@ class MediumStack {
   }
 
   void enter(const SceneObject& object) {
+    for (int i = 0; i < owed_; ++i)
+      if (left_[i] == &object) {
+        left_[i] = left_[--owed_];
+        return;
+      }
     if (size_ == capacity) {
       for (int i = 1; i < size_; ++i) inside_[i - 1] = inside_[i];
       --size_;
+      ++forgotten_;
     }
     inside_[size_++] = &object;
   }
@@ -92,6 +101,10 @@ class MediumStack {
         --size_;
         return;
       }
+    if (forgotten_ > 0)
+      --forgotten_;
+    else if (owed_ < most_owed)
+      left_[owed_++] = &object;
   }
   bool empty() const { return size_ == 0 && !surroundings_; }
 
@@ -128,10 +141,13 @@ class MediumStack {
     bool entered;
   };
 
+  static constexpr int most_owed = 4;
+
   const SceneObject* inside_[capacity];
+  const SceneObject* left_[most_owed];  // before they were entered
   const SceneObject* surroundings_ = nullptr;
   Other other_[most_others];
-  int size_ = 0, others_ = 0;
+  int size_ = 0, owed_ = 0, forgotten_ = 0, others_ = 0;
 };
 
 }  // namespace etendue

@@ -7,6 +7,7 @@
 
 #include "converter.h"
 #include "etendue/describe/color.h"
+#include "etendue/object_map.h"
 
 namespace etendue::mitsuba {
 
@@ -53,6 +54,25 @@ Converter::Surface Converter::classic(const Element& e, Uv uv, const std::string
   return {shader, false};
 }
 
+/// Where the two programs' models part (docs/coming-from-mitsuba.md has the numbers).
+void Converter::tell_of_energy(const Element& e, const Component& shader) {
+  const Value base = get(shader, "base_color");
+  const auto* part = base.as<Ref<Component>>();
+  const auto* map = part ? dynamic_cast<const ObjectMap*>(part->get()) : nullptr;
+  const Color constant = map ? map->constant() : nullptr;
+  constexpr float bright = 0.85f;  // above it Mitsuba's lobes together come to more than 1 by some percent
+  if (constant && range_of(*constant, ColorUse::reflectance).most > bright)
+    importing_.inexact(
+        "'principled' of so bright a colour sends away more light than arrives in Mitsuba, up to a tenth; here it is "
+        "scaled down",
+        e.location_of("base_color"));
+  if (e.has("spec_trans"))
+    importing_.inexact(
+        "a partly clear 'principled' loses light, the more the rougher it is, and 3 % more here than in Mitsuba: "
+        "'energy: kept' of DisneyPrincipled loses none",
+        e.location_of("spec_trans"));
+}
+
 Converter::Surface Converter::principled(const Element& e, Uv uv, const std::string& name) {
   const bool thin = e.type == "principledthin";
   Ref<Component> shader = make(thin ? "DisneyThin" : "DisneyPrincipled", e, name);
@@ -76,6 +96,7 @@ Converter::Surface Converter::principled(const Element& e, Uv uv, const std::str
   }
   e.ignore({"diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate",
             "spec_refl_sampling_rate", "spec_trans_sampling_rate", "diff_trans_sampling_rate"});
+  if (!thin) tell_of_energy(e, *shader);
   return {shader, thin || e.has("spec_trans")};
 }
 

@@ -111,6 +111,7 @@ class Converter {
   Surface tilted(const Element&, Uv, const std::string& name);
   Surface classic(const Element&, Uv, const std::string& name);
   Surface principled(const Element&, Uv, const std::string& name);
+  void tell_of_energy(const Element&, const Component& shader);
   Surface fibre(const Element&, const std::string& name);
   void set_roughness(Component& shader, const Element&, Uv, double otherwise);
   double index(const Element&, const char* name, const char* otherwise);
