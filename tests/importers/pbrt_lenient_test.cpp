@@ -94,6 +94,10 @@ TEST(PbrtLenient, MissingFiles) {
   EXPECT_TRUE(tells(i, "there is no file 'gone.ply': it is left out, as by version 3 of pbrt"));
   EXPECT_TRUE(tells(i, "4:21: there is no file 'gone.spd': 'I' is black, as by version 3 of pbrt"));
   EXPECT_GE(objects(i), 1u);
+  // An index of 0 would be none: a metal without its files is copper.
+  const Imported metal =
+      lenient("Material \"metal\" \"spectrum eta\" \"gone.eta.spd\" \"spectrum k\" \"gone.k.spd\"\n" + sphere);
+  EXPECT_TRUE(tells(metal, "there is no file 'gone.eta.spd': that of copper is taken"));
   const Imported strict = import_text("Film \"rgb\"\nWorldBegin\n" + mesh);
   EXPECT_FALSE(strict.job);
   EXPECT_NE(strict.told().find("there is no file 'gone.ply'"), std::string::npos) << strict.told();

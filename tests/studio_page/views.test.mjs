@@ -99,9 +99,10 @@ test("states are kept and gone on from; strategies stand apart; a class is check
   await page.click("button:has-text('Details')");
   await until("there are samples", async () => !(await page.locator("button:has-text('Save checkpoint')").isDisabled()));
   await page.click("button:has-text('Save checkpoint')");
-  await page.locator("dialog input[type=text]").fill("kept.state");
+  const name = page.locator("dialog input[type=text]");
+  await name.fill("kept.state");
   await page.locator("dialog button[type=submit]:enabled").waitFor();
-  await page.keyboard.press("Enter");
+  await name.press("Enter"); // wherever the focus has gone while the folder was read
   await until("the state is there", () => existsSync(join(studio.folder, "kept.state")));
   await program.ask("restart");
   await program.ask("stop");

@@ -128,9 +128,9 @@ TEST(GridVolume, RefusesWhatIsNoGrid) {
   expect_refused("GridVolume { resolution: [2, 0, 2] }", "resolution", "at least 1");
   expect_refused("GridVolume { density: [-1] }", "density", "negative");
   // What filters leave: so little below 0 is 0.
-  const Ref<VolumeShader> rounded = volume("GridVolume { resolution: [2, 1, 1], density: [-1e-7, 1], extinction: 1 }");
+  const Ref<VolumeShader> rounded = volume("GridVolume { resolution: [2, 1, 1], density: [-0.004, 1], extinction: 1 }");
   EXPECT_EQ(extinction(*rounded, {0.25f, 0.5f, 0.5f}), 0);
-  expect_refused("GridVolume { resolution: [2, 1, 1], density: [-1e-3, 1] }", "density", "negative");
+  expect_refused("GridVolume { resolution: [2, 1, 1], density: [-0.1, 1] }", "density", "negative");
 }
 
 // The optical depth of a ramp along x from 1/4 to 3/4: of densities 0 and 4 in the middles of two cells, 8 (x - 1/4), the

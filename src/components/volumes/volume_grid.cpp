@@ -183,8 +183,8 @@ void cut_negatives(const Component& of, const char* member, VolumeGrid& grid) {
     most = std::max(most, v);
   }
   if (!(least < 0)) return;
-  // Filters, and programs that cut at 0 in another precision, leave such behind.
-  constexpr float rounding = 1e-5f;
+  // Filters that overshoot, and programs that cut at 0 in another precision, leave such behind.
+  constexpr float rounding = 0.01f;
   if (least < -rounding * most) of.fail(member, fmt::format("it holds {}, and must not be negative", least));
   warn(fmt::format("{}.{}: numbers below 0, down to {}, are 0: they are less than {} of the largest", of.class_info().name,
                    member, least, rounding),

@@ -42,7 +42,7 @@ VolumeGrid grid_of_file(const Component&, const char* member, const FilePath&, c
 /// Of a list of numbers in the member, one channel or three, and how many there are along x, y and z.
 VolumeGrid grid_of_list(const Component&, const char* member, const std::vector<int>& resolution,
                         const std::vector<float>& values);
-/// Densities and albedos are not negative: what is below 0 by rounding alone becomes 0, told.
+/// Densities and albedos are not negative: what is a little below 0, as filters leave it, becomes 0, told.
 void cut_negatives(const Component&, const char* member, VolumeGrid&);
 /// The box that a file names must have a volume when it counts.
 void require_box(const Component&, const char* member, const VolumeGrid&);

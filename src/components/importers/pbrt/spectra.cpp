@@ -47,12 +47,12 @@ Color from_pairs(const Reader& reader, const Parameter& p) {
   return table_spectrum(wavelengths, values);
 }
 
-/// A file of wavelengths and values. v3 goes on with black where there is none.
-Color from_file(Reader& reader, const Parameters& parameters, const Parameter& p) {
+/// A file of wavelengths and values. v3 goes on with black where there is none; an index of 0 would be none.
+Color from_file(Reader& reader, const Parameters& parameters, const Parameter& p, Use use) {
   try {
     return file_spectrum(FilePath{reader.importing.file(p.strings[0], p.at, parameters.folder), {}});
   } catch (const Error& e) {
-    if (reader.version != 3) throw;
+    if (reader.version != 3 || use == Use::coefficient) throw;
     reader.importing.inexact(fmt::format("{}: '{}' is black, as by version 3 of pbrt", e.what(), p.name), p.at);
     return flat_spectrum(0);
   }
@@ -64,10 +64,10 @@ Color normalized_blackbody(double kelvin, Location at) {
   return scaled_spectrum(1 / highest_planck(kelvin), blackbody_spectrum(kelvin));
 }
 
-Color by_name(Reader& reader, const Parameters& parameters, const Parameter& p) {
+Color by_name(Reader& reader, const Parameters& parameters, const Parameter& p, Use use) {
   if (p.strings.size() != 1 || !p.numbers.empty()) throw Error(fmt::format("'{}' must be one spectrum", p.name), p.at);
   if (Color named = named_spectrum(p.strings[0])) return named;
-  return from_file(reader, parameters, p);
+  return from_file(reader, parameters, p, use);
 }
 
 void tell_cut(Reader& reader, const Parameter& p) {
@@ -163,7 +163,7 @@ Color spectrum_of(Reader& reader, const Parameters& parameters, const Parameter&
       // v3 has a scale as a second number.
       if (p.numbers.size() == 2 && p.numbers[1] != 1) color = scaled_spectrum(p.numbers[1], color);
     } else if (p.is("spectrum") && !p.strings.empty()) {
-      color = by_name(reader, parameters, p);
+      color = by_name(reader, parameters, p, use);
     } else if (p.is("spectrum")) {
       color = from_pairs(reader, p);
     } else if (p.is("float") && p.numbers.size() == 1) {
