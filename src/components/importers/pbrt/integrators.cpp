@@ -135,8 +135,7 @@ Integrator make_integrator(Reader& reader, int samples) {
   const Setting& s = reader.integrator;
   const Parameters& p = s.parameters;
   const Algorithm* const found = algorithm_of(reader);
-  if (!found)
-    reader.importing.inexact(fmt::format("the integrator '{}' is not known: path tracing is taken", s.type), p.at);
+  if (!found) reader.importing.inexact(fmt::format("the integrator '{}' is not known: path tracing is taken", s.type), p.at);
   const Ref<Component> renderer = reader.make(found ? found->renderer : "PathTracer", p.at);
   const bool light = renderer->class_info().name != "AmbientOcclusionRenderer";
   if (found && !found->media && light && !reader.media.empty())
