@@ -38,11 +38,16 @@ void Studio::send_all(const std::shared_ptr<const std::string>& words) {
 
 Studio::Working::Working(Studio& studio, std::string what, std::string file)
     : studio_(studio), what_(std::move(what)), file_(std::move(file)) {
-  const std::lock_guard lock(studio_.browsers_guard_);
-  studio_.working_ = this;
+  {
+    const std::lock_guard lock(studio_.browsers_guard_);
+    studio_.working_ = this;
+  }
+  teller_ = std::jthread([this](const std::stop_token& over) { tell_when_long(over); });
 }
 
 Studio::Working::~Working() {
+  teller_.request_stop();
+  teller_.join();
   const std::lock_guard lock(studio_.browsers_guard_);
   studio_.working_ = nullptr;
   if (!told) return;
@@ -57,13 +62,21 @@ Json Studio::Working::json() const {
   return {{"event", "working"}, {"what", what_}, {"file", file_.empty() ? Json() : Json(file_)}, {"seconds", seconds}};
 }
 
-/// Called some times a second: most work is done sooner.
-void Studio::tell_working() {
+void Studio::Working::tell_when_long(const std::stop_token& over) {
   constexpr auto patience = std::chrono::milliseconds(300);
-  const std::lock_guard lock(browsers_guard_);
-  if (!working_ || working_->told || std::chrono::steady_clock::now() - working_->since < patience) return;
-  working_->told = true;
-  send_all(written(working_->json()));
+  {
+    std::mutex guard;
+    std::unique_lock lock(guard);
+    std::condition_variable_any never;
+    if (never.wait_for(lock, over, patience, [&] { return over.stop_requested(); })) return;
+  }
+  const std::lock_guard lock(studio_.browsers_guard_);
+  if (told) return;
+  told = true;
+  try {
+    studio_.send_all(written(json()));
+  } catch (const std::exception&) {  // no memory for it: the answer comes anyway
+  }
 }
 
 void Studio::notice(const std::string& text, const char* kind) {

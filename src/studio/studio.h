@@ -154,7 +154,8 @@ class Studio {
     std::string text;
     std::function<void()> own = {};
   };
-  /// What the thread that answers is at: browsers are told when it takes long. The end of its scope is the end of the work.
+  /// The request that is being answered. Browsers are told of it when it takes long, by a thread of its own: every other one may be
+  /// waiting for a lock that the request holds. The end of its scope is the end of the work.
   class Working {
    public:
     Working(Studio&, std::string what, std::string file);
@@ -163,13 +164,14 @@ class Studio {
     Working& operator=(const Working&) = delete;
     Json json() const;
     const std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
-    bool told = false;
+    bool told = false;  // guarded by browsers_guard_
 
    private:
+    void tell_when_long(const std::stop_token&);
     Studio& studio_;
     const std::string what_, file_;
+    std::jthread teller_;
   };
-  void tell_working();
   void send_all(const std::shared_ptr<const std::string>& words);
   void open_first(Document::Source);
   /// A render as it is at a moment.

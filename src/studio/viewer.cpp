@@ -77,7 +77,6 @@ void Studio::look() {
       woken = std::exchange(viewer_woken_, false);
     }
     if (ending_) return;
-    tell_working();
     bool rendering = false;
     std::uint64_t changes = 0, generations = generation;
     const auto count = [&](const Runner::Status& status) {
