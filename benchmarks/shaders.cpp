@@ -141,7 +141,7 @@ void shader(benchmark::State& state, const ClassInfo& info, size_t operation) {
     const Bench::Query& q = bench.queries[i];
     if (operation == 1) benchmark::DoNotOptimize(scatter->evaluate(q.out, q.in));
     if (operation == 2) benchmark::DoNotOptimize(scatter->sample(q.out, q.choice, q.u));
-    if (operation == 3) benchmark::DoNotOptimize(scatter->density(q.out, q.in));
+    if (operation == 3) benchmark::DoNotOptimize(scatter->pdf(q.out, q.in));
   });
 }
 

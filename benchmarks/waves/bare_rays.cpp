@@ -33,7 +33,7 @@ bool BareTriangles::add_grid(const SceneObject& object) {
     for (std::uint32_t x = 0; x <= side; ++x) {
       const auto at = [](std::uint32_t i) { return std::min(float(i) / side, one_minus_epsilon); };
       const SurfaceSample s = object.sample_area({at(x), at(y)}, 0);
-      if (!(s.density > 0)) return false;
+      if (!(s.pdf > 0)) return false;
       points.push_back(s.point.position);
       part.push_back(s.point.primitive);
     }

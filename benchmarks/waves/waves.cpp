@@ -82,8 +82,8 @@ class Shading {
     v.scatter = scattering_at(v.point, v.out, wavelengths_, arena_);
     if (v.scatter) {
       DirectLight direct;
-      if (v.scatters_smoothly() && propose_direct_light(lights_, v, 0, wavelengths_, number(), {number(), number()},
-                                                        Heuristic::power, direct, ScatteringOf{v}))
+      if (v.scatters_smoothly() && sample_next_event(lights_, v, 0, wavelengths_, number(), {number(), number()},
+                                                     Heuristic::power, direct, ScatteringOf{v}))
         sum_ += direct.light[0];
       if (const auto next = v.scatter->sample(v.out, number(), {number(), number()}, Transport::radiance, v.lobes))
         sum_ += next->weight[0];

@@ -17,7 +17,7 @@ struct LensSample {
   Point3 lens;           ///< where on the lens
   Vector3 direction;     ///< unit, from the scene point to the lens
   float distance = 0;    ///< [m]
-  float density = 0;     ///< [1/sr] at the scene point; a pinhole: distance^2 / cos (a delta in area, converted)
+  float pdf = 0;         ///< [1/sr] at the scene point; a pinhole: distance^2 / cos (a delta in area, converted)
   float importance = 0;  ///< W_e [1/(m^2 sr)] of the connection, normalized as `Camera::importance`
   Point2 film;           ///< where on the film light from the point arrives
   float nearest = 0;     ///< [m] from the lens: what is nearer does not stand in the way (Camera::Reach)
@@ -31,7 +31,7 @@ struct CameraRay {
 };
 
 /// Densities with which a camera ray is drawn when film points are uniform over the whole film.
-struct CameraDensity {
+struct CameraPdf {
   float position = 0;   ///< [1/m^2] on the lens; 1 for a pinhole
   float direction = 0;  ///< [1/sr]
 };
@@ -99,7 +99,7 @@ class Camera : public Component {
   /// Importance W_e of a ray the camera could have sent [1/(m^2 sr)]; 0 outside the film. Its integral over lens area
   /// and projected solid angle is 1 for the whole film (per steradian alone for a pinhole, per area for parallel rays).
   virtual float importance(const Ray&) const = 0;
-  virtual CameraDensity density(const Ray&) const = 0;
+  virtual CameraPdf pdf(const Ray&) const = 0;
   /// Of a ray from the lens, or one that the camera sent.
   virtual Reach reach(const Ray&) const { return {}; }
   /// Where on the lens a ray begins that the camera sent.

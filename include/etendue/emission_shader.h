@@ -16,7 +16,7 @@ enum class ShadingNormals : std::uint8_t { folded, clipped };
 /// A direction with its solid-angle density.
 struct DirectionSample {
   Vector3 direction;
-  float density = 0;  ///< [1/sr]
+  float pdf = 0;  ///< [1/sr]
 };
 
 class EmissionShader : public Component {
@@ -32,7 +32,7 @@ class EmissionShader : public Component {
   /// A direction in which light leaves the point, for algorithms that start at luminaires; the density is
   /// [1/sr] over the emitting sides together.
   virtual DirectionSample sample(const SurfacePoint&, Point2 u) const = 0;
-  virtual float density(const SurfacePoint&, const Vector3& direction) const = 0;
+  virtual float pdf(const SurfacePoint&, const Vector3& direction) const = 0;
 
   /// Power [W/nm] the object emits at each wavelength, from its whole area.
   virtual Spectrum power(const SceneObject&, const Wavelengths&) const = 0;
@@ -40,7 +40,7 @@ class EmissionShader : public Component {
   /// For luminaires at infinity that know where their light comes from: a direction towards the light and its density
   /// [1/sr], and the density of a given one. Others return density 0, and are sampled uniformly.
   virtual DirectionSample sample_incident(Point2) const { return {}; }
-  virtual float incident_density(const Vector3&) const { return 0; }
+  virtual float incident_pdf(const Vector3&) const { return 0; }
   virtual bool knows_incident() const { return false; }
   /// Whether it only makes sense at infinity: its light depends on where it comes from, not on a surface.
   virtual bool only_at_infinity() const { return false; }

@@ -22,8 +22,8 @@ struct SampleKey {
 };
 
 /// Where numbers come from. Keys are handed over by value, in registers: copied from memory where one part was just written
-/// they would wait for it. The same arguments give the same numbers. A Sampler is one; see transport/number_vectors.h for those
-/// that remember and change them.
+/// they would wait for it. The same arguments give the same numbers. A Sampler is one; see transport/primary_sample_vectors.h
+/// for those that remember and change them.
 class NumberSource {
  public:
   /// One number in [0, 1).

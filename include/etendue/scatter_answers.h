@@ -33,8 +33,8 @@
 // Captives. A smooth boundary that reflects all light from within keeps it inside. Real light that gets in also gets out; but
 // under shading normals light gets in along ways that it does not find back, and would run along under the surface for ever (a
 // hundredth of what enters bumped glass). A real surface has as many slopes the other way: a viewer who is wholly
-// reflected sees the opposite one, of normal 2 (ng . ns) ng - ns, with the probability captive_share. Its model is the
-// same, mirrored across the tilt of ns.
+// reflected sees the opposite one, of normal 2 (ng . ns) ng - ns, with the probability opposite_slope_probability. Its model is
+// the same, mirrored across the tilt of ns.
 //
 // Models that are not reciprocal. On a path from a light, light comes from `out` and leaves to `in`: f is asked for (in, out).
 // Directions are still drawn as if it were (out, in), which is near, and weighed with what f then is.
@@ -115,15 +115,18 @@ class ScatterAnswers {
   static float visibility(const Model& m, const Vector3& v, Slope slope) {
     float opposite = 0;
     Vector3 own;
-    if (m.has_captives_ && folds(m) && seen(m, v, own) && m.holds_captive(own)) opposite = captive_share(m);
+    if (m.has_total_internal_reflection_ && folds(m) && seen(m, v, own) && m.total_internal_reflection(own))
+      opposite = opposite_slope_probability(m);
     return slope == Slope::opposite ? opposite : 1 - opposite;
   }
   /// Twice the sine of the tilt, at most a half: what lets light out of bumped glass soonest, and shows nothing of itself where
   /// normals are tilted by a degree or two.
-  static float captive_share(const Model& m) { return std::min(0.5f, 2 * safe_sqrt(1 - square(dot(m.frame_.n, m.normal_)))); }
+  static float opposite_slope_probability(const Model& m) {
+    return std::min(0.5f, 2 * safe_sqrt(1 - square(dot(m.frame_.n, m.normal_))));
+  }
   /// The probability with which light is taken to be scattered by a slope.
-  static float chance(const Model& m, Slope slope) {
-    const float opposite = m.has_captives_ && folds(m) ? 0.5f * captive_share(m) : 0;
+  static float slope_probability(const Model& m, Slope slope) {
+    const float opposite = m.has_total_internal_reflection_ && folds(m) ? 0.5f * opposite_slope_probability(m) : 0;
     return slope == Slope::opposite ? opposite : 1 - opposite;
   }
 
@@ -149,7 +152,7 @@ class ScatterAnswers {
 
   /// What passes straight on sees the model from where it goes to when it is importance: that is asked for apart.
   static bool straight_apart(const Model& m, Lobes which) {
-    return folds(m) && (which & pass_through) && (which & ~pass_through);
+    return folds(m) && (which & null_scattering) && (which & ~null_scattering);
   }
 
  public:
@@ -167,24 +170,22 @@ class ScatterAnswers {
     return radiance || light.count == 0 ? sum : sum * projected(m, out, in);
   }
 
-  static float density(const Model& m, const Vector3& out, const Vector3& in, Transport transport, Lobes which) {
+  static float pdf(const Model& m, const Vector3& out, const Vector3& in, Transport transport, Lobes which) {
     const bool radiance = transport == Transport::radiance;
     Vector3 o;
     if (!seen(m, radiance ? out : in, o)) return 0;
     const Directions light = unfolded(m, radiance ? in : out);
     const bool apart = !radiance && straight_apart(m, which);
-    if (apart) which &= Lobes(~pass_through);
+    if (apart) which &= Lobes(~null_scattering);
     float sum = 0;
     for (int i = 0; i < light.count; ++i)
       if (const Vector3& w = light.at[i]; asked(o, w, which))
-        sum += radiance ? m.local_density(o, w, which) : m.local_density(w, o, which);
+        sum += radiance ? m.local_pdf(o, w, which) : m.local_pdf(w, o, which);
     return radiance || sum == 0 ? sum : sum * (apart ? 0.5f : 1) / float(light.count * seers(m, o).count);
   }
 
-  static ScatterValue value_and_density(const Model& m, const Vector3& out, const Vector3& in, Transport transport,
-                                        Lobes which) {
-    if (transport == Transport::importance)
-      return {evaluate(m, out, in, transport, which), density(m, out, in, transport, which)};
+  static ScatterValue value_and_pdf(const Model& m, const Vector3& out, const Vector3& in, Transport transport, Lobes which) {
+    if (transport == Transport::importance) return {evaluate(m, out, in, transport, which), pdf(m, out, in, transport, which)};
     Vector3 o;
     if (!seen(m, out, o)) return {};
     const Directions light = unfolded(m, in);
@@ -192,9 +193,9 @@ class ScatterAnswers {
     for (int i = 0; i < light.count; ++i) {
       const Vector3& w = light.at[i];
       if (!asked(o, w, which)) continue;
-      const ScatterValue local = m.local_value_and_density(o, w, which);
+      const ScatterValue local = m.local_value_and_pdf(o, w, which);
       sum.value += refracted(m, local.value, o, w);
-      sum.density += local.density;
+      sum.pdf += local.pdf;
     }
     return sum;
   }
@@ -202,14 +203,14 @@ class ScatterAnswers {
   static std::optional<ScatterSample> sample(const Model& m, const Vector3& out, float choice, Point2 u, Transport transport,
                                              Lobes which) {
     if (transport == Transport::radiance) return sample_radiance(m, out, choice, u, which);
-    if (which == pass_through) return sample_straight(m, out, choice, u);
+    if (which == null_scattering) return sample_straight(m, out, choice, u);
     if (!straight_apart(m, which)) return sample_importance(m, out, choice, u, which);
     const bool straight = take_choice(choice, 0.5f);
     std::optional<ScatterSample> s =
-        straight ? sample_straight(m, out, choice, u) : sample_importance(m, out, choice, u, Lobes(which & ~pass_through));
+        straight ? sample_straight(m, out, choice, u) : sample_importance(m, out, choice, u, Lobes(which & ~null_scattering));
     if (!s) return s;
     s->weight *= 2;
-    s->density *= 0.5f;
+    s->pdf *= 0.5f;
     return s;
   }
 
@@ -222,27 +223,27 @@ class ScatterAnswers {
  private:
   /// Straight on, whatever the normals are.
   static ScatterSample straight_on(const Vector3& out, const Scatter::LocalSample& local) {
-    return {-out, local.value / local.density, local.density, pass_through, 1, false};
+    return {-out, local.value / local.pdf, local.pdf, null_scattering, 1, false};
   }
   static std::optional<ScatterSample> sample_straight(const Model& m, const Vector3& out, float choice, Point2 u) {
     Vector3 o;
     if (!seen(m, -out, o)) o = m.frame_.to_local(-out);
     Scatter::LocalSample local;
-    if (!m.local_sample(-o, choice, u, pass_through, local) || !(local.density > 0)) return std::nullopt;
+    if (!m.local_sample(-o, choice, u, null_scattering, local) || !(local.pdf > 0)) return std::nullopt;
     return straight_on(out, local);
   }
 
   static std::optional<ScatterSample> sample_radiance(const Model& m, const Vector3& out, float choice, Point2 u, Lobes which) {
     Vector3 o;
-    if (!seen(m, out, o) && (which &= pass_through) == no_lobes) return std::nullopt;
+    if (!seen(m, out, o) && (which &= null_scattering) == no_lobes) return std::nullopt;
     Slope slope = Slope::own;
-    if (m.has_captives_ && folds(m) && m.holds_captive(o) && take_choice(choice, captive_share(m)) &&
-        !seen(m, out, o, slope = Slope::opposite))
+    if (m.has_total_internal_reflection_ && folds(m) && m.total_internal_reflection(o) &&
+        take_choice(choice, opposite_slope_probability(m)) && !seen(m, out, o, slope = Slope::opposite))
       return std::nullopt;
     Scatter::LocalSample local;
-    if (!m.local_sample(o, choice, u, which, local) || !(local.density > 0)) return std::nullopt;
-    if (local.lobe == pass_through) return straight_on(out, local);
-    ScatterSample s{{}, local.value / local.density, local.density, local.lobe, local.eta, local.dispersive};
+    if (!m.local_sample(o, choice, u, which, local) || !(local.pdf > 0)) return std::nullopt;
+    if (local.lobe == null_scattering) return straight_on(out, local);
+    ScatterSample s{{}, local.value / local.pdf, local.pdf, local.lobe, local.eta, local.dispersive};
     bool image;
     if (!fold(m, local.in, slope, s.direction, image)) return std::nullopt;
     if (s.transmitted()) s.weight = s.weight / squared(s.specular() ? Spectrum(local.eta) : m.relative_index(o, local.in));
@@ -251,9 +252,9 @@ class ScatterAnswers {
     const Directions light = unfolded(m, s.direction);
     if (light.count < 2) return s;
     const Vector3& other = light.at[image ? 0 : 1];
-    const ScatterValue v = m.local_value_and_density(o, other, which);
-    s.weight = (s.weight * s.density + refracted(m, v.value, o, other)) / (s.density + v.density);
-    s.density += v.density;
+    const ScatterValue v = m.local_value_and_pdf(o, other, which);
+    s.weight = (s.weight * s.pdf + refracted(m, v.value, o, other)) / (s.pdf + v.pdf);
+    s.pdf += v.pdf;
     return s;
   }
 
@@ -262,30 +263,31 @@ class ScatterAnswers {
   static std::optional<ScatterSample> sample_importance(const Model& m, const Vector3& out, float choice, Point2 u,
                                                         Lobes which) {
     Slope slope = Slope::own;
-    if (m.has_captives_ && folds(m) && take_choice(choice, chance(m, Slope::opposite))) slope = Slope::opposite;
+    if (m.has_total_internal_reflection_ && folds(m) && take_choice(choice, slope_probability(m, Slope::opposite)))
+      slope = Slope::opposite;
     const Directions light = unfolded(m, out, slope);
     if (light.count == 0) return std::nullopt;
     const int k = light.count == 2 && take_choice(choice, 0.5f) ? 1 : 0;
     const Vector3 w = light.at[k];
     const bool second_seer = folds(m) && take_choice(choice, 0.5f);
     Scatter::LocalSample local;
-    if (!m.local_sample(w, choice, u, which, local) || !(local.density > 0)) return std::nullopt;
-    if (local.lobe == pass_through) return straight_on(out, local);
+    if (!m.local_sample(w, choice, u, which, local) || !(local.pdf > 0)) return std::nullopt;
+    if (local.lobe == null_scattering) return straight_on(out, local);
     const Vector3& o = local.in;
     const Directions to = seers(m, o, slope);
     if (to.count == 0) return std::nullopt;
-    ScatterSample s{to.at[to.count == 2 && second_seer], {}, local.density, local.lobe, local.eta, local.dispersive};
+    ScatterSample s{to.at[to.count == 2 && second_seer], {}, local.pdf, local.lobe, local.eta, local.dispersive};
     const bool as_drawn = s.specular() || m.reciprocal_;
     Spectrum value = as_drawn ? local.value * std::abs(w.z / o.z) : importance(m, w, o, which);
     if (!s.specular() && light.count == 2) {
       const Vector3& other = light.at[1 - k];
       value += importance(m, other, o, which);
-      s.density += m.local_density(other, o, which);
+      s.pdf += m.local_pdf(other, o, which);
     }
-    s.density *= chance(m, slope) / float(light.count * to.count);
+    s.pdf *= slope_probability(m, slope) / float(light.count * to.count);
     const float visible = visibility(m, s.direction, slope);
     // In this order, as the last two over a density of 1e-36 are more than a float holds.
-    s.weight = value / s.density * (visible * projected(m, out, s.direction));
+    s.weight = value / s.pdf * (visible * projected(m, out, s.direction));
     return visible > 0 ? std::optional(s) : std::nullopt;
   }
 

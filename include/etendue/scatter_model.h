@@ -20,11 +20,11 @@ class ScatterModel : public Scatter {
   Spectrum world_evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
     return Answers::evaluate(model(), out, in, transport, which);
   }
-  float world_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
-    return Answers::density(model(), out, in, transport, which);
+  float world_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
+    return Answers::pdf(model(), out, in, transport, which);
   }
-  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
-    return Answers::value_and_density(model(), out, in, transport, which);
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
+    return Answers::value_and_pdf(model(), out, in, transport, which);
   }
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
                                             Lobes which) const final {

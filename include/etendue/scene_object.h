@@ -37,7 +37,7 @@ struct HitList {
 /// A point chosen on an object.
 struct SurfaceSample {
   SurfacePoint point;
-  float density = 0;  ///< per area [1/m^2] from sample_area; per solid angle [1/sr] from sample_visible; 0: nothing was found
+  float pdf = 0;  ///< per area [1/m^2] from sample_area; per solid angle [1/sr] from sample_visible; 0: nothing was found
   /// On an object without extent (a point light, a distant light), which no ray meets; see SceneObject::delta.
   bool delta = false;
   /// The point is infinitely far along `direction` from where it was asked for.
@@ -110,12 +110,12 @@ class SceneObject : public Component {
   /// A point by area, with its density [1/m^2].
   virtual SurfaceSample sample_area(Point2 u, float time) const = 0;
   /// The density [1/m^2] with which sample_area gives a point.
-  virtual float area_density(const SurfacePoint& p) const { return 1 / area(p.time); }
+  virtual float area_pdf(const SurfacePoint& p) const { return 1 / area(p.time); }
   /// A point that may be seen from `from` (only this object is considered), with its density [1/sr] there. By default
   /// by area, converted: p_omega = p_area * distance^2 / |cos|.
   virtual SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const;
   /// The density [1/sr] with which sample_visible gives a point, seen from `from` in `direction` (unit).
-  virtual float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const;
+  virtual float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint&) const;
 
   /// Where light of a luminaire begins, over all times; nowhere for one at infinity.
   virtual Bounds3 luminaire_bounds() const { return bounds(); }

@@ -24,16 +24,17 @@ enum Lobe : std::uint8_t {
   glossy_transmission = 8,
   specular_reflection = 16,  ///< a mirror: all in one direction
   specular_transmission = 32,
-  pass_through = 64,  ///< straight on, as if nothing were there
+  null_scattering = 64,  ///< straight on, as if nothing were there
 };
 using Lobes = std::uint8_t;
 inline constexpr Lobes no_lobes = 0;
 inline constexpr Lobes all_lobes = 127;
 inline constexpr Lobes diffuse_lobes = diffuse_reflection | diffuse_transmission;
 inline constexpr Lobes glossy_lobes = glossy_reflection | glossy_transmission;
-inline constexpr Lobes specular_lobes = specular_reflection | specular_transmission | pass_through;
+inline constexpr Lobes specular_lobes = specular_reflection | specular_transmission | null_scattering;
 inline constexpr Lobes reflection_lobes = diffuse_reflection | glossy_reflection | specular_reflection;
-inline constexpr Lobes transmission_lobes = diffuse_transmission | glossy_transmission | specular_transmission | pass_through;
+inline constexpr Lobes transmission_lobes =
+    diffuse_transmission | glossy_transmission | specular_transmission | null_scattering;
 /// Those that have a density and can be evaluated for a given pair of directions.
 inline constexpr Lobes smooth_lobes = diffuse_lobes | glossy_lobes;
 
@@ -46,8 +47,8 @@ inline Transport adjoint(Transport t) { return t == Transport::radiance ? Transp
 /// A direction chosen by a Scatter. All vectors point away from the surface and have unit length.
 struct ScatterSample {
   Vector3 direction;
-  Spectrum weight;    ///< f |cos| / density for smooth lobes; the lobe's fraction over its probability for specular ones
-  float density = 0;  ///< [1/sr] for smooth lobes (all asked lobes together); for specular ones a probability
+  Spectrum weight;  ///< f |cos| / density for smooth lobes; the lobe's fraction over its probability for specular ones
+  float pdf = 0;    ///< [1/sr] for smooth lobes (all asked lobes together); for specular ones a probability
   Lobe lobe = diffuse_reflection;
   float eta = 1;  ///< the hero's index where the direction leads over that where the path came from; 1 for reflection. The
                   ///< weight has the squared index of each wavelength already: this is for roulette and bookkeeping alone
@@ -58,8 +59,8 @@ struct ScatterSample {
 
 /// What scattering does with light from one direction to another.
 struct ScatterValue {
-  Spectrum value;     ///< f |cos| [1/sr]: of the radiance that arrives, per solid angle, what leaves
-  float density = 0;  ///< [1/sr] with which `sample` gives the direction
+  Spectrum value;  ///< f |cos| [1/sr]: of the radiance that arrives, per solid angle, what leaves
+  float pdf = 0;   ///< [1/sr] with which `sample` gives the direction
 };
 
 /// Scattering at a point. `out` is the direction the path came from, `in` the one it goes on to, both pointing away
@@ -76,14 +77,13 @@ class Scatter {
   }
   /// Solid-angle density [1/sr] with which `sample` gives `in`, specular lobes aside. The reverse density is the same
   /// call with the directions exchanged.
-  float density(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance,
-                Lobes which = all_lobes) const {
-    return world_density(out, in, transport, Lobes(which & lobes_));
+  float pdf(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance, Lobes which = all_lobes) const {
+    return world_pdf(out, in, transport, Lobes(which & lobes_));
   }
   /// Both of the above in one call.
-  ScatterValue value_and_density(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance,
-                                 Lobes which = all_lobes) const {
-    return world_value_and_density(out, in, transport, Lobes(which & lobes_));
+  ScatterValue value_and_pdf(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance,
+                             Lobes which = all_lobes) const {
+    return world_value_and_pdf(out, in, transport, Lobes(which & lobes_));
   }
   /// Chooses a direction among the asked lobes: `choice` picks the lobe, `u` the direction. Empty when the sample is
   /// absorbed (its contribution is zero, and counts).
@@ -121,8 +121,8 @@ class Scatter {
 
   struct LocalSample {
     Vector3 in;
-    Spectrum value;     ///< f |cos| for smooth lobes, over all asked lobes; for specular ones the lobe's fraction
-    float density = 0;  ///< [1/sr], over all asked lobes; for specular ones the probability of the choice
+    Spectrum value;  ///< f |cos| for smooth lobes, over all asked lobes; for specular ones the lobe's fraction
+    float pdf = 0;   ///< [1/sr], over all asked lobes; for specular ones the probability of the choice
     Lobe lobe = diffuse_reflection;
     float eta = 1;  ///< the hero's, as in ScatterSample
     bool dispersive = false;
@@ -131,9 +131,9 @@ class Scatter {
   // are present, of both sides and specular ones too, so that the probabilities of choosing among them are the same here
   // as in local_sample; the signs of z tell reflection from transmission (they agree with the geometric sides).
   virtual Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const = 0;
-  virtual float local_density(const Vector3& out, const Vector3& in, Lobes which) const = 0;
-  virtual ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const {
-    return {local_evaluate(out, in, which), local_density(out, in, which)};
+  virtual float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const = 0;
+  virtual ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const {
+    return {local_evaluate(out, in, which), local_pdf(out, in, which)};
   }
   /// False: absorbed. The density of a smooth sample counts every asked lobe that could have given the direction.
   virtual bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample&) const = 0;
@@ -142,14 +142,14 @@ class Scatter {
   virtual Spectrum relative_index(const Vector3&, const Vector3&) const { return Spectrum(1.0f); }
 
   /// Whether a viewer at a local direction sees all light reflected by a smooth boundary, which has no smooth lobes. Only asked
-  /// of models that set has_captives_.
-  virtual bool holds_captive(const Vector3&) const { return false; }
+  /// of models that set has_total_internal_reflection_.
+  virtual bool total_internal_reflection(const Vector3&) const { return false; }
 
   // Answers to the public calls, for the asked lobes that are present. Here by the local functions; see scatter_model.h and
   // ScatterCombination for who else answers.
   virtual Spectrum world_evaluate(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
-  virtual float world_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
-  virtual ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
+  virtual float world_pdf(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
+  virtual ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
   virtual std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport, Lobes which) const;
   virtual Spectrum world_albedo(const Vector3& out, Lobes which) const;
 
@@ -159,7 +159,7 @@ class Scatter {
   /// Whether the shading normal is the surface's, and if not, what is done about it.
   enum class Normals : std::uint8_t { same, folded, clipped } normals_;
   bool has_choice_ = true;
-  bool has_captives_ = false;
+  bool has_total_internal_reflection_ = false;
   Lobes dispersed_ = no_lobes;
   /// False of a model whose f depends on which direction is `out`. Then local_evaluate has where light leaves to as `out`, for
   /// importance too; local_sample and local_density still have where the path came from.
@@ -170,7 +170,7 @@ class Scatter {
   friend class ScatterAnswers;
   /// What an object of which one side absorbs leaves of its shader's lobes: what goes straight on meets no matter.
   static Lobes let_through(const SurfacePoint& p) {
-    return p.object && p.object->sides != Sides::both ? Lobes(reflection_lobes | pass_through) : all_lobes;
+    return p.object && p.object->sides != Sides::both ? Lobes(reflection_lobes | null_scattering) : all_lobes;
   }
   static Normals normals_of(const SurfacePoint& p, const Frame& frame) {
     if (frame.n == p.normal) return Normals::same;
@@ -183,7 +183,7 @@ class Scatter {
 class ScatterCombination : public Scatter {
  public:
   // Values are those of `Scatter::evaluate`, cosine and corrections included.
-  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport, Lobes which) const override = 0;
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport, Lobes which) const override = 0;
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport,
                                             Lobes which) const override = 0;
   Spectrum world_albedo(const Vector3& out, Lobes which) const override = 0;
@@ -194,13 +194,13 @@ class ScatterCombination : public Scatter {
 
  private:
   Spectrum world_evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
-    return world_value_and_density(out, in, transport, which).value;
+    return world_value_and_pdf(out, in, transport, which).value;
   }
-  float world_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
-    return world_value_and_density(out, in, transport, which).density;
+  float world_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
+    return world_value_and_pdf(out, in, transport, which).pdf;
   }
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const final { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const final { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const final { return 0; }
   bool local_sample(const Vector3&, float, Point2, Lobes, LocalSample&) const final { return false; }
   Spectrum local_albedo(const Vector3&, Lobes) const final { return {}; }
 };
@@ -240,7 +240,7 @@ class Shader : public Component {
   virtual bool stochastic() const { return false; }
   /// Whether light that goes into the body by `specular_transmission`, `glossy_transmission` or `diffuse_transmission` leaves
   /// it elsewhere: renderers then ask `sample_exit` instead of following it inside.
-  virtual bool moves_exit() const { return false; }
+  virtual bool has_subsurface_exit() const { return false; }
   /// Where light that enters at a point leaves. The stream gives as many numbers as are needed.
   virtual std::optional<SubsurfaceExit> sample_exit(const SurfacePoint&, const Scene&, const Wavelengths&, NumberStream&,
                                                     Arena&) const {

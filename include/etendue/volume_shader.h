@@ -37,7 +37,7 @@ class VolumeShader : public Component {
   virtual float phase(const Point3&, const Vector3& out, const Vector3& in) const = 0;
   /// A direction drawn exactly in proportion to `phase`, and its density [1/sr], which is therefore the same number: walks
   /// count on phase / density = 1.
-  virtual Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const = 0;
+  virtual Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& pdf) const = 0;
 };
 
 }  // namespace etendue

@@ -137,7 +137,7 @@ class Objects {
     const bool enters = is_enterable(object, shader);
     blackness(object, shader);
     if (!shader) without_effect(object, {"sides"}, "it has no shader, so both sides are black");
-    if (shader && shader->possible_lobes() == pass_through)
+    if (shader && shader->possible_lobes() == null_scattering)
       without_effect(object, {"sides"}, "what goes straight on does so from both sides");
     if (!enters && (!shader || !shader->transmits()))
       without_effect(object, {"priority"}, "light does not enter it, so nothing can overlap inside");
@@ -152,7 +152,7 @@ class Objects {
   static bool is_enterable(const SceneObject& object, const Shader* shader) {
     if (!shader) return false;
     Lobes lobes = shader->possible_lobes();
-    if (object.sides != Sides::both) lobes &= Lobes(reflection_lobes | pass_through);
+    if (object.sides != Sides::both) lobes &= Lobes(reflection_lobes | null_scattering);
     if (!(lobes & transmission_lobes)) return false;
     // Last, as of a large mesh it takes time.
     return (shader->transmits() || (object.interior && is_sheet(*shader))) && object.closed();

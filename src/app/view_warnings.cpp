@@ -91,7 +91,7 @@ void stands_in_the_dark(const Job& job, std::vector<SceneWarning>& list) {
     scene.locate(ray, hit, point);
     const SceneObject& object = point.object->original();
     if (!object.closed() || object.luminaire() || dot(point.normal, ray.direction) < 0) return;
-    if (object.shader && (object.shader->possible_lobes() & (transmission_lobes | pass_through))) return;
+    if (object.shader && (object.shader->possible_lobes() & (transmission_lobes | null_scattering))) return;
     if (around && around != &object) return;
     around = &object;
   }

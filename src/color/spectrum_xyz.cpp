@@ -9,9 +9,9 @@ Xyz to_xyz(const Spectrum& spectrum, const Wavelengths& wavelengths) {
   // X = 1/size sum_i S_i xbar(lambda_i) / (p_i integral of ybar); rows hold xbar, ybar, zbar over that integral.
   using Row = float __attribute__((vector_size(16)));
   Row sum{};
-  const detail::Lanes& densities = wavelengths.densities();
+  const detail::Lanes& pdfs = wavelengths.pdfs();
   // A wavelength that was never placed counts for nothing.
-  const detail::Lanes weights = densities > 0 ? spectrum.lanes() / densities : detail::Lanes{};
+  const detail::Lanes weights = pdfs > 0 ? spectrum.lanes() / pdfs : detail::Lanes{};
   for (int i = 0; i < spectrum_size; ++i) {
     const tables::ObserverRow* row = &tables::observer_rows[size_t(wavelengths.table_index(i))];
     Row a, b;

@@ -172,15 +172,15 @@ class AxialDirections {
     if (!object.intersect(ray, hit)) return s;
     object.surface_point(ray, hit, s.point);
     complete_by_angle(s, from, 1);
-    s.density *= density(t, from, s.direction, s.point);
+    s.pdf *= pdf(t, from, s.direction, s.point);
     return s;
   }
 
   /// [1/sr]. A linear map M of directions v -> M v / |M v| enlarges solid angles by |det M| / |M v|^3, and |M v| is the
   /// distance outside over that inside.
-  float density(const Transform& t, const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
+  float pdf(const Transform& t, const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
     if (!seen_.sees(from, direction, p)) return 0;
-    const double inside = own_density(p.object_position);
+    const double inside = own_pdf(p.object_position);
     if (t.identity()) return float(inside);
     const double stretch = double(distance(p.position, from)) / view_.distance_to(p.object_position);
     return float(inside * stretch * stretch * stretch / double(std::abs(linear_determinant(t))));
@@ -190,7 +190,7 @@ class AxialDirections {
   static constexpr int pieces = 4;
 
   /// [1/sr] in own coordinates.
-  double own_density(const Point3& to) const {
+  double own_pdf(const Point3& to) const {
     double in = 0, aside = 0;
     view_.locate(to, in, aside);
     const double s = std::sqrt(in * in + aside * aside),

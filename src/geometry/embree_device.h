@@ -6,8 +6,8 @@
 #include <functional>
 #include <utility>
 
+#include "finite_ray.h"
 #include "moving_triangles.h"
-#include "sound_ray.h"
 
 namespace etendue {
 
@@ -73,7 +73,7 @@ inline void set_embree_ray(RTCRay& to, const Ray& ray, const EmbreeClock& clock 
   to.mask = ~0u;
   to.id = 0;
   to.flags = 0;
-  if (squares_are_floats(ray)) [[likely]]
+  if (has_finite_squares(ray)) [[likely]]
     return;
   to.org_x = to.org_y = to.org_z = to.dir_x = to.dir_y = to.tfar = 0;
   to.dir_z = 1;

@@ -110,11 +110,11 @@ inline float similarity_scale(const Transform& transform) {
 }
 
 /// Direction, distance and the density [1/sr] of a point chosen with a density per area [1/m^2].
-inline void complete_by_area(SurfaceSample& s, const Point3& from, float area_density) {
+inline void complete_by_area(SurfaceSample& s, const Point3& from, float area_pdf) {
   const Vector3 to = s.point.position - from;
   const float d2 = length_squared(to);
   if (!(d2 > 0)) {
-    s.density = 0;
+    s.pdf = 0;
     return;
   }
   // cosine / d^2 of the angle with the normal, with nothing in it that waits for the square root.
@@ -122,14 +122,14 @@ inline void complete_by_area(SurfaceSample& s, const Point3& from, float area_de
   const float inverse = inverse_sqrt(d2);
   s.distance = d2 * inverse;
   s.direction = inverse * to;
-  s.density = across > 0 ? area_density * (d2 / across) * s.distance : 0;
+  s.pdf = across > 0 ? area_pdf * (d2 / across) * s.distance : 0;
 }
 
 /// Direction and distance of a point chosen with a density [1/sr].
-inline void complete_by_angle(SurfaceSample& s, const Point3& from, float density) {
+inline void complete_by_angle(SurfaceSample& s, const Point3& from, float pdf) {
   const Vector3 to = s.point.position - from;
   s.distance = length(to);
-  s.density = s.distance > 0 ? density : 0;
+  s.pdf = s.distance > 0 ? pdf : 0;
   s.direction = s.distance > 0 ? to / s.distance : Vector3{0, 0, 1};
 }
 

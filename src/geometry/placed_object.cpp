@@ -79,20 +79,20 @@ float PlacedObject::area_error(float time) const {
 SurfaceSample PlacedObject::sample_area(Point2 u, float time) const {
   SurfaceSample s;
   OwnPoint own;
-  const float density = own_sample(u, own);
-  if (!(density > 0)) return s;
+  const float pdf = own_sample(u, own);
+  if (!(pdf > 0)) return s;
   carry(own, time, s.point);
   Transform scratch;
   const Transform& t = placed(transform, time, scratch);
-  s.density = t.identity() ? density : density / area_stretch(t, own.normal);
+  s.pdf = t.identity() ? pdf : pdf / area_stretch(t, own.normal);
   return s;
 }
 
-float PlacedObject::area_density(const SurfacePoint& p) const {
+float PlacedObject::area_pdf(const SurfacePoint& p) const {
   Transform scratch;
   const Transform& t = placed(transform, p.time, scratch);
-  const float density = own_density(p);
-  return t.identity() ? density : density / area_stretch(t, p.object_normal);
+  const float pdf = own_pdf(p);
+  return t.identity() ? pdf : pdf / area_stretch(t, p.object_normal);
 }
 
 PlacedObject::Area PlacedObject::area_of(const Transform& t) const {
@@ -134,10 +134,9 @@ double PlacedObject::stretched(const Transform& t, const Piece& piece, int panel
   for (int i = 0; i < panels * points; ++i)
     for (int k = 0; k < panels * points; ++k) {
       OwnPoint p;
-      const float density =
+      const float pdf =
           own_sample({float(std::lerp(piece.x0, piece.x1, place(i))), float(std::lerp(piece.y0, piece.y1, place(k)))}, p);
-      if (density > 0)
-        sum += weights[i % points / 2] * weights[k % points / 2] * double(area_stretch(t, p.normal)) / double(density);
+      if (pdf > 0) sum += weights[i % points / 2] * weights[k % points / 2] * double(area_stretch(t, p.normal)) / double(pdf);
     }
   return sum * (piece.x1 - piece.x0) * (piece.y1 - piece.y0) / (double(panels) * panels);
 }

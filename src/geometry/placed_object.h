@@ -41,7 +41,7 @@ class PlacedObject : public SceneObject {
   float area(float time) const override;
   float area_error(float time) const override;
   SurfaceSample sample_area(Point2 u, float time) const override;
-  float area_density(const SurfacePoint&) const override;
+  float area_pdf(const SurfacePoint&) const override;
 
  protected:
   /// To be called at the end of prepare, when all functions below work.
@@ -71,7 +71,7 @@ class PlacedObject : public SceneObject {
   };
   virtual Seams own_seams() const { return {}; }
   /// The density own_sample gives a point with.
-  virtual float own_density(const SurfacePoint&) const { return float(1 / own_area()); }
+  virtual float own_pdf(const SurfacePoint&) const { return float(1 / own_area()); }
 
   /// How near to an edge points go, in own coordinates: see `border`.
   float margin() const { return margin_; }

@@ -26,23 +26,23 @@ inline bool met_first(const Point3& from, const Vector3& direction, const Surfac
 
 /// The density [1/sr] of a point chosen by sample_by_both; `density_by_area(point)` is that of the other sampler [1/m^2].
 template <class Density>
-float density_by_both(const DirectionShare& share, const Point3& from, const Vector3& direction, const SurfacePoint& p,
-                      const Density& density_by_area) {
-  float density = 0;
+float pdf_by_both(const DirectionShare& share, const Point3& from, const Vector3& direction, const SurfacePoint& p,
+                  const Density& pdf_by_area) {
+  float pdf = 0;
   if (share.value < 1) {
     const float cosine = std::abs(dot(p.normal, direction));
-    if (cosine > 0) density = (1 - share.value) * density_by_area(p) * distance_squared(p.position, from) / cosine;
+    if (cosine > 0) pdf = (1 - share.value) * pdf_by_area(p) * distance_squared(p.position, from) / cosine;
   }
-  if (share.value == 0) return density;
+  if (share.value == 0) return pdf;
   const bool met = share.convex ? share.value == 1 || dot(p.normal, direction) < 0 : met_first(from, direction, p);
-  return met ? density + share.value * warp::sphere_density : density;
+  return met ? pdf + share.value * warp::sphere_pdf : pdf;
 }
 
 /// A point by direction with a share of all samples, else by the given sampler: `sample_by_area(u, sample)`
 /// fills a point or says that it found none. The density [1/sr] is that of both together.
 template <class Sampler, class Density>
 SurfaceSample sample_by_both(const SceneObject& object, const DirectionShare& share, const Point3& from, Point2 u, float time,
-                             const Sampler& sample_by_area, const Density& density_by_area) {
+                             const Sampler& sample_by_area, const Density& pdf_by_area) {
   SurfaceSample s;
   if (u.x < share.value) {
     Ray ray;
@@ -57,7 +57,7 @@ SurfaceSample sample_by_both(const SceneObject& object, const DirectionShare& sh
     if (!sample_by_area({rest, u.y}, s)) return s;
   }
   complete_by_angle(s, from, 1);
-  s.density *= density_by_both(share, from, s.direction, s.point, density_by_area);
+  s.pdf *= pdf_by_both(share, from, s.direction, s.point, pdf_by_area);
   return s;
 }
 

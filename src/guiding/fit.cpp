@@ -154,7 +154,7 @@ class Guide::Fit {
         scattered += double(w);
         continue;
       }
-      const LobeLanes each = a * SeenLobes(r_.lobes_, s->position).densities(s->direction);
+      const LobeLanes each = a * SeenLobes(r_.lobes_, s->position).pdfs(s->direction);
       float sum = (1 - a) * s->scatter;
       for (int i = 0; i < lobes; ++i) sum += each[i];
       if (!(sum > 0)) continue;

@@ -20,11 +20,12 @@ CameraDirections::Choice GuidedDirections::sample(const Walk<false>& walk, float
   return {way.next, way.more};
 }
 
-float GuidedDirections::density(const Vertex& v, const Vector3& out, const Vector3& in, float scatter) const {
-  return GuidedScattering(guide_, v, out).density(in, scatter);
+float GuidedDirections::pdf(const Vertex& v, const Vector3& out, const Vector3& in, float scatter) const {
+  return GuidedScattering(guide_, v, out).pdf(in, scatter);
 }
 
-std::vector<GuideSample> GuidedDirections::learned(std::span<const KeptVertex> walk, std::span<const Spectrum> arrived) const {
+std::vector<GuideSample> GuidedDirections::learned(std::span<const SubpathVertex> walk,
+                                                   std::span<const Spectrum> arrived) const {
   std::vector<GuideSample> samples;
   Spectrum light;
   // From the end, so that light is of all paths with the next vertex.

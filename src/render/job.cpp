@@ -76,13 +76,13 @@ namespace {
 
 /// Media that differ from place to place count in the coordinates of their object; within another scene those are not known to
 /// a path that is in the medium.
-void refuse_uneven_media_within(const Scene& scene, bool nested) {
+void refuse_heterogeneous_media_within(const Scene& scene, bool nested) {
   for (const Ref<SceneObject>& object : scene.objects) {
     if (nested && object->interior && !object->interior->homogeneous())
       object->fail("interior",
                    "a medium that differs from place to place cannot stand in a scene within a scene; put the object "
                    "into the outer scene");
-    if (const Scene* inner = scene_within(*object)) refuse_uneven_media_within(*inner, true);
+    if (const Scene* inner = scene_within(*object)) refuse_heterogeneous_media_within(*inner, true);
   }
 }
 
@@ -113,14 +113,14 @@ void Job::prepare() {
     prepare_tree(*scene);
     camera->prepare();
   }
-  refuse_uneven_media_within(*scene, false);
+  refuse_heterogeneous_media_within(*scene, false);
   camera->set_film(image->width, image->height);
   const LightGroups known(*scene, *image);  // throws when a name is unknown
 }
 
 void Job::prepare_again() {
   require_parts();
-  refuse_uneven_media_within(*scene, false);
+  refuse_heterogeneous_media_within(*scene, false);
   camera->set_film(image->width, image->height);
   const LightGroups known(*scene, *image);
 }

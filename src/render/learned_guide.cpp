@@ -55,9 +55,9 @@ ShownLobes LearnedGuide::lobes(const Point3& position, const Normal3& normal) co
     for (int column = 0; column < ShownLobes::columns; ++column) {
       float sum = 0;
       for (int i = 0; i < parts * parts; ++i)
-        sum += seen.density(
-            ShownLobes::direction(row, column, (float(i / parts) + 0.5f) / parts, (float(i % parts) + 0.5f) / parts));
-      shown.density.push_back(shown.share > 0 ? sum / (parts * parts) : warp::sphere_density);
+        sum +=
+            seen.pdf(ShownLobes::direction(row, column, (float(i / parts) + 0.5f) / parts, (float(i % parts) + 0.5f) / parts));
+      shown.pdf.push_back(shown.share > 0 ? sum / (parts * parts) : warp::sphere_pdf);
     }
   return shown;
 }

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "etendue/render/number_chains.h"
+#include "etendue/render/primary_sample_chains.h"
 
 namespace etendue {
 
@@ -33,8 +33,8 @@ void MutatedPaths::prepare_step(Schedule& schedule, const Step& step) {
 void MutatedPaths::step(Schedule& schedule, const Step& step) {
   if (direct_) RenderProcess::step(schedule, step);  // asks for `radiance`
   const auto pixels = std::uint64_t(area_.width()) * std::uint64_t(area_.height());
-  mutate_numbers(schedule, context.image, settings_, *this, mix_bits(context.seed + mix_bits(step.samples.begin)),
-                 pixels * (step.samples.end - step.samples.begin), !direct_);
+  mutate_primary_samples(schedule, context.image, settings_, *this, mix_bits(context.seed + mix_bits(step.samples.begin)),
+                         pixels * (step.samples.end - step.samples.begin), !direct_);
 }
 
 Spectrum MutatedPaths::radiance(const Ray& ray, SampleContext& sample) const {

@@ -1,5 +1,5 @@
 #include "etendue/render/photon_beams.h"
-#include "transport/stretch.h"
+#include "transport/medium_interval.h"
 
 #include <tbb/parallel_invoke.h>
 
@@ -26,11 +26,11 @@ float least_extinction(const VolumeCoefficients& c) {
 struct BeamListener final : WalkListener {
   const BeamWalks& of;
   const Wavelengths& wavelengths;
-  const std::vector<KeptVertex>& walk;
+  const std::vector<SubpathVertex>& walk;
   NumberStream chances;
   std::vector<PhotonBeam>& beams;
 
-  BeamListener(const BeamWalks& b, const Wavelengths& w, const std::vector<KeptVertex>& v, const NumberStream& numbers,
+  BeamListener(const BeamWalks& b, const Wavelengths& w, const std::vector<SubpathVertex>& v, const NumberStream& numbers,
                std::vector<PhotonBeam>& all)
       : of(b), wavelengths(w), walk(v), chances(numbers), beams(all) {}
 
@@ -44,7 +44,7 @@ struct BeamListener final : WalkListener {
     if (walks.kinds != PhotonKinds::all && caustic != (walks.kinds == PhotonKinds::caustics)) return;
     const float least = least_extinction(medium.coefficients(ray.origin, ray.time, wavelengths));
     if (!(least > 0)) return;
-    const Stretch there = stretch_of(medium, ray, reach);
+    const MediumInterval there = medium_interval(medium, ray, reach);
     if (!(there.length() > 0)) return;
     PhotonBeam& beam = beams.emplace_back();
     beam.throughput = throughput;
@@ -63,7 +63,7 @@ struct BeamListener final : WalkListener {
 }  // namespace
 
 void BeamWalks::operator()(std::uint64_t item, std::vector<PhotonBeam>& beams, Arena& arena) const {
-  std::vector<KeptVertex> walk;
+  std::vector<SubpathVertex> walk;
   EmittedLight light;
   for (std::uint64_t n = item * item_size; n < std::min(walks.walks, (item + 1) * item_size); ++n) {
     const ArenaScope memory(arena);
@@ -72,8 +72,8 @@ void BeamWalks::operator()(std::uint64_t item, std::vector<PhotonBeam>& beams, A
                                SampleKey(walks.context.seed, -8 - int(walks.kinds), int(walks.step), std::uint32_t(n)));
     SampleContext sample{w, numbers, arena, {}, nullptr, walks.abort};
     BeamListener listener(*this, w, walk, numbers.fork("beam"), beams);
-    walk_from_luminaire(walks.context.scene, walks.lights, walks.time, walks.limits, sample, walk, light, walks.targets,
-                        &listener);
+    generate_light_subpath(walks.context.scene, walks.lights, walks.time, walks.limits, sample, walk, light, walks.targets,
+                           &listener);
     if (sample.aborted()) return;
   }
 }

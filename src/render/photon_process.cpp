@@ -41,7 +41,7 @@ PhotonWalks PhotonProcess::walks(const Schedule& schedule, const Step& step, con
           .targets = request.targets,
           .fewest_vertices = request.fewest_vertices,
           .fewest_in_media = request.fewest_in_media,
-          .in_even_media = request.in_even_media,
+          .in_homogeneous_media = request.in_homogeneous_media,
           .abort = schedule.abort};
 }
 

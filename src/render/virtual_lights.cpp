@@ -6,20 +6,20 @@ VirtualLights VirtualLightProcess::make_lights(Schedule& schedule, const Step& s
   constexpr std::uint64_t item_size = 256;
   const std::uint64_t items = (walks + item_size - 1) / item_size;
   // A light and the camera's vertex are two segments away from where the path ends at least.
-  const WalkLimits limits{settings_.max_depth - 2, settings_.roulette_depth};
+  const SubpathLimits limits{settings_.max_depth - 2, settings_.roulette_depth};
   VirtualLights made;
   made.walks = double(walks);
   if (limits.longest < 1) return made;
   for (std::uint64_t i = 0; i < items; ++i) made.memory.push_back(std::make_unique<Arena>());
   made.lights = schedule.collect<VirtualLight>(items, [&](std::uint64_t item, std::vector<VirtualLight>& lights, Arena&) {
     Arena& arena = *made.memory[size_t(item)];
-    std::vector<KeptVertex> walk;
+    std::vector<SubpathVertex> walk;
     EmittedLight light;
     for (std::uint64_t n = item * item_size; n < std::min(walks, (item + 1) * item_size) && !schedule.aborted(); ++n) {
       Wavelengths& w = *arena.make<Wavelengths>(wavelengths({}, 0));
       const NumberStream numbers(*renderer.sampler, SampleKey(context.seed, -6, int(step.number), std::uint32_t(n)));
       SampleContext sample{w, numbers, arena, {}, nullptr, schedule.abort};
-      if (!walk_from_luminaire(context.scene, *renderer.light_sampler, time(0), limits, sample, walk, light)) continue;
+      if (!generate_light_subpath(context.scene, *renderer.light_sampler, time(0), limits, sample, walk, light)) continue;
       for (size_t i = 1; i < walk.size(); ++i)
         if (walk[i].connectable()) lights.push_back({walk[i], int(i) + 1, walk[0].point.object});
     }

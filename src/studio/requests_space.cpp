@@ -86,7 +86,7 @@ Json lobes(const Call& call) {
           {"share", found->share},
           {"rows", ShownLobes::rows},
           {"columns", ShownLobes::columns},
-          {"density", found->density}};
+          {"density", found->pdf}};
 }
 
 }  // namespace etendue::studio

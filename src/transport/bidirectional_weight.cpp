@@ -12,7 +12,7 @@ class Strategies {
 
   double raised(double ratio) const { return heuristic_ == Heuristic::balance ? ratio : ratio * ratio; }
   /// What p_1 is multiplied by since D_0 stands for L_0.
-  double first(int j) const { return j == 1 ? double(path_.direct) / path_.begun : 1.0; }
+  double first(int j) const { return j == 1 ? double(path_.pdf_next_event) / path_.pdf_emission_origin : 1.0; }
 
   /// The sum of (p_j / p_s)^beta over strategies with more vertices from the luminaire than s, connecting or merging, where
   /// `ratio` stands for p_s.
@@ -42,31 +42,31 @@ class Strategies {
   double merged(double ratio, int i) const {
     const int last = path_.s + path_.t - 1;
     if (!(path_.merging.surface > 0) || i <= 0 || i >= last || !connectable(i)) return 0;
-    const KeptVertex& v = vertex(i);
+    const SubpathVertex& v = vertex(i);
     const double merging = v.in_medium() ? path_.merging.medium : v.on_surface() ? path_.merging.surface : 0;
     return raised(ratio * merging * from_light(i));
   }
   bool possible(int j) const {
     const int last = path_.s + path_.t - 1;
-    if (j == 0) return path_.luminaire_can_be_met;
+    if (j == 0) return path_.emitter_can_be_hit;
     if (j == last && last == 1) return false;  // a luminaire seen by the lens is met, never connected
     return connectable(j - 1) && connectable(j);
   }
 
  private:
   // Vertex i of the whole path, its densities, and whether it can stand at a connection: those at this one can.
-  const KeptVertex& vertex(int i) const { return i < path_.s ? path_.light[i] : path_.camera[path_.s + path_.t - 1 - i]; }
+  const SubpathVertex& vertex(int i) const { return i < path_.s ? path_.light[i] : path_.camera[path_.s + path_.t - 1 - i]; }
   bool connectable(int i) const { return i == 0 || (i == path_.s - 1 && !merges_) || i == path_.s || !vertex(i).specular; }
   double from_light(int i) const {
-    if (i == 0) return path_.begun;
-    if (i < path_.s) return path_.light[i].forward;
+    if (i == 0) return path_.pdf_emission_origin;
+    if (i < path_.s) return path_.light[i].pdf_forward;
     if (i == path_.s) return path_.camera_last_from_light;
-    return i == path_.s + 1 ? path_.camera_before_from_light : vertex(i).reverse;
+    return i == path_.s + 1 ? path_.camera_before_from_light : vertex(i).pdf_reverse;
   }
   double from_camera(int i) const {
-    if (i >= path_.s) return vertex(i).forward;
+    if (i >= path_.s) return vertex(i).pdf_forward;
     if (i == path_.s - 1) return path_.light_last_from_camera;
-    return i == path_.s - 2 && !merges_ ? path_.light_before_from_camera : path_.light[i].reverse;
+    return i == path_.s - 2 && !merges_ ? path_.light_before_from_camera : path_.light[i].pdf_reverse;
   }
 
   const ConnectedPath& path_;
@@ -82,10 +82,10 @@ float bidirectional_weight(const ConnectedPath& path, Heuristic heuristic) {
   return float(1 / (1 + strategies.merged(ratio, path.s) + strategies.after(ratio) + strategies.before(ratio)));
 }
 
-PhotonWeight photon_weight(const ConnectedPath& path, float forward, Heuristic heuristic) {
+PhotonWeight photon_weight(const ConnectedPath& path, float pdf_forward, Heuristic heuristic) {
   const Strategies strategies(path, heuristic, true);
   PhotonWeight w;
-  w.forward = forward;
+  w.pdf_forward = pdf_forward;
   w.connecting = path.s == 1 || !path.light[path.s - 1].specular ? float(strategies.raised(strategies.first(path.s))) : 0;
   w.others = strategies.before(1);
   return w;

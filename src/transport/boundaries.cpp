@@ -19,7 +19,7 @@ bool boundary_goes_before(const SceneObject& a, const SceneObject& b) {
   if (mere_sheet(a) || mere_sheet(b)) return mere_sheet(a) && !mere_sheet(b);
   if (a.priority != b.priority) return a.priority > b.priority;
   // What only bounds a medium gives way to what refracts.
-  return a.shader->possible_lobes() != pass_through && b.shader->possible_lobes() == pass_through;
+  return a.shader->possible_lobes() != null_scattering && b.shader->possible_lobes() == null_scattering;
 }
 
 float reach_of_coincidence(const Scene& scene, const SurfacePoint& point) {
@@ -69,7 +69,7 @@ void coincident_hits(const Scene& scene, const Ray& ray, const Hit& hit, const S
   }
 }
 
-void settle_coincident(const Scene& scene, const Ray& ray, Hit& hit, SurfacePoint& point, MediumStack& media) {
+void resolve_coincident(const Scene& scene, const Ray& ray, Hit& hit, SurfacePoint& point, MediumStack& media) {
   media.forget_others();
   if (!lets_in(*hit.object)) return;
   HitList others;

@@ -4,8 +4,8 @@
 
 namespace etendue {
 
-std::optional<Connection> connect(const Scene& scene, const KeptVertex& y, const KeptVertex& z, const Wavelengths& wavelengths,
-                                  NumberStream& numbers, Arena& arena) {
+std::optional<Connection> connect(const Scene& scene, const SubpathVertex& y, const SubpathVertex& z,
+                                  const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena) {
   const Vector3 d = y.point.position - z.point.position;
   const float squared = length_squared(d);
   if (!(squared > 0)) return {};
@@ -20,29 +20,29 @@ std::optional<Connection> connect(const Scene& scene, const KeptVertex& y, const
   if (c.light.black()) return {};
   MediumStack scratch;
   Spectrum likely;
-  const Spectrum visible = visible_fraction(scene, connecting_ray(z, y), media_towards(z, c.direction, scratch), wavelengths,
-                                            numbers, arena, Transport::radiance, &likely);
+  const Spectrum visible = shadow_transmittance(scene, connecting_ray(z, y), media_towards(z, c.direction, scratch),
+                                                wavelengths, numbers, arena, Transport::radiance, &likely);
   if (visible.black()) return {};
   c.light *= visible;
-  c.density_at_z = at_z.density;
-  c.density_at_y = at_y.density;
-  c.chance = likely.average();
+  c.pdf_at_z = at_z.pdf;
+  c.pdf_at_y = at_y.pdf;
+  c.mean_transmittance = likely.average();
   return c;
 }
 
-std::optional<LuminaireConnection> connect_to_luminaire(const Scene& scene, const LightSampler& lights, const KeptVertex& z,
+std::optional<LuminaireConnection> connect_to_luminaire(const Scene& scene, const LightSampler& lights, const SubpathVertex& z,
                                                         const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena) {
   const float which = numbers.next();
   const Point2 u = numbers.next_pair();
   const LightChoice choice = lights.choose(z.point.position, z.normal(), which);
   if (!choice.luminaire) return {};
   SurfaceSample l = choice.luminaire->sample_visible(z.point.position, u, z.point.time);
-  if (!(l.density > 0)) return {};
+  if (!(l.pdf > 0)) return {};
   const ScatterValue f = scattering(z, z.out, l.direction, Transport::radiance);
   if (f.value.black()) return {};
   const EmissionShader& emission = *choice.luminaire->emission;
   LuminaireConnection c;
-  c.light = z.throughput * f.value * emission.radiance(l.point, -l.direction, wavelengths) / (choice.probability * l.density);
+  c.light = z.throughput * f.value * emission.radiance(l.point, -l.direction, wavelengths) / (choice.probability * l.pdf);
   if (c.light.black() || !scene.in_front(l.point, -l.direction)) return {};
   c.luminaire.kind = Vertex::Kind::luminaire;
   c.luminaire.infinite = l.infinite;
@@ -52,31 +52,31 @@ std::optional<LuminaireConnection> connect_to_luminaire(const Scene& scene, cons
   MediumStack scratch;
   Spectrum likely;
   const Spectrum visible =
-      visible_fraction(scene, l.infinite ? leaving_ray(z, l.direction) : connecting_ray(z, c.luminaire),
-                       media_towards(z, l.direction, scratch), wavelengths, numbers, arena, Transport::radiance, &likely);
+      shadow_transmittance(scene, l.infinite ? leaving_ray(z, l.direction) : connecting_ray(z, c.luminaire),
+                           media_towards(z, l.direction, scratch), wavelengths, numbers, arena, Transport::radiance, &likely);
   if (visible.black()) return {};
   c.light *= visible;
-  c.density_at_z = f.density;
-  c.density_at_luminaire = l.infinite ? 1 : emission.density(l.point, -l.direction);
-  c.chance = likely.average();
+  c.pdf_at_z = f.pdf;
+  c.pdf_at_luminaire = l.infinite ? 1 : emission.pdf(l.point, -l.direction);
+  c.mean_transmittance = likely.average();
   return c;
 }
 
-std::optional<LensConnection> connect_to_lens(const RenderContext& context, const KeptVertex& y, const Wavelengths& wavelengths,
-                                              NumberStream& numbers, Arena& arena) {
+std::optional<LensConnection> connect_to_lens(const RenderContext& context, const SubpathVertex& y,
+                                              const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena) {
   const Camera& camera = context.camera;
   if (unseen(y)) return {};
   const std::optional<LensSample> lens = camera.sample_lens(y.point.position, y.point.time, numbers.next_pair());
-  if (!lens || !(lens->density > 0)) return {};
+  if (!lens || !(lens->pdf > 0)) return {};
   const ScatterValue f = scattering(y, y.out, lens->direction, Transport::importance);
   LensConnection c;
   c.lens = *lens;
-  c.light = y.throughput * f.value * (lens->importance / lens->density) * camera.lens_weight(*lens, wavelengths);
+  c.light = y.throughput * f.value * (lens->importance / lens->pdf) * camera.lens_weight(*lens, wavelengths);
   if (c.light.black()) return {};
   MediumStack scratch;
   Spectrum likely;
-  const Spectrum visible = visible_fraction(context.scene, lens_ray(y, *lens), media_towards(y, lens->direction, scratch),
-                                            wavelengths, numbers, arena, Transport::importance, &likely);
+  const Spectrum visible = shadow_transmittance(context.scene, lens_ray(y, *lens), media_towards(y, lens->direction, scratch),
+                                                wavelengths, numbers, arena, Transport::importance, &likely);
   if (visible.black()) return {};
   c.light *= visible;
   c.camera.kind = Vertex::Kind::camera;
@@ -87,8 +87,8 @@ std::optional<LensConnection> connect_to_lens(const RenderContext& context, cons
   ray.origin = lens->lens;
   ray.direction = -lens->direction;
   ray.time = y.point.time;
-  c.density_at_lens = camera_direction_density(camera, ray);
-  c.chance = likely.average();
+  c.pdf_at_lens = camera_direction_pdf(camera, ray);
+  c.mean_transmittance = likely.average();
   return c;
 }
 

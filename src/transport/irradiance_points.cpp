@@ -22,7 +22,7 @@ Spectrum irradiance_at(const Scene& scene, const PhotonMap& map, size_t i, const
   for (size_t k = all; k < near.size(); ++k) {
     const Photon& p = map[near[k].index];
     if (!p.in_medium && dot(p.out, normal) > 0 && dot(on_side(p.surface_normal(), p.out), normal) > same_way &&
-        !parted(scene, map[i].position, normal, estimate.time, p.position, on_side(p.surface_normal(), p.out), radius))
+        !photon_occluded(scene, map[i].position, normal, estimate.time, p.position, on_side(p.surface_normal(), p.out), radius))
       sum += p.throughput;
   }
   return sum / float(estimate.walks * double(pi) * double(radius) * double(radius));
@@ -58,7 +58,7 @@ const Spectrum* IrradiancePoints::at(const Vertex& v) const {
   for (const PointTree::Near& each : near)
     if (const Point& p = points_[each.index];
         dot(p.normal, normal) > same_way &&
-        !parted(*scene_, v.point.position, normal, v.point.time, p.position, p.normal, std::sqrt(each.squared)))
+        !photon_occluded(*scene_, v.point.position, normal, v.point.time, p.position, p.normal, std::sqrt(each.squared)))
       return &p.value;
   return nullptr;
 }

@@ -121,17 +121,17 @@ bool PathSpace::complete(LightPath& path) const {
     if (path.specular(i) && !fill_specular(path, i)) return false;
   // From the luminaire.
   const SceneObject& luminaire = *at(0).point.object;
-  at(0).from_light = double(lights.probability(luminaire)) * double(luminaire.area_density(at(0).point));
+  at(0).from_light = double(lights.probability(luminaire)) * double(luminaire.area_pdf(at(0).point));
   for (int i = 1; i < k; ++i) {
     const PathVertex& from = at(i - 1);
     double p = 0;
     if (from.specular) {
       p = from.lobe_from_light;
     } else if (i == 1) {
-      p = double(luminaire.emission->density(from.point, from.out));
+      p = double(luminaire.emission->pdf(from.point, from.out));
     } else {
       const Vector3 before = -at(i - 2).out;
-      p = double(scattering_density(from, before, from.out, Transport::importance)) * lobe_share(from, before, smooth_lobes);
+      p = double(scattering_pdf(from, before, from.out, Transport::importance)) * lobe_share(from, before, smooth_lobes);
     }
     // Along a surface no light leaves, but light_angle is without bound there.
     at(i).from_light = path.specular(i) || !(p > 0) ? p : p * path.light_angle(i);
@@ -147,7 +147,7 @@ bool PathSpace::complete(LightPath& path) const {
   const Camera::Reach reach = context.camera.reach(ray);
   const float far = distance(at(k - 1).point.position, ray.origin);
   if (far < reach.nearest || far > reach.farthest) return false;
-  at(k - 1).from_camera = double(camera_direction_density(context.camera, ray)) * path.camera_angle(k - 1);
+  at(k - 1).from_camera = double(camera_direction_pdf(context.camera, ray)) * path.camera_angle(k - 1);
   path.scale = at(k - 1).from_camera;
   if (!context.scene.in_front(at(0).point, at(0).out)) return false;
   Spectrum f = luminaire.emission->radiance(at(0).point, at(0).out, path.wavelengths);
@@ -158,7 +158,7 @@ bool PathSpace::complete(LightPath& path) const {
       f *= from.fraction;
     } else {
       const ScatterValue s = scattering(from, from.out, -at(i).out, Transport::radiance);
-      at(i).from_camera = double(s.density) * lobe_share(from, from.out, smooth_lobes) * path.camera_angle(i);
+      at(i).from_camera = double(s.pdf) * lobe_share(from, from.out, smooth_lobes) * path.camera_angle(i);
       f *= s.value;
       path.scale *= path.camera_angle(i);
     }
@@ -168,7 +168,7 @@ bool PathSpace::complete(LightPath& path) const {
   return std::isfinite(path.scale) && weigh_camera(path, ray);
 }
 
-double PathSpace::density(const LightPath& path, int l, int r) {
+double PathSpace::pdf(const LightPath& path, int l, int r) {
   double sum = 0;
   for (int b = 0; b <= r; ++b) {
     // A walk that meets a luminaire is joined to nothing.

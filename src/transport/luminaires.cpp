@@ -27,7 +27,7 @@ bool begin_before_all(const Scene& scene, const Point3& p, const Vector3& outwar
 
 }  // namespace
 
-Point2 LightFront::sample(Point2 u) const {
+Point2 EmissionPlane::sample(Point2 u) const {
   if (!endless_) {
     const Point2 p = warp::disc(u);
     return {radius_ * p.x, radius_ * p.y};
@@ -42,8 +42,8 @@ Point2 LightFront::sample(Point2 u) const {
   return {r * cosine, r * sine};
 }
 
-bool begin_at_infinity(const Scene& scene, const Point3& through, const SurfaceSample& s, const Wavelengths& w,
-                       EmittedLight& light) {
+bool emit_from_infinity(const Scene& scene, const Point3& through, const SurfaceSample& s, const Wavelengths& w,
+                        EmittedLight& light) {
   light.infinite = true;
   light.point = s.point;
   light.ray.direction = -s.direction;
@@ -61,8 +61,8 @@ bool begin_at_infinity(const Scene& scene, const Point3& through, const SurfaceS
   return true;
 }
 
-void begin_at_point(const Scene& scene, const SurfaceSample& s, const Vector3& direction, const Wavelengths& w,
-                    EmittedLight& light) {
+void emit_from_point(const Scene& scene, const SurfaceSample& s, const Vector3& direction, const Wavelengths& w,
+                     EmittedLight& light) {
   light.point = s.point;
   light.radiance = s.point.object->emission->radiance(s.point, direction, w);
   if (!scene.in_front(light.point, direction)) light.radiance = {};
@@ -95,25 +95,25 @@ bool sample_emitted_light(const Scene& scene, const LightSampler& lights, const 
   if (!choose_luminaire(lights, which, time, light)) return false;
   const SceneObject& luminaire = *light.luminaire;
   if (luminaire.infinite()) {
-    const LightFront front(scene);
+    const EmissionPlane front(scene);
     const SurfaceSample s = luminaire.sample_visible(front.centre(), direction, time);
-    if (!(s.density > 0)) return false;
+    if (!(s.pdf > 0)) return false;
     const Frame frame(Normal3(-s.direction));
     const Point2 across = front.sample(position);
     const Point3 through = front.centre() + across.x * frame.s + across.y * frame.t;
-    light.direction = s.density;
-    light.position = front.density(through, s.direction);
-    if (!begin_at_infinity(scene, through, s, w, light)) return false;
+    light.direction = s.pdf;
+    light.position = front.pdf(through, s.direction);
+    if (!emit_from_infinity(scene, through, s, w, light)) return false;
   } else {
     const SurfaceSample s = luminaire.sample_area(position, time);
-    if (!(s.density > 0)) return false;
+    if (!(s.pdf > 0)) return false;
     light.placed = true;
     light.point = s.point;
-    light.position = s.density;
+    light.position = s.pdf;
     const DirectionSample d = luminaire.emission->sample(s.point, direction);
-    if (!(d.density > 0)) return false;
-    light.direction = d.density;
-    begin_at_point(scene, s, d.direction, w, light);
+    if (!(d.pdf > 0)) return false;
+    light.direction = d.pdf;
+    emit_from_point(scene, s, d.direction, w, light);
   }
   return !light.radiance.black();
 }

@@ -1,6 +1,6 @@
 #include "etendue/transport/medium.h"
 
-#include "transport/stretch.h"
+#include "transport/medium_interval.h"
 
 #include <vector>
 
@@ -46,11 +46,11 @@ FreeFlight through_homogeneous(const VolumeCoefficients& c, float reach, const S
   const float distance = extinction[k] > 0 ? -std::log1p(-u) / extinction[k] : infinity;
   const bool scattered = distance < reach;
   const Spectrum t = exponential(extinction, scattered ? distance : reach);
-  const Spectrum densities = scattered ? extinction * t : t;
-  float density = 0;
-  for (int i = 0; i < spectrum_size; ++i) density += weights[i] * densities[i];
-  if (!(density > 0)) return {false, reach, {}};
-  return {scattered, scattered ? distance : reach, (scattered ? c.scattering * t : t) / density};
+  const Spectrum pdfs = scattered ? extinction * t : t;
+  float pdf = 0;
+  for (int i = 0; i < spectrum_size; ++i) pdf += weights[i] * pdfs[i];
+  if (!(pdf > 0)) return {false, reach, {}};
+  return {scattered, scattered ? distance : reach, (scattered ? c.scattering * t : t) / pdf};
 }
 
 /// A weight this small is not followed further without a chance to end: media may go on for ever.
@@ -121,7 +121,7 @@ float reach_within(const Medium& medium, const Ray& ray, float reach) {
 
 }  // namespace
 
-Stretch stretch_of(const Medium& medium, const Ray& ray, float reach) {
+MediumInterval medium_interval(const Medium& medium, const Ray& ray, float reach) {
   if (!medium.object || !medium.object->surrounds()) return {0, reach_within(medium, ray, reach)};
   const float far = medium.object->surrounding_reach(ray);
   if (!std::isfinite(far)) return {0, reach};
@@ -157,7 +157,7 @@ Ray Medium::own(const Ray& ray) const {
 
 Spectrum transmittance(const Medium& medium, const Ray& ray, float distance, const Wavelengths& w, NumberStream& numbers) {
   const VolumeShader& volume = *medium.volume;
-  const Stretch there = stretch_of(medium, ray, distance);
+  const MediumInterval there = medium_interval(medium, ray, distance);
   if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), there.length());
   const float m = volume.majorant(w).maximum();
   Spectrum fraction(1.0f);
@@ -175,9 +175,9 @@ Spectrum transmittance(const Medium& medium, const Ray& ray, float distance, con
   return fraction;
 }
 
-Spectrum likely_transmittance(const Medium& medium, const Ray& ray, float distance, const Wavelengths& w) {
+Spectrum weighting_transmittance(const Medium& medium, const Ray& ray, float distance, const Wavelengths& w) {
   const VolumeShader& volume = *medium.volume;
-  const Stretch there = stretch_of(medium, ray, distance);
+  const MediumInterval there = medium_interval(medium, ray, distance);
   const float length = there.length();
   if (volume.homogeneous()) return exponential(volume.coefficients(ray.origin, ray.time, w).extinction(), length);
   if (!std::isfinite(length)) return Spectrum(1.0f);
@@ -194,7 +194,7 @@ Spectrum likely_transmittance(const Medium& medium, const Ray& ray, float distan
 FreeFlight sample_free_flight(const Medium& medium, const Ray& ray, float reach, const Spectrum& throughput,
                               const Wavelengths& w, NumberStream& numbers) {
   const VolumeShader& volume = *medium.volume;
-  const Stretch there = stretch_of(medium, ray, reach);
+  const MediumInterval there = medium_interval(medium, ray, reach);
   FreeFlight flight;
   if (volume.homogeneous()) {
     const VolumeCoefficients c = volume.coefficients(ray.origin, ray.time, w);

@@ -4,8 +4,8 @@
 
 namespace etendue {
 
-std::string object_name(const SceneObject& met) {
-  const SceneObject& object = met.original();
+std::string object_name(const SceneObject& emitter_hit) {
+  const SceneObject& object = emitter_hit.original();
   const std::string& name = object.class_info().name;
   return object.origin && !object.origin->name.empty() ? object.origin->name + " (" + name + ")" : name;
 }
@@ -18,7 +18,7 @@ std::string lobe_name(Lobe lobe) {
     case glossy_transmission: return "glossy transmission";
     case specular_reflection: return "specular reflection";
     case specular_transmission: return "specular transmission";
-    case pass_through: return "pass through";
+    case null_scattering: return "pass through";
   }
   return "unknown";
 }
@@ -54,16 +54,16 @@ void PathObserver::escape_slowly(const SceneObject& far, const Ray& ray, const S
 void PathObserver::scattered_slowly(const ScatterSample& s) {
   PathRecord::Vertex& v = record->vertices.back();
   v.lobe = lobe_name(s.lobe);
-  v.density = s.density;
+  v.pdf = s.pdf;
   if (s.dispersive) v.note = "dispersion: only the hero wavelength goes on";
 }
 
-void PathObserver::met_slowly(const Spectrum& light, int length, float weight) {
+void PathObserver::emitter_hit_slowly(const Spectrum& light, int length, float weight) {
   record->vertices.back().emitted += light;
   record->contribute({"luminaire met", length, weight, light, {}, false});
 }
 
-void PathObserver::sampled_slowly(const Spectrum& light, int length, float weight) {
+void PathObserver::next_event_slowly(const Spectrum& light, int length, float weight) {
   record->vertices.back().direct = light;
   record->contribute({"luminaire sampled", length, weight, light, {}, false});
 }

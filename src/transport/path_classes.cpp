@@ -70,13 +70,13 @@ constexpr std::array<PathClassInfo, 15> classes{{
      [](const SceneTraits& t) {
        return told("light that ", t.emissive_media, verb(t.emissive_media, "send") + " out from within");
      }},
-    {uneven_media, "uneven_media", "media that differ from place to place",
-     [](const SceneTraits& t) { return told("what is uneven in the media of ", t.uneven_media); }},
+    {heterogeneous_media, "uneven_media", "media that differ from place to place",
+     [](const SceneTraits& t) { return told("what is uneven in the media of ", t.heterogeneous_media); }},
     {subsurface_light, "subsurface_light", "light scattered inside bodies",
-     [](const SceneTraits& t) { return told("light scattered inside ", t.moved_exits); }},
+     [](const SceneTraits& t) { return told("light scattered inside ", t.subsurface_exits); }},
     {light_through_surfaces, "light_through_surfaces", "light that surfaces let pass straight on",
      [](const SceneTraits& t) {
-       return told("light that ", t.pass_through, verb(t.pass_through, "let") + " pass straight on");
+       return told("light that ", t.null_scattering, verb(t.null_scattering, "let") + " pass straight on");
      }},
 }};
 

@@ -25,8 +25,8 @@ inline double lobe_share(const PathVertex& v, const Vector3& out, Lobes group) {
 inline std::optional<ScatterSample> follow_specular(const PathVertex& v, const Vector3& out, Transport transport, Lobe lobe) {
   if (!v.scatter) return {};
   const auto s = v.scatter->sample(out, 0, {}, transport, lobe);
-  if (!s || enters_body(v.point, *s)) return {};
-  if (s->density < 0.9999f)
+  if (!s || enters_subsurface(v.point, *s)) return {};
+  if (s->pdf < 0.9999f)
     v.point.object->shader->fail({}, "sends light on in several specular directions, which PathSpaceMetropolis cannot follow");
   return s;
 }

@@ -59,7 +59,7 @@ bool PathSpace::follow(const PathVertex& from, const Vector3& direction, LightPa
     if (!scene.nearest(ray, hit)) return false;
     scene.locate(ray, hit, to.point);
     if (tracks) {
-      settle_coincident(scene, ray, hit, to.point, media);
+      resolve_coincident(scene, ray, hit, to.point, media);
       if (hidden_by_priority(media, *to.point.object)) {
         cross_boundary(media, *to.point.object, to.point.normal, direction);
         ray.maximum -= hit.distance;
@@ -124,7 +124,7 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
       const LightChoice choice = lights.choose(next(choices));
       if (!choice.luminaire || choice.luminaire->infinite() || choice.luminaire->delta()) return false;
       const SurfaceSample s = choice.luminaire->sample_area(next_pair(choices), time);
-      if (!(s.density > 0)) return false;
+      if (!(s.pdf > 0)) return false;
       to.kind = Vertex::Kind::luminaire;
       to.point = s.point;
       walk.push_back(to);
@@ -137,7 +137,7 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
       way = camera_direction({u.x * float(context.image.width), u.y * float(context.image.height)}, y);
     } else if (from.kind == Vertex::Kind::luminaire) {
       const DirectionSample d = from.point.object->emission->sample(from.point, next_pair(choices));
-      if (!(d.density > 0)) return false;
+      if (!(d.pdf > 0)) return false;
       way = d.direction;
     } else {
       if (!from.scatter) return false;
@@ -151,7 +151,7 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
       if (specular_one && walk.size() == given) return false;  // what was given stays smooth
       const auto s = specular_one ? follow_specular(from, out, transport, Lobe(lobe_groups[chosen]))
                                   : from.scatter->sample(out, next(choices), next_pair(choices), transport, smooth_lobes);
-      if (!s || enters_body(from.point, *s)) return false;
+      if (!s || enters_subsurface(from.point, *s)) return false;
       from.specular = specular_one;
       from.lobe = Lobe(s->lobe);
       way = s->direction;
@@ -184,8 +184,8 @@ bool PathSpace::visible(const LightPath& path, int i) const {
   MediumStack scratch;
   const NoNumbers none;
   NumberStream numbers(none, {});
-  return !visible_fraction(context.scene, ray, media_towards(from, ray.direction, scratch), path.wavelengths, numbers,
-                           *path.arena)
+  return !shadow_transmittance(context.scene, ray, media_towards(from, ray.direction, scratch), path.wavelengths, numbers,
+                               *path.arena)
               .black();
 }
 

@@ -29,8 +29,8 @@ Spectrum scattered_from_photon(const Vertex& at, const Photon& photon, const Car
   return at.scatter->evaluate(at.out, photon.out, Transport::radiance, at.lobes) * light / cosine;
 }
 
-bool parted(const Scene& scene, const Point3& a, const Vector3& normal_a, float time, const Point3& b, const Vector3& normal_b,
-            float radius) {
+bool photon_occluded(const Scene& scene, const Point3& a, const Vector3& normal_a, float time, const Point3& b,
+                     const Vector3& normal_b, float radius) {
   const float lift = 0.1f * radius;
   const Point3 from = a + lift * normal_a;
   const Vector3 between = b + lift * normal_b - from;
@@ -66,44 +66,45 @@ void PhotonMap::build(std::vector<Photon>&& photons) {
 namespace {
 
 /// What the weight of merging with vertex i of a light walk needs.
-PhotonWeight weight_of(const std::vector<KeptVertex>& walk, size_t i, float direct, const StrategyWeights& against,
-                       const LightFront& front) {
-  const KeptVertex &photon = walk[i], &luminaire = walk[0];
+PhotonWeight weight_of(const std::vector<SubpathVertex>& walk, size_t i, float pdf_next_event, const StrategyWeights& against,
+                       const EmissionPlane& front) {
+  const SubpathVertex &photon = walk[i], &luminaire = walk[0];
   ConnectedPath path;
   path.light = walk.data();
   path.s = int(i);
   path.t = 2;  // at least: what merges is no end of the path
-  path.light_last_from_camera = vertex_density(1, photon, walk[i - 1], photon.out, photon.chance, front);
-  path.direct = direct;
-  path.begun = luminaire.forward;
-  path.luminaire_can_be_met = !luminaire.point.object->delta();
+  path.light_last_from_camera = vertex_pdf(1, photon, walk[i - 1], photon.out, photon.mean_transmittance, front);
+  path.pdf_next_event = pdf_next_event;
+  path.pdf_emission_origin = luminaire.pdf_forward;
+  path.emitter_can_be_hit = !luminaire.point.object->delta();
   path.merging = against.merging;
-  return photon_weight(path, photon.forward, against.heuristic);
+  return photon_weight(path, photon.pdf_forward, against.heuristic);
 }
 
 }  // namespace
 
 void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, Arena& arena) const {
-  std::vector<KeptVertex> walk;
+  std::vector<SubpathVertex> walk;
   EmittedLight light;
-  const LightFront front(context.scene);
+  const EmissionPlane front(context.scene);
   for (std::uint64_t n = item * item_size; n < std::min(walks, (item + 1) * item_size); ++n) {
     const ArenaScope memory(arena);
     Wavelengths w = wavelengths;
-    NumberStream walk_numbers(numbers, SampleKey(context.seed, -2 - int(kinds), int(step), std::uint32_t(n)));
-    NumberStream chances = walk_numbers.fork("kept");
-    SampleContext sample{w, walk_numbers, arena, {}, nullptr, abort};
-    if (!walk_from_luminaire(context.scene, lights, time, limits, sample, walk, light, targets)) continue;
+    NumberStream walk_samples(numbers, SampleKey(context.seed, -2 - int(kinds), int(step), std::uint32_t(n)));
+    NumberStream chances = walk_samples.fork("kept");
+    SampleContext sample{w, walk_samples, arena, {}, nullptr, abort};
+    if (!generate_light_subpath(context.scene, lights, time, limits, sample, walk, light, targets)) continue;
     if (sample.aborted()) return;
-    const float direct = walk.size() > 1 && against ? sampled_density(lights, walk[1], walk[0], walk[1].out) : 0;
+    const float luminaire_pdf = walk.size() > 1 && against ? pdf_next_event(lights, walk[1], walk[0], walk[1].out) : 0;
     bool specular = true;  // all the way from the luminaire
     for (size_t i = 1; i < walk.size(); ++i) {
-      const KeptVertex& v = walk[i];
+      const SubpathVertex& v = walk[i];
       const bool caustic = i > 1 && specular;
       specular = specular && v.specular;
       const bool wanted = kinds == PhotonKinds::all || caustic == (kinds == PhotonKinds::caustics);
       if (!wanted || !v.connectable() || int(i) < (v.in_medium() ? fewest_in_media : fewest_vertices) ||
-          (v.in_medium() && !in_even_media && v.medium.volume->homogeneous()) || (kept < 1 && double(chances.next()) >= kept))
+          (v.in_medium() && !in_homogeneous_media && v.medium.volume->homogeneous()) ||
+          (kept < 1 && double(chances.next()) >= kept))
         continue;
       Photon& p = photons.emplace_back();
       p.position = v.point.position;
@@ -115,7 +116,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
       p.in_medium = v.in_medium();
       p.caustic = caustic;
       p.luminaire = walk[0].point.object->luminaire_index;
-      if (against) p.weight = weight_of(walk, i, direct, *against, front);
+      if (against) p.weight = weight_of(walk, i, luminaire_pdf, *against, front);
     }
   }
 }

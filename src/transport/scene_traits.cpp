@@ -45,13 +45,13 @@ class Look {
       if (lobes & smooth_lobes) note(t.smooth);
       if (lobes & diffuse_lobes) note(t.diffuse);
       if (lobes & glossy_lobes) note(t.glossy);
-      if (lobes & pass_through) note(t.pass_through);
-      if (shader->moves_exit()) note(t.moved_exits);
+      if (lobes & null_scattering) note(t.null_scattering);
+      if (shader->has_subsurface_exit()) note(t.subsurface_exits);
     }
     if (object.interior) {
       note(t.media);
       if (object.interior->emits()) note(t.emissive_media);
-      if (!object.interior->homogeneous()) note(t.uneven_media);
+      if (!object.interior->homogeneous()) note(t.heterogeneous_media);
     }
     if (object.luminaire()) {
       if (object.delta())

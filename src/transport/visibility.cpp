@@ -6,9 +6,9 @@
 
 namespace etendue {
 
-Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const MediumStack* around,
-                                 const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena, Transport transport,
-                                 Spectrum* likely) {
+Spectrum shadow_transmittance_slowly(const Scene& scene, const Ray& shadow, const MediumStack* around,
+                                     const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena, Transport transport,
+                                     Spectrum* likely) {
   MediumStack media;
   if (around) media = *around;
   Ray ray = shadow;
@@ -23,7 +23,7 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
       if (const Medium medium = medium_in(media)) {
         const float reach = found ? hit.distance : ray.maximum;
         fraction *= transmittance(medium, ray, reach, wavelengths, numbers);
-        if (likely) *likely *= likely_transmittance(medium, ray, reach, wavelengths);
+        if (likely) *likely *= weighting_transmittance(medium, ray, reach, wavelengths);
         if (fraction.black()) return fraction;
       }
     if (!found) return fraction;
@@ -31,17 +31,17 @@ Spectrum visible_fraction_slowly(const Scene& scene, const Ray& shadow, const Me
     if (!hit.object->shader) return {};
     if (around) {
       scene.locate(ray, hit, point);
-      settle_coincident(scene, ray, hit, point, media);
+      resolve_coincident(scene, ray, hit, point, media);
     }
     const SceneObject& object = around ? *point.object : *hit.object;
     if (!object.shader) return {};
     const bool hidden = around && hidden_by_priority(media, object);
-    if (!hidden && !(object.shader->possible_lobes() & pass_through)) return {};
+    if (!hidden && !(object.shader->possible_lobes() & null_scattering)) return {};
     if (!around) scene.locate(ray, hit, point);
     if (!hidden) {
       point.media = around ? &media : nullptr;
       const Scatter* scatter = bound(*object.shader, point, wavelengths, arena);
-      const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, transport, pass_through) : std::nullopt;
+      const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, transport, null_scattering) : std::nullopt;
       if (!straight) return {};
       // Asked alone, the lobe is certain, and its weight the fraction that gets through.
       fraction *= straight->weight;

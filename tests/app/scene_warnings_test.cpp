@@ -17,7 +17,7 @@ namespace {
 
 const std::string camera = "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 0], fov: 40 deg }";
 const std::string sky = "Environment { emission: EnvironmentEmission { radiance: 1 } }\n";
-const std::string matt = "shader: Lambertian {}";
+const std::string diffuse = "shader: Lambertian {}";
 
 std::vector<SceneWarning> said(const std::string& objects, const std::string& from = camera,
                                const std::string& renderer = "PathTracer { samples: 1 }") {
@@ -54,10 +54,10 @@ TEST(SceneWarnings, SoundScenesAreSilent) {
 }
 
 TEST(SceneWarnings, NothingEmits) {
-  const std::vector<SceneWarning> list = said("Sphere { " + matt + " }\n");
+  const std::vector<SceneWarning> list = said("Sphere { " + diffuse + " }\n");
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].kind, "dark");
-  EXPECT_TRUE(said("Sphere { " + matt + " }\n", camera, "FeatureRenderer {}").empty());
+  EXPECT_TRUE(said("Sphere { " + diffuse + " }\n", camera, "FeatureRenderer {}").empty());
   EXPECT_TRUE(said("Sphere {}\n", camera, "AmbientOcclusionRenderer {}").empty());
 }
 
@@ -67,25 +67,25 @@ TEST(SceneWarnings, ADarkEnvironment) { expect("Environment {}\n" + sky, "dark l
 
 TEST(SceneWarnings, InteriorsThatNothingEnters) {
   const std::string medium = "interior: HomogeneousVolume { absorption: 1 }";
-  expect("Sphere { " + matt + ", " + medium + " }\n" + sky, "interior", {"Lambertian", "PassThrough"}, "HomogeneousVolume");
+  expect("Sphere { " + diffuse + ", " + medium + " }\n" + sky, "interior", {"Lambertian", "PassThrough"}, "HomogeneousVolume");
   expect("Sphere { emission: DiffuseEmission {}, " + medium + " }\n" + sky, "interior", {"no shader"}, "HomogeneousVolume");
   expect("Rectangle { shader: PassThrough {}, " + medium + " }\n" + sky, "interior", {"not closed"}, "HomogeneousVolume");
   expect("Sphere { shader: Dielectric {}, sides: front, " + medium + " }\n" + sky, "interior", {"sides"}, "HomogeneousVolume");
 }
 
 TEST(SceneWarnings, MembersWithoutEffect) {
-  expect("Sphere { " + matt + ", priority: 3 }\n" + sky, "without effect", {"priority"}, "3 }");
+  expect("Sphere { " + diffuse + ", priority: 3 }\n" + sky, "without effect", {"priority"}, "3 }");
   expect("Sphere { emission: DiffuseEmission {}, sides: front }\n" + sky, "without effect", {"sides"}, "front");
   expect("Rectangle { shader: PassThrough {}, sides: front }\n" + sky, "without effect", {"sides"}, "front");
   expect("Environment { shader: Lambertian {}, emission: EnvironmentEmission {} }\n", "without effect", {"shader"},
          "Lambertian");
-  expect("Instance { sides: front, scene: BruteForceScene { objects: [ Sphere { " + matt + " } ] } }\n" + sky, "without effect",
-         {"instance", "sides"}, "front");
-  expect("BruteForceScene { shader: Lambertian {}, objects: [ Sphere { " + matt + " } ] }\n" + sky, "without effect",
+  expect("Instance { sides: front, scene: BruteForceScene { objects: [ Sphere { " + diffuse + " } ] } }\n" + sky,
+         "without effect", {"instance", "sides"}, "front");
+  expect("BruteForceScene { shader: Lambertian {}, objects: [ Sphere { " + diffuse + " } ] }\n" + sky, "without effect",
          {"nested scene", "shader"}, "Lambertian");
-  expect("Instance { scene: BruteForceScene { transform: scale(3), objects: [ Sphere { " + matt + " } ] } }\n" + sky,
+  expect("Instance { scene: BruteForceScene { transform: scale(3), objects: [ Sphere { " + diffuse + " } ] } }\n" + sky,
          "without effect", {"scene in an instance", "transform"}, "scale");
-  expect("Instance { shading_normals: clipped, scene: BruteForceScene { objects: [ Sphere { " + matt + " } ] } }\n" + sky,
+  expect("Instance { shading_normals: clipped, scene: BruteForceScene { objects: [ Sphere { " + diffuse + " } ] } }\n" + sky,
          "without effect", {"instance", "shading_normals"}, "clipped");
   expect("Point { emission: DiffuseEmission { sides: back } }\n" + sky, "without effect", {"no surface", "sides"}, "back");
   expect("Environment { transform: translate(1, 0, 0), emission: EnvironmentEmission {} }\n", "without effect",
@@ -142,8 +142,8 @@ TEST(SceneWarnings, MaterialsOfFiles) {
   const auto mesh = [](const TextFile& file, const std::string& more) {
     return "TriangleMesh { file: \"" + file.path + "\"" + more + " }\n";
   };
-  expect(mesh(two, ", " + matt) + sky, "materials", {"2 materials", "'wood'", "'dark iron'"}, "\"" + two.path);
-  EXPECT_TRUE(said(mesh(one, ", " + matt) + sky).empty());  // one for all is what it has
+  expect(mesh(two, ", " + diffuse) + sky, "materials", {"2 materials", "'wood'", "'dark iron'"}, "\"" + two.path);
+  EXPECT_TRUE(said(mesh(one, ", " + diffuse) + sky).empty());  // one for all is what it has
   expect(mesh(one, "") + sky, "no shader", {"'wood'", "not read"}, "TriangleMesh");
 }
 
@@ -159,19 +159,19 @@ TEST(SceneWarnings, ColoursOfVertices) {
 }
 
 TEST(SceneWarnings, WhatTheCameraSees) {
-  expect("Sphere { " + matt + " }\n" + sky, "sees nothing", {"looks from", "'to'"}, "[0, 0, 9]",
+  expect("Sphere { " + diffuse + " }\n" + sky, "sees nothing", {"looks from", "'to'"}, "[0, 0, 9]",
          "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }");
   EXPECT_TRUE(said(sky, "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }").empty());
-  EXPECT_TRUE(said("Sphere { centre: [0, 0, 1000], radius: 0.01, " + matt + " }\n" + sky,
+  EXPECT_TRUE(said("Sphere { centre: [0, 0, 1000], radius: 0.01, " + diffuse + " }\n" + sky,
                    "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }")
                   .empty());
 }
 
 TEST(SceneWarnings, ACameraInTheDark) {
   const std::string inside = "PerspectiveCamera { from: [0, 0, 0], to: [0, 0, 1], fov: 40 deg }";
-  expect("Box { size: [2, 2, 2], " + matt + " }\n" + sky, "in the dark", {"Box", "lets no light in"}, "[0, 0, 0]", inside);
+  expect("Box { size: [2, 2, 2], " + diffuse + " }\n" + sky, "in the dark", {"Box", "lets no light in"}, "[0, 0, 0]", inside);
   EXPECT_TRUE(
-      said("Box { size: [2, 2, 2], " + matt + " }\nPoint { position: [0, 0.9, 0], emission: DiffuseEmission {} }\n", inside)
+      said("Box { size: [2, 2, 2], " + diffuse + " }\nPoint { position: [0, 0.9, 0], emission: DiffuseEmission {} }\n", inside)
           .empty());
   EXPECT_TRUE(said("Box { size: [2, 2, 2], shader: Dielectric {} }\n" + sky, inside).empty());
   EXPECT_TRUE(said("Sphere { shader: Lambertian {}, emission: DiffuseEmission { sides: back } }\n", inside).empty());
@@ -202,7 +202,7 @@ TEST(SceneWarnings, MembersThatDoNotMatter) {
   // Within maps of maps, once for a part that is used twice.
   expect("Sphere { shader: Lambertian { color: AddMap { first: RampMap { input: 0.5 } } } }\n" + sky, kind,
          {"RampMap.input", "'along' is input"}, "0.5 }");
-  expect("Sphere {" + matt + "}\n" + sky, kind, {"'lens_radius' is not 0"}, "3 }",
+  expect("Sphere {" + diffuse + "}\n" + sky, kind, {"'lens_radius' is not 0"}, "3 }",
          "PerspectiveCamera { from: [0, 0, 5], focus_distance: 3 }");
 }
 

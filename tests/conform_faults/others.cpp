@@ -21,7 +21,7 @@ class Glow : public EmissionShader {
     return emits(p, direction) ? Spectrum(1.0f) : Spectrum();
   }
   DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
-    if (p.normal == Normal3{}) return {warp::sphere(u), warp::sphere_density};
+    if (p.normal == Normal3{}) return {warp::sphere(u), warp::sphere_pdf};
     bool behind = sides == Sides::back;
     if (sides == Sides::both) {
       behind = u.x >= 0.5f;
@@ -30,10 +30,10 @@ class Glow : public EmissionShader {
     Vector3 d = drawn(u);
     if (behind) d.z = -d.z;
     const Vector3 direction = Frame(p.normal).to_world(d);
-    return {direction, density(p, direction)};
+    return {direction, pdf(p, direction)};
   }
-  float density(const SurfacePoint& p, const Vector3& direction) const override {
-    if (p.normal == Normal3{}) return warp::sphere_density;
+  float pdf(const SurfacePoint& p, const Vector3& direction) const override {
+    if (p.normal == Normal3{}) return warp::sphere_pdf;
     if (!emits(p, direction)) return 0;
     return std::abs(dot(p.normal, direction)) * inverse_pi * (sides == Sides::both ? 0.5f : 1.0f);
   }
@@ -101,11 +101,11 @@ class Square : public SceneObject {
   float area(float) const override {
     return length(cross(transform.still()(Vector3{1, 0, 0}), transform.still()(Vector3{0, 1, 0})));
   }
-  float area_density(const SurfacePoint&) const override { return 1 / Square::area(0); }
+  float area_pdf(const SurfacePoint&) const override { return 1 / Square::area(0); }
   SurfaceSample sample_area(Point2 u, float time) const override {
     SurfaceSample s;
     place(u, time, s.point);
-    s.density = 1 / Square::area(0);
+    s.pdf = 1 / Square::area(0);
     return s;
   }
 
@@ -140,7 +140,7 @@ class WrongVisibleSquare final : public Square {
   }
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
     SurfaceSample s = SceneObject::sample_visible(from, u, time);
-    s.density *= std::abs(dot(s.point.normal, s.direction));
+    s.pdf *= std::abs(dot(s.point.normal, s.direction));
     return s;
   }
 };
@@ -193,9 +193,9 @@ class WrongPhaseVolume final : public VolumeShader {
   VolumeCoefficients coefficients(const Point3&, float, const Wavelengths&) const override { return {0, scattering, 0}; }
   bool homogeneous() const override { return true; }
   Spectrum majorant(const Wavelengths&) const override { return scattering; }
-  float phase(const Point3&, const Vector3&, const Vector3&) const override { return warp::hemisphere_density / 4; }
-  Vector3 sample_phase(const Point3&, const Vector3&, Point2 u, float& density) const override {
-    density = warp::hemisphere_density / 4;
+  float phase(const Point3&, const Vector3&, const Vector3&) const override { return warp::hemisphere_pdf / 4; }
+  Vector3 sample_phase(const Point3&, const Vector3&, Point2 u, float& pdf) const override {
+    pdf = warp::hemisphere_pdf / 4;
     return warp::sphere(u);
   }
 
@@ -238,7 +238,7 @@ class SecretLensCamera final : public Camera {
   std::optional<Point2> film_point(const Ray& r) const override { return Point2{r.origin.x, r.origin.y}; }
   std::optional<LensSample> sample_lens(const Point3&, float, Point2) const override { return std::nullopt; }
   float importance(const Ray&) const override { return 1; }
-  CameraDensity density(const Ray&) const override { return {1, 1}; }
+  CameraPdf pdf(const Ray&) const override { return {1, 1}; }
 };
 const Register<SecretLensCamera> secret_lens;
 

@@ -17,16 +17,16 @@ class Matt : public Scatter {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? Spectrum(reflectance_ * inverse_pi) : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
   bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
     s.in = warp::cosine_hemisphere(u);
     if (out.z < 0) s.in.z = -s.in.z;
     s.lobe = diffuse_reflection;
-    s.density = local_density(out, s.in, which);
+    s.pdf = local_pdf(out, s.in, which);
     s.value = local_evaluate(out, s.in, which) * std::abs(s.in.z);
-    return s.density > 0;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3&, Lobes which) const override {
     return (which & lobes_) ? Spectrum(reflectance_) : Spectrum();
@@ -59,15 +59,15 @@ class DensityScatter final : public Matt {
   using Matt::Matt;
 
  protected:
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
-    return out.z * in.z > 0 ? warp::hemisphere_density : 0;
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? warp::hemisphere_pdf : 0;
   }
 };
 class WrongDensityShader final : public MattShader<DensityScatter> {
  public:
   static void describe(Description<WrongDensityShader>& d) { describe_as(d, "Directions by cosine, densities without it."); }
 };
-const Register<WrongDensityShader> density;
+const Register<WrongDensityShader> pdf;
 
 // ---- not reciprocal but at the hero wavelength ------------------------------------------------------------------------
 /// Light that gets through leaves evenly: f(front to back) / f(back to front) must be the squared index of each wavelength.
@@ -79,17 +79,17 @@ class HeroIndexScatter final : public Scatter {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z < 0 ? Spectrum(0.4f * inverse_pi * towards(out)) : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z < 0 ? std::abs(in.z) * inverse_pi : 0;
   }
   bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
     s.in = warp::cosine_hemisphere(u);
     if (out.z > 0) s.in.z = -s.in.z;
     s.lobe = diffuse_transmission;
-    s.density = local_density(out, s.in, which);
+    s.pdf = local_pdf(out, s.in, which);
     s.value = local_evaluate(out, s.in, which) * std::abs(s.in.z);
     s.eta = towards(out);
-    return s.density > 0;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3& out, Lobes) const override { return 0.4f * towards(out); }
   Spectrum relative_index(const Vector3& out, const Vector3&) const override {
@@ -212,7 +212,7 @@ class MaskScatter final : public Matt {
  protected:
   // Half of the light each way; but the reflecting half is sampled whether it was asked for or not.
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return reflectance_ / 2 * inverse_pi; }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (which == diffuse_reflection) return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
     return std::abs(in.z) * inverse_pi / 2;
   }
@@ -221,9 +221,9 @@ class MaskScatter final : public Matt {
     const bool through = (which & diffuse_transmission) != 0 && choice < 0.5f;
     if ((out.z < 0) != through) s.in.z = -s.in.z;
     s.lobe = through ? diffuse_transmission : diffuse_reflection;
-    s.density = local_density(out, s.in, which);
+    s.pdf = local_pdf(out, s.in, which);
     s.value = local_evaluate(out, s.in, which) * std::abs(s.in.z);
-    return s.density > 0;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3&, Lobes which) const override {
     return reflectance_ * ((which & diffuse_reflection ? 0.5f : 0) + (which & diffuse_transmission ? 0.5f : 0));

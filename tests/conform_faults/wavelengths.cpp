@@ -6,12 +6,12 @@
 namespace etendue {
 namespace {
 
-Wavelengths spread(float u, float low, float high, float density) {
+Wavelengths spread(float u, float low, float high, float pdf) {
   Wavelengths w;
   for (int i = 0; i < spectrum_size; ++i) {
     float v = u + float(i) / spectrum_size;
     if (v >= 1) v -= 1;
-    w.place(i, low + v * (high - low), density);
+    w.place(i, low + v * (high - low), pdf);
   }
   return w;
 }

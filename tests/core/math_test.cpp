@@ -48,17 +48,17 @@ TEST(Wavelengths, AsVectorsAreTheSameAsOneByOne) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<float> uniform(wavelength_low - 20, wavelength_high + 20);
   for (int trial = 0; trial < 2000; ++trial) {
-    std::array<float, spectrum_size> lambda, density;
-    detail::Lanes wide_lambda, wide_density;
+    std::array<float, spectrum_size> lambda, pdf;
+    detail::Lanes wide_lambda, wide_pdf;
     for (int i = 0; i < spectrum_size; ++i) {
       constexpr float ends[] = {wavelength_low, wavelength_high, wavelength_high - 1};
       wide_lambda[i] = lambda[size_t(i)] = trial < 3 ? ends[trial] : uniform(engine);
-      wide_density[i] = density[size_t(i)] = 0.001f * float(i + 1);
+      wide_pdf[i] = pdf[size_t(i)] = 0.001f * float(i + 1);
     }
-    const Wavelengths a(lambda, density), b(wide_lambda, wide_density);
+    const Wavelengths a(lambda, pdf), b(wide_lambda, wide_pdf);
     for (int i = 0; i < spectrum_size; ++i) {
       EXPECT_EQ(a[i], b[i]);
-      EXPECT_EQ(a.density(i), b.density(i));
+      EXPECT_EQ(a.pdf(i), b.pdf(i));
       EXPECT_EQ(a.table_index(i), b.table_index(i)) << a[i];
       EXPECT_EQ(a.table_fraction(i), b.table_fraction(i)) << a[i];
     }

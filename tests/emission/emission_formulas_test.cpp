@@ -63,7 +63,7 @@ double emitted(const SceneObject& lamp, int points = 4, int steps = 600, int sec
           return double(lamp.emission->radiance(s.point, d, w)[0]) * (point ? 1.0 : std::abs(double(dot(s.point.normal, d))));
         },
         steps, sectors);
-    sum += inner / double(s.density) / (points * points);
+    sum += inner / double(s.pdf) / (points * points);
   }
   return sum;
 }
@@ -125,14 +125,14 @@ TEST(EmissionFormulas, ProfilesAboutSlantedAxes) {
         double covered = 0;
         for (int i = 0; i < 2000; ++i) {
           const DirectionSample s = lamp->emission->sample(point, random.pair());
-          if (!(s.density > 0)) continue;
+          if (!(s.pdf > 0)) continue;
           covered += 1 / 2000.0;
-          EXPECT_NEAR(lamp->emission->density(point, s.direction), s.density, 3e-3f * s.density) << p.name;
+          EXPECT_NEAR(lamp->emission->pdf(point, s.direction), s.pdf, 3e-3f * s.pdf) << p.name;
           EXPECT_GT(radiance(s.direction), -1e-9);
         }
         const double whole = integrate_around(
             axis, {0, one_minus_cosine(p.borders[0]), one_minus_cosine(p.borders[1]), 1},
-            [&](const Vector3& d) { return double(lamp->emission->density(point, d)); }, 500, 720);
+            [&](const Vector3& d) { return double(lamp->emission->pdf(point, d)); }, 500, 720);
         EXPECT_NEAR(covered, whole, 0.05) << p.name << " " << sides;
       }
 }
@@ -154,8 +154,8 @@ TEST(EmissionFormulas, DirectionsGiveThePower) {
       constexpr int side = 200;
       for (int i = 0; i < side * side; ++i) {
         const DirectionSample s = lamp->emission->sample(p, {(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side});
-        if (s.density > 0)
-          sum += double(lamp->emission->radiance(p, s.direction, w)[0] * std::abs(dot(p.normal, s.direction)) / s.density) /
+        if (s.pdf > 0)
+          sum += double(lamp->emission->radiance(p, s.direction, w)[0] * std::abs(dot(p.normal, s.direction)) / s.pdf) /
                  (side * side);
       }
       const double power = double(lamp->emission->power(*lamp, w)[0] / lamp->area(0));
@@ -183,7 +183,7 @@ TEST(EmissionFormulas, AmountsAreWhatLeavesOrArrives) {
       const SurfaceSample s = lamp.sample_area({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}, 0);
       const bool point = s.point.normal == Normal3{};
       sum += double(lamp.emission->radiance(s.point, direction, w)[0]) *
-             (point ? 1 : std::abs(double(dot(s.point.normal, direction)))) / double(s.density) / (side * side);
+             (point ? 1 : std::abs(double(dot(s.point.normal, direction)))) / double(s.pdf) / (side * side);
     }
     return sum * 683.002 * observer_y_integral();
   };
@@ -262,13 +262,13 @@ TEST(EmissionFormulas, ImagesAroundTheScene) {
     EXPECT_NEAR(seen(*sky->emission, d) / unit, expected(d), 4e-3 * expected(d)) << d.x << " " << d.y << " " << d.z;
   }
   // Directions are drawn by their densities, which add up to 1.
-  EXPECT_NEAR(over_sphere([&](const Vector3& d) { return double(sky->emission->incident_density({d.y, d.z, d.x})); }), 1, 2e-3);
+  EXPECT_NEAR(over_sphere([&](const Vector3& d) { return double(sky->emission->incident_pdf({d.y, d.z, d.x})); }), 1, 2e-3);
   double estimate = 0, exact = over_sphere([&](const Vector3& d) { return expected({d.y, d.z, d.x}); });
   constexpr int side = 60;
   for (int i = 0; i < side * side; ++i) {
     const DirectionSample s =
         sky->emission->sample_incident({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side});
-    estimate += expected(s.direction) / double(s.density) / (side * side);
+    estimate += expected(s.direction) / double(s.pdf) / (side * side);
   }
   EXPECT_NEAR(estimate, exact, 5e-3 * exact);
   // Asked for as an illuminance on level ground: of texels, each of one value.

@@ -178,9 +178,9 @@ TEST(Lobes, PowerIsTheIntegralOverAreaAndDirections) {
           for (int i = 0; i < count; ++i) {
             const SurfaceSample s = object->sample_area(random.pair(), 0);
             const DirectionSample d = e->sample(s.point, random.pair());
-            if (!(d.density > 0)) continue;
+            if (!(d.pdf > 0)) continue;
             const double value = double(e->radiance(s.point, d.direction, w)[0]) *
-                                 std::abs(double(dot(s.point.normal, d.direction))) / double(d.density * s.density);
+                                 std::abs(double(dot(s.point.normal, d.direction))) / double(d.pdf * s.pdf);
             sum += value;
             squares += value * value;
           }
@@ -217,8 +217,8 @@ TEST(Lobes, SamplesFollowDensity) {
         const Frame frame(Normal3{0.2f, 0.5f, 0.84f});
         for (int i = 0; i < count; ++i) {
           const DirectionSample s = e->sample(p, random.pair());
-          if (!(s.density > 0)) continue;
-          EXPECT_NEAR(s.density, e->density(p, s.direction), 2e-3f * s.density);
+          if (!(s.pdf > 0)) continue;
+          EXPECT_NEAR(s.pdf, e->pdf(p, s.direction), 2e-3f * s.pdf);
           EXPECT_TRUE(e->emits(p, s.direction));
           ++drawn;
           ++counts[test::cell_of(frame, rows, columns, s.direction)];
@@ -229,7 +229,7 @@ TEST(Lobes, SamplesFollowDensity) {
         for (int i = 0; i < grid * grid; ++i) {
           const double z = -1 + 2 * (i % grid + 0.5) / grid, phi = 2 * M_PI * (i / grid + 0.5) / grid, r = std::sqrt(1 - z * z);
           const Vector3 d = frame.to_world({float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)});
-          const double part = double(e->density(p, d)) * 4 * M_PI / (grid * grid);
+          const double part = double(e->pdf(p, d)) * 4 * M_PI / (grid * grid);
           total += part;
           expected[test::cell_of(frame, rows, columns, d)] += part * count;
         }
@@ -255,7 +255,7 @@ TEST(Lobes, ABeamIsUniform) {
     double turn = std::atan2(double(v.y), double(v.x)) / (2 * M_PI);
     if (turn < 0) turn += 1;
     ++counts[size_t(std::min(int(h / widest * rows), rows - 1) * columns + std::min(int(turn * columns), columns - 1))];
-    EXPECT_NEAR(s.density * 2 * M_PI * widest, 1, 1e-3);
+    EXPECT_NEAR(s.pdf * 2 * M_PI * widest, 1, 1e-3);
   }
   EXPECT_GT(test::chi_square(counts, std::vector<double>(counts.size(), count / double(counts.size()))), 1e-3);
 }

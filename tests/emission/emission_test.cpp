@@ -40,7 +40,7 @@ Spectrum measured_power(const EmissionShader& emission, const test::TestSquare& 
              return double(emission.radiance(s.point, d, w)[k]) * std::abs(double(d.z));
            }))
         emitted += cell;
-      sum.set(k, sum[k] + float(emitted) / (s.density * points * points));
+      sum.set(k, sum[k] + float(emitted) / (s.pdf * points * points));
     }
   }
   return sum;
@@ -102,7 +102,7 @@ TEST(DiffuseEmission, SamplesFollowDensity) {
   for (const char* sides : {"front", "back", "both"}) {
     const Ref<EmissionShader> emission = create<EmissionShader>("DiffuseEmission", {{"sides", sides}});
     std::vector<double> expected =
-        test::integrate_cells(frame, rows, columns, [&](const Vector3& d) { return double(emission->density(p, d)); });
+        test::integrate_cells(frame, rows, columns, [&](const Vector3& d) { return double(emission->pdf(p, d)); });
     double total = 0;
     for (double& e : expected) {
       total += e;
@@ -113,7 +113,7 @@ TEST(DiffuseEmission, SamplesFollowDensity) {
     test::Random random(seed++);
     for (int i = 0; i < count; ++i) {
       const DirectionSample s = emission->sample(p, random.pair());
-      EXPECT_NEAR(s.density, emission->density(p, s.direction), 1e-4f);
+      EXPECT_NEAR(s.pdf, emission->pdf(p, s.direction), 1e-4f);
       EXPECT_TRUE(emission->emits(p, s.direction));
       ++counts[test::cell_of(frame, rows, columns, s.direction)];
     }
@@ -165,7 +165,7 @@ TEST(EnvironmentEmission, DensityIsThatOfTheSamples) {
       const double top = std::cos(M_PI * y / height), bottom = std::cos(M_PI * (y + 1) / height);
       const double phi = 2 * M_PI * (x + 0.5) / width, c = (top + bottom) / 2, s = std::sqrt(1 - c * c);
       const Vector3 d{float(s * std::sin(phi)), float(c), float(-s * std::cos(phi))};
-      expected.push_back(double(e->incident_density(d)) * solid_angle_steps * (top - bottom));
+      expected.push_back(double(e->incident_pdf(d)) * solid_angle_steps * (top - bottom));
       total += expected.back();
     }
   EXPECT_NEAR(total, 1, 1e-5);
@@ -174,8 +174,8 @@ TEST(EnvironmentEmission, DensityIsThatOfTheSamples) {
   test::Random random(4);
   for (int i = 0; i < count; ++i) {
     const DirectionSample s = e->sample_incident(random.pair());
-    ASSERT_GT(s.density, 0);
-    ASSERT_EQ(s.density, e->incident_density(s.direction));
+    ASSERT_GT(s.pdf, 0);
+    ASSERT_EQ(s.pdf, e->incident_pdf(s.direction));
     ASSERT_NEAR(length(s.direction), 1, 1e-5f);
     double phi = std::atan2(double(s.direction.x), -double(s.direction.z)) / (2 * M_PI);
     if (phi < 0) phi += 1;
@@ -210,14 +210,14 @@ TEST(TexelDistribution, EvenNumbersFallByWeight) {
       ASSERT_TRUE(c.within.x >= 0 && c.within.x < 1);
       ++met[c.x];
     }
-    double worst = 0, worst_density = 0;
+    double worst = 0, worst_pdf = 0;
     for (size_t x = 0; x < columns; ++x) {
-      const double part = double(weights[y * columns + x]) / sums[y], density = part * share / (y == 0 ? 1 : 2);
+      const double part = double(weights[y * columns + x]) / sums[y], pdf = part * share / (y == 0 ? 1 : 2);
       worst = std::max(worst, std::abs(double(met[x]) - part * count));
-      worst_density = std::max(worst_density, std::abs(double(d.density(x, y)) - density));
+      worst_pdf = std::max(worst_pdf, std::abs(double(d.pdf(x, y)) - pdf));
     }
     EXPECT_LE(worst, 1.1) << y;
-    EXPECT_LE(worst_density, 1e-6) << y;
+    EXPECT_LE(worst_pdf, 1e-6) << y;
   }
 }
 
@@ -234,12 +234,12 @@ TEST(EnvironmentEmission, NothingThatShinesIsMissed) {
     integral += double(radiance) * 4 * M_PI / count;
     uniform_squares += std::pow(double(radiance) * 4 * M_PI, 2) / count;
     if (radiance > 0) {
-      EXPECT_GT(e->incident_density(d), 0);
+      EXPECT_GT(e->incident_pdf(d), 0);
     } else {
       ++black;
     }
     const DirectionSample s = e->sample_incident(random.pair());
-    const double value = double(seen(*e, s.direction) / s.density);
+    const double value = double(seen(*e, s.direction) / s.pdf);
     estimate += value / count;
     squares += value * value / count;
   }
@@ -286,7 +286,7 @@ TEST(EnvironmentEmission, ConstantImageIsSampledUniformly) {
   const ImageFile file("flat.exr", width, height, std::vector<float>(size_t(width * height * 3), 0.5f));
   const Ref<EmissionShader> e = create<EmissionShader>("EnvironmentEmission", {{"file", file.path}});
   test::Random random(5);
-  for (int i = 0; i < 1000; ++i) EXPECT_NEAR(e->sample_incident(random.pair()).density, 1 / (4 * M_PI), 1e-6);
+  for (int i = 0; i < 1000; ++i) EXPECT_NEAR(e->sample_incident(random.pair()).pdf, 1 / (4 * M_PI), 1e-6);
   test::TestSquare object;
   object.reference();
   const Wavelengths w = test::wavelengths(550);
@@ -296,7 +296,7 @@ TEST(EnvironmentEmission, ConstantImageIsSampledUniformly) {
 TEST(EnvironmentEmission, OfAMap) {
   const Ref<EmissionShader> plain = create<EmissionShader>("EnvironmentEmission", {{"radiance", 3.0}, {"scale", 2.0}});
   EXPECT_FALSE(plain->knows_incident());
-  EXPECT_EQ(plain->sample_incident({0.5f, 0.5f}).density, 0);
+  EXPECT_EQ(plain->sample_incident({0.5f, 0.5f}).pdf, 0);
   EXPECT_NEAR(seen(*plain, {0, 1, 0}), 6, 1e-6f);
   test::TestSquare object;
   object.reference();
@@ -324,7 +324,7 @@ TEST(EnvironmentEmission, PowerIsThatOfItsMapWhateverTheMapAsksFor) {
   constexpr int n = 20000;
   for (int i = 0; i < n; ++i) {
     const SurfaceSample s = sky->sample_visible({}, random.pair(), 0);
-    sum += e->radiance(s.point, -s.direction, w) / (s.density * float(4 * M_PI * n));
+    sum += e->radiance(s.point, -s.direction, w) / (s.pdf * float(4 * M_PI * n));
   }
   const Spectrum power = e->power(*sky, w);
   for (int i = 0; i < spectrum_size; ++i) {

@@ -46,16 +46,16 @@ TEST(GoniometricEmission, SamplesPowerAndDensityAreThoseOfTheIntensity) {
     for (int i = 0; i < count; ++i) {
       const float z = 1 - 2 * random(), phi = 2 * pi * random(), r = safe_sqrt(1 - z * z);
       const Vector3 d{r * std::cos(phi), r * std::sin(phi), z};
-      const float f = e->radiance(p, d, w)[0], density = e->density(p, d);
-      if (f > 0) EXPECT_GT(density, 0);
+      const float f = e->radiance(p, d, w)[0], pdf = e->pdf(p, d);
+      if (f > 0) EXPECT_GT(pdf, 0);
       power += double(f) * 4 * M_PI / count;
-      total += double(density) * 4 * M_PI / count;
-      expected[octant(d)] += double(density) * 4 * M_PI / count * count;
+      total += double(pdf) * 4 * M_PI / count;
+      expected[octant(d)] += double(pdf) * 4 * M_PI / count * count;
       const DirectionSample s = e->sample(p, random.pair());
-      EXPECT_EQ(e->density(p, s.direction), s.density);
-      if (!(s.density > 0)) continue;  // rounded into a texel next to it
+      EXPECT_EQ(e->pdf(p, s.direction), s.pdf);
+      if (!(s.pdf > 0)) continue;  // rounded into a texel next to it
       ++counts[octant(s.direction)];
-      const double value = double(e->radiance(p, s.direction, w)[0] / s.density);
+      const double value = double(e->radiance(p, s.direction, w)[0] / s.pdf);
       drawn += value / count;
       squares += value * value / count;
     }

@@ -256,7 +256,7 @@ double samples_follow(const EmissionShader& e, const SurfacePoint& p, std::uint3
   int drawn = 0;
   for (int i = 0; i < count; ++i) {
     const DirectionSample s = e.sample(p, random.pair());
-    if (!(s.density > 0)) continue;
+    if (!(s.pdf > 0)) continue;
     ++drawn;
     ++counts[test::cell_of(frame, rows, columns, s.direction)];
   }
@@ -264,7 +264,7 @@ double samples_follow(const EmissionShader& e, const SurfacePoint& p, std::uint3
   for (int i = 0; i < fine * fine; ++i) {
     const double z = -1 + 2 * (i % fine + 0.5) / fine, phi = 2 * M_PI * (i / fine + 0.5) / fine, r = std::sqrt(1 - z * z);
     const Vector3 d{float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)};
-    const double part = double(e.density(p, d)) * 4 * M_PI / (fine * fine);
+    const double part = double(e.pdf(p, d)) * 4 * M_PI / (fine * fine);
     total += part;
     expected[test::cell_of(frame, rows, columns, d)] += part * count;
   }
@@ -292,9 +292,9 @@ TEST(IesEmission, SamplesFollowDensityAndPower) {
       constexpr int count = 20000;
       for (int i = 0; i < count; ++i) {
         const DirectionSample s = e->sample(p, random.pair());
-        if (!(s.density > 0)) continue;
+        if (!(s.pdf > 0)) continue;
         const float cosine = object == point.get() ? 1 : std::abs(dot(p.normal, s.direction));
-        const double value = double(e->radiance(p, s.direction, test::wavelengths())[0] * cosine / s.density);
+        const double value = double(e->radiance(p, s.direction, test::wavelengths())[0] * cosine / s.pdf);
         sum += value / count;
         squares += value * value / count;
       }

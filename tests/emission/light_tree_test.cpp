@@ -111,12 +111,12 @@ TEST(LightTree, MeshSeenFromOutside) {
     int none = 0;
     for (int i = 0; i < count; ++i) {
       const SurfaceSample s = mesh->sample_visible(from, random.pair(), 0);
-      if (!(s.density > 0)) {
+      if (!(s.pdf > 0)) {
         ++none;
         continue;
       }
-      EXPECT_NEAR(s.density, mesh->visible_density(from, s.direction, s.point), 2e-3f * s.density);
-      const double value = dot(s.point.normal, s.direction) < 0 ? 1 / double(s.density) : 0;
+      EXPECT_NEAR(s.pdf, mesh->visible_pdf(from, s.direction, s.point), 2e-3f * s.pdf);
+      const double value = dot(s.point.normal, s.direction) < 0 ? 1 / double(s.pdf) : 0;
       sum += value / count;
       squares += value * value / count;
     }

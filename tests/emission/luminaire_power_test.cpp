@@ -47,9 +47,9 @@ TEST_P(LuminairePower, ArrivesOnASphereAroundIt) {
   around->objects = {object};
   prepare_tree(*around);
   const EmissionShader& emission = *object->emission;
-  std::array<float, spectrum_size> lambda, density;
-  for (int i = 0; i < spectrum_size; ++i) lambda[size_t(i)] = 450 + 40 * float(i), density[size_t(i)] = 1;
-  const Wavelengths wavelengths(lambda, density);
+  std::array<float, spectrum_size> lambda, pdf;
+  for (int i = 0; i < spectrum_size; ++i) lambda[size_t(i)] = 450 + 40 * float(i), pdf[size_t(i)] = 1;
+  const Wavelengths wavelengths(lambda, pdf);
   const double power = double(emission.power(*object, wavelengths)[0]);
   ASSERT_GT(power, 0);
 
@@ -58,14 +58,14 @@ TEST_P(LuminairePower, ArrivesOnASphereAroundIt) {
   Mean sent, returned;
   for (int i = 0; i < 150000; ++i) {
     const SurfaceSample s = object->sample_area(random.pair(), 0);
-    ASSERT_GT(s.density, 0);
+    ASSERT_GT(s.pdf, 0);
     const DirectionSample d = emission.sample(s.point, random.pair());
-    if (!(d.density > 0)) {  // the cosine was rounded to zero
+    if (!(d.pdf > 0)) {  // the cosine was rounded to zero
       sent.add(0), returned.add(0);
       continue;
     }
     const double flux = double(emission.radiance(s.point, d.direction, wavelengths)[0]) *
-                        std::abs(double(dot(s.point.normal, d.direction))) / (double(s.density) * double(d.density));
+                        std::abs(double(dot(s.point.normal, d.direction))) / (double(s.pdf) * double(d.pdf));
     sent.add(flux);
     returned.add(around->any(s.point.leave(d.direction)) ? flux : 0);
   }

@@ -66,16 +66,16 @@ TEST(NestedLuminaires, DensitiesAreThoseOfTheSamples) {
       int wrong = 0, others = 0;
       for (int i = 0; i < 8000; ++i) {
         const SurfaceSample a = light.sample_area(random.pair(), time);
-        ASSERT_GT(a.density, 0);
-        area.add(1 / double(a.density));
-        wrong += std::abs(light.area_density(a.point) / a.density - 1) > 1e-3f || a.point.object != &light;
+        ASSERT_GT(a.pdf, 0);
+        area.add(1 / double(a.pdf));
+        wrong += std::abs(light.area_pdf(a.point) / a.pdf - 1) > 1e-3f || a.point.object != &light;
         const SurfaceSample s = light.sample_visible(from, random.pair(), time);
-        if (!(s.density > 0)) {
+        if (!(s.pdf > 0)) {
           seen.add(0);
           continue;
         }
-        const float said = light.visible_density(from, s.direction, s.point);
-        wrong += std::abs(said / s.density - 1) > 2e-2f && std::abs(dot(s.point.normal, s.direction)) > 0.02f;
+        const float said = light.visible_pdf(from, s.direction, s.point);
+        wrong += std::abs(said / s.pdf - 1) > 2e-2f && std::abs(dot(s.point.normal, s.direction)) > 0.02f;
         // The nearest point in that direction counts; the far side of a body does not.
         const Ray line = ray(from, s.direction, time);
         Hit hit;
@@ -87,7 +87,7 @@ TEST(NestedLuminaires, DensitiesAreThoseOfTheSamples) {
         scene->locate(line, hit, p);
         others += p.object != &light;
         const bool first = std::abs(hit.distance - s.distance) <= 1e-3f * s.distance;
-        seen.add(first ? 1 / double(s.density) : 0);
+        seen.add(first ? 1 / double(s.pdf) : 0);
       }
       for (int i = 0; i < 40000; ++i) {
         // Directions to the sphere around the scene.
@@ -209,13 +209,13 @@ TEST(NestedLuminaires, PointsAndDistantLightsGoWithTheirScenes) {
   const Point3 from{-5, 0, 3}, there{-2, 0, 3};  // turned twice by 90 degrees
   const SurfaceSample s = light.sample_visible(from, {0.5f, 0.5f}, 0);
   test::expect_near(s.point.position - there, {});
-  EXPECT_NEAR(s.density, 9, 1e-4);
+  EXPECT_NEAR(s.pdf, 9, 1e-4);
   EXPECT_EQ(s.point.normal, Normal3{});
   EXPECT_TRUE(light.luminaire_bounds().contains(s.point.position));
   const Wavelengths w = test::wavelengths();
   EXPECT_GT(light.emission->radiance(s.point, {-1, 0, 0}, w)[0], 0);
   EXPECT_EQ(light.emission->radiance(s.point, {1, 0, 0}, w)[0], 0);
-  EXPECT_EQ(light.sample_area({}, 0).density, 1);
+  EXPECT_EQ(light.sample_area({}, 0).pdf, 1);
 
   const Ref<Scene> sunny =
       scene_of("Sphere { radius: 9 m }, " + in_scenes("Distant { direction: [1, 0, 0], emission: DiffuseEmission {} }",
@@ -223,7 +223,7 @@ TEST(NestedLuminaires, PointsAndDistantLightsGoWithTheirScenes) {
   ASSERT_EQ(sunny->luminaires().size(), 1u);
   const SurfaceSample sun = sunny->luminaires()[0]->sample_visible(from, {}, 0);
   test::expect_near(sun.direction, {0, -1, 0});
-  EXPECT_EQ(sun.density, 1);
+  EXPECT_EQ(sun.pdf, 1);
   EXPECT_TRUE(sun.infinite && sun.delta);
   EXPECT_GT(distance(sun.point.position, from), 2 * sunny->radius());
   EXPECT_NEAR(sunny->luminaires()[0]->area(0), square(sunny->radius()), 1e-3);

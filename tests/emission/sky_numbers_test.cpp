@@ -148,8 +148,8 @@ TEST(SkyNumbers, ShareOfTheSun) {
     }
     const double expected = sun_light / (sun_light + sky_light);
     ASSERT_TRUE(expected > 0.1 && expected < 0.9) << expected;
-    const double inside = over_disc(elevation, 0.5, [&](const Vector3& d) { return double(e->incident_density(d)); });
-    const double around = over_disc(elevation, 0.5, [&](const Vector3& d) { return double(dark->incident_density(d)); });
+    const double inside = over_disc(elevation, 0.5, [&](const Vector3& d) { return double(e->incident_pdf(d)); });
+    const double around = over_disc(elevation, 0.5, [&](const Vector3& d) { return double(dark->incident_pdf(d)); });
     EXPECT_NEAR((inside - around) / (1 - around), expected, 0.003 * expected) << elevation;
     // As often as that, directions lie within the disc.
     int count = 0;
@@ -204,7 +204,7 @@ TEST(SkyNumbers, TheSunStandsWhereAlmanacsSay) {
     test::Random random(7);
     for (int i = 0; i < 400; ++i) {
       const DirectionSample s = e->sample_incident(random.pair());
-      if (double(s.density) > best) best = double(s.density), sun = s.direction;
+      if (double(s.pdf) > best) best = double(s.pdf), sun = s.direction;
     }
     EXPECT_NEAR(std::asin(double(sun.y)) / degree, r.elevation, 0.75) << r.time;
   }

@@ -108,7 +108,7 @@ std::pair<double, double> level(const EmissionShader& e) {
       w.place(k, 360 + 470 * std::fmod(shift + float(k) / float(spectrum_size), 1.0f), 1 / 470.0f);
     const Spectrum radiance = seen(e, s.direction, w);
     for (int k = 0; k < spectrum_size; ++k) {
-      const double part = double(radiance[k] * std::max(s.direction.y, 0.0f) / s.density) * 470 / (spectrum_size * count);
+      const double part = double(radiance[k] * std::max(s.direction.y, 0.0f) / s.pdf) * 470 / (spectrum_size * count);
       watts += part;
       lux += part * 683.002 * observer(w[k]).y;
     }
@@ -138,14 +138,14 @@ TEST(SkyEmission, SamplesFollowDensity) {
     test::Random random(sun ? 70 : 71);
     for (int i = 0; i < count; ++i) {
       const DirectionSample s = e->sample_incident(random.pair());
-      ASSERT_EQ(s.density, e->incident_density(s.direction));
+      ASSERT_EQ(s.pdf, e->incident_pdf(s.direction));
       ++counts[test::cell_of(frame, rows, columns, s.direction)];
     }
     double total = 0;
     for (int i = 0; i < fine * fine; ++i) {
       const double z = -1 + 2 * (i % fine + 0.5) / fine, phi = 2 * M_PI * (i / fine + 0.5) / fine, r = std::sqrt(1 - z * z);
       const Vector3 d = frame.to_world({float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)});
-      const double part = double(e->incident_density(d)) * 4 * M_PI / (fine * fine);
+      const double part = double(e->incident_pdf(d)) * 4 * M_PI / (fine * fine);
       total += part;
       expected[test::cell_of(frame, rows, columns, d)] += part * count;
     }
@@ -164,7 +164,7 @@ TEST(SkyEmission, PowerIsTheIntegralOfRadiance) {
   constexpr int count = 40000;
   for (int i = 0; i < count; ++i) {
     const DirectionSample s = e->sample_incident(random.pair());
-    sum += double(seen(*e, s.direction, w)[0] / s.density) / count;
+    sum += double(seen(*e, s.direction, w)[0] / s.pdf) / count;
   }
   // pi * area * mean over 4 pi.
   EXPECT_NEAR(double(e->power(object, w)[0]), sum * double(object.area(0)) / 4, 0.01 * sum);
@@ -271,18 +271,18 @@ TEST(ProjectorEmission, SamplesFollowDensityAndTheImage) {
   constexpr int count = 100000;
   for (int i = 0; i < 24 * 12; ++i) {
     const Vector3 d = direction(i % 24 + 0.5, i / 24 + 0.5);
-    expected[size_t(i)] = count * double(e->density(p, d)) * std::pow(-double(d.z), 3) * pixel;  // dw = cos^3 dA
+    expected[size_t(i)] = count * double(e->pdf(p, d)) * std::pow(-double(d.z), 3) * pixel;  // dw = cos^3 dA
   }
   test::Random random(13);
   double sum = 0, squares = 0;
   const Wavelengths w = test::wavelengths();
   for (int i = 0; i < count; ++i) {
     const DirectionSample s = e->sample(p, random.pair());
-    ASSERT_GT(s.density, 0);
+    ASSERT_GT(s.pdf, 0);
     const double x = (double(s.direction.x / -s.direction.z) / half + 1) * 12,
                  y = (1 - 2 * double(s.direction.y / -s.direction.z) / half) * 6;
     ++counts[size_t(std::clamp(int(y), 0, 11) * 24 + std::clamp(int(x), 0, 23))];
-    const double value = double(e->radiance(p, s.direction, w)[0] / s.density);
+    const double value = double(e->radiance(p, s.direction, w)[0] / s.pdf);
     sum += value / count;
     squares += value * value / count;
   }
@@ -313,8 +313,8 @@ TEST(ProjectorEmission, AMapIsAsGoodAsAnImage) {
   double sum = 0;
   for (int i = 0; i < 20000; ++i) {
     const DirectionSample s = of_map->sample(p, random.pair());
-    ASSERT_GT(s.density, 0);
-    sum += double(of_map->radiance(p, s.direction, w)[0] / s.density) / 20000;
+    ASSERT_GT(s.pdf, 0);
+    sum += double(of_map->radiance(p, s.direction, w)[0] / s.pdf) / 20000;
   }
   EXPECT_NEAR(sum, double(of_file->power(*point, w)[0]), 0.01 * sum);
   EXPECT_THROW(create<EmissionShader>("ProjectorEmission"), Error);
@@ -369,10 +369,10 @@ TEST(EnvironmentEmission, RowsMayReachThePoles) {
   constexpr int n = 40000;
   for (int i = 0; i < n; ++i) {
     const DirectionSample s = e->sample_incident(random.pair());
-    ASSERT_GT(s.density, 0);
-    EXPECT_NEAR(e->incident_density(s.direction), s.density, 1e-3f * s.density);
-    sum += double(seen(*e, s.direction, w)[0] / seen(*one, {0, 1, 0}, w)[0] / s.density) / n;
-    total += double(e->incident_density(towards(std::acos(1 - 2 * double(random())) / degree, 33))) * 4 * M_PI / n;
+    ASSERT_GT(s.pdf, 0);
+    EXPECT_NEAR(e->incident_pdf(s.direction), s.pdf, 1e-3f * s.pdf);
+    sum += double(seen(*e, s.direction, w)[0] / seen(*one, {0, 1, 0}, w)[0] / s.pdf) / n;
+    total += double(e->incident_pdf(towards(std::acos(1 - 2 * double(random())) / degree, 33))) * 4 * M_PI / n;
   }
   // Integral over theta of (1 + 6 theta/pi | 4 + 12 (theta/pi - 1/2)) sin(theta) 2 pi, with v = theta / pi:
   // upper half: 1 + 6/pi (sin - theta cos) at pi/2 = 1 + 6/pi; lower: -2 * 1 + 12/pi (pi - 1) = 10 - 12/pi.

@@ -181,15 +181,15 @@ TEST(SpotEmission, SamplesFollowDensity) {
     const SurfacePoint p = lamp->sample_area({}, 0).point;
     const Vector3 axis = normalize(lamp->transform.still()(Vector3{1, -2, 0.5f}));
     const double reach = one_minus_cosine(c.outer);
-    const auto density = [&](const Vector3& d) { return double(lamp->emission->density(p, d)); };
-    EXPECT_NEAR(integrate_around(axis, {0, one_minus_cosine(c.inner), reach, 2}, density), 1, 2e-3) << c.inner;
+    const auto pdf = [&](const Vector3& d) { return double(lamp->emission->pdf(p, d)); };
+    EXPECT_NEAR(integrate_around(axis, {0, one_minus_cosine(c.inner), reach, 2}, pdf), 1, 2e-3) << c.inner;
     // Rows of equal steps in 1 - cos to the edge of the cone; for the probability of each the density is integrated again.
     std::vector<double> expected, counts(size_t(rows * columns));
     for (int row = 0; row < rows; ++row) {
       const double inner = one_minus_cosine(c.inner), low = reach * row / rows, high = reach * (row + 1) / rows;
       const std::vector<double> borders =
           inner > low && inner < high ? std::vector<double>{low, inner, high} : std::vector<double>{low, high};
-      const double chance = integrate_around(axis, borders, density, 100, 1);
+      const double chance = integrate_around(axis, borders, pdf, 100, 1);
       for (int k = 0; k < columns; ++k) expected.push_back(chance / columns * count);
     }
     const Frame frame{Normal3(axis)};
@@ -197,7 +197,7 @@ TEST(SpotEmission, SamplesFollowDensity) {
     for (int i = 0; i < count; ++i) {
       const DirectionSample s = lamp->emission->sample(p, random.pair());
       ASSERT_NEAR(length(s.direction), 1, 1e-5f);
-      EXPECT_NEAR(double(s.density), density(s.direction), 2e-3 * double(s.density) + 2e-3 / reach);
+      EXPECT_NEAR(double(s.pdf), pdf(s.direction), 2e-3 * double(s.pdf) + 2e-3 / reach);
       const Vector3 v = frame.to_local(s.direction);
       const double h = double(length_squared(s.direction - axis)) / 2;
       const int row = std::min(int(h / reach * rows), rows - 1);
@@ -281,15 +281,15 @@ TEST(SpotEmission, OnAnEnvironmentIsASun) {
   Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const SurfaceSample s = sky->sample_visible({0.1f, 0.2f, 0.3f}, random.pair(), 0);
-    ASSERT_GT(s.density, 0);
+    ASSERT_GT(s.pdf, 0);
     EXPECT_GT(s.direction.y, 0.9999f);  // light travels along what was +z and is now -y
     const double light = double(sky->emission->radiance(s.point, -s.direction, w)[0]);
     if (light > 0.7) {  // nearer to the edge rounding of the direction shows
-      EXPECT_NEAR(light / double(s.density), 7 * omega, 1e-2 * 7 * omega);
-      EXPECT_NEAR(double(sky->visible_density({}, s.direction, s.point)), double(s.density), 1e-2 * double(s.density));
+      EXPECT_NEAR(light / double(s.pdf), 7 * omega, 1e-2 * 7 * omega);
+      EXPECT_NEAR(double(sky->visible_pdf({}, s.direction, s.point)), double(s.pdf), 1e-2 * double(s.pdf));
     }
   }
-  EXPECT_EQ(sky->visible_density({}, {0, 0, 1}, sky->sample_visible({}, {0.5f, 0.5f}, 0).point), 0);
+  EXPECT_EQ(sky->visible_pdf({}, {0, 0, 1}, sky->sample_visible({}, {0.5f, 0.5f}, 0).point), 0);
   EXPECT_NEAR(double(sky->emission->power(*sky, w)[0]), 7 * omega * M_PI * 4, 1e-4 * 7 * omega * M_PI * 4);
 }
 

@@ -84,20 +84,19 @@ TEST(TransformedLamps, ArriveByPointsAsByRays) {
         for (int i = 0; i < side * side; ++i) {
           const Point2 u{(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side};
           const SurfaceSample s = object->sample_visible(from, u, 0);
-          if (s.density > 0) {
+          if (s.pdf > 0) {
             EXPECT_NEAR(length(s.point.position - (from + s.distance * s.direction)), 0, 1e-3f) << where;
-            EXPECT_NEAR(object->visible_density(from, s.direction, s.point), s.density, 5e-3f * s.density) << where;
-            const double part = std::max(double(dot(s.direction, normal)), 0.0) / double(s.density) *
+            EXPECT_NEAR(object->visible_pdf(from, s.direction, s.point), s.pdf, 5e-3f * s.pdf) << where;
+            const double part = std::max(double(dot(s.direction, normal)), 0.0) / double(s.pdf) *
                                 seen(*object, from, s.direction, s.distance) / (side * side);
             visible += part;
           }
           const SurfaceSample a = object->sample_area(u, 0);
-          ASSERT_GT(a.density, 0);
-          EXPECT_NEAR(object->area_density(a.point), a.density, 1e-3f * a.density) << where;
+          ASSERT_GT(a.pdf, 0);
+          EXPECT_NEAR(object->area_pdf(a.point), a.pdf, 1e-3f * a.pdf) << where;
           const Vector3 to = a.point.position - from, direction = normalize(to);
           by_area += std::max(double(dot(direction, normal)), 0.0) * std::abs(double(dot(direction, a.point.normal))) /
-                     double(length_squared(to)) / double(a.density) * seen(*object, from, direction, length(to)) /
-                     (side * side);
+                     double(length_squared(to)) / double(a.pdf) * seen(*object, from, direction, length(to)) / (side * side);
         }
         EXPECT_NEAR(visible, expected, 0.012 * expected + 1e-4) << where;
         EXPECT_NEAR(by_area, expected, 0.02 * expected + 2e-4) << where;
@@ -106,7 +105,7 @@ TEST(TransformedLamps, ArriveByPointsAsByRays) {
         double area = 0;
         for (int i = 0; i < fine * fine; ++i) {
           const Point2 u{(float(i % fine) + 0.5f) / fine, (float(i / fine) + 0.5f) / fine};
-          area += 1 / double(object->sample_area(u, 0).density) / (fine * fine);
+          area += 1 / double(object->sample_area(u, 0).pdf) / (fine * fine);
         }
         EXPECT_NEAR(area, double(object->area(0)), 2e-3 * area) << where;
         if (HasFailure()) return;
@@ -220,13 +219,13 @@ TEST(TransformedLamps, DirectionsFromInfinityTurn) {
     SurfacePoint p;
     environment->surface_point(ray, {}, p);
     EXPECT_NEAR(environment->emission->radiance(p, direction, w)[0], light, 1e-5f);
-    const float density = environment->visible_density({}, -direction, p);
-    EXPECT_EQ(density > 0, light > 0);
+    const float pdf = environment->visible_pdf({}, -direction, p);
+    EXPECT_EQ(pdf > 0, light > 0);
   }
   for (int i = 0; i < 20; ++i) {
     const SurfaceSample e = environment->sample_visible({}, {float(i) / 20, 0.7f}, 0);
     EXPECT_GT(dot(-e.direction, Vector3{0, float(std::cos(M_PI / 6)), -0.5f}), std::cos(radians(8.001f)));
-    EXPECT_NEAR(environment->visible_density({}, e.direction, e.point), e.density, 1e-3f * e.density);
+    EXPECT_NEAR(environment->visible_pdf({}, e.direction, e.point), e.pdf, 1e-3f * e.pdf);
   }
 }
 
@@ -238,7 +237,7 @@ TEST(TransformedLamps, MovingAndGrowing) {
     EXPECT_NEAR(double(ball->area(float(time))), 4 * M_PI * r * r, 1e-4);
     const double solid_angle = 2 * M_PI * (1 - std::sqrt(1 - r * r / (d * d)));
     const SurfaceSample s = ball->sample_visible({0, 0, 6}, {0.4f, 0.3f}, float(time));
-    EXPECT_NEAR(1 / double(s.density), solid_angle, 1e-3 * solid_angle) << time;
+    EXPECT_NEAR(1 / double(s.pdf), solid_angle, 1e-3 * solid_angle) << time;
     EXPECT_NEAR(double(length(s.point.position - Point3{0, 0, float(z)})), r, 1e-5) << time;
   }
 }

@@ -14,14 +14,14 @@ enum class Fault : std::uint8_t {
   roulette_undivided,     ///< survivors are not made up for those that ended
   luminaire_twice,        ///< met luminaires count in full beside sampled ones
   lens_importance,        ///< of light tracing: one cosine of the camera too many
-  phase_density,          ///< phase functions sampled as they are, weighted as if uniform
+  phase_pdf,              ///< phase functions sampled as they are, weighted as if uniform
   transmittance_squared,  ///< on the way to luminaires
   skipped_length,         ///< no paths of exactly four segments
   acceptance_inverted,    ///< of chains: accepted with I(u) / I(v)
   no_expected_values,     ///< states are not added again when a proposal is rejected
   large_steps_twice,      ///< large steps count as independent samples, beside all that chains find
   direct_light_twice,     ///< chains carry what is sampled apart
-  guide_density,          ///< directions that a guide chooses are weighted as if scattering had chosen them
+  guide_pdf,              ///< directions that a guide chooses are weighted as if scattering had chosen them
   merging_unweighted,     ///< photons count in full beside connections
   kernel_not_shrunk,      ///< photons are looked for within the shrunk radius, and divided by the first one's area
   dark_paths_left_out,    ///< of chains: brightness is the mean over the paths that bring any light

@@ -34,8 +34,8 @@ class FaultyGuidedTracer final : public Renderer {
     CameraWalk<false> walk(context.scene, sample, ray, max_depth);
     const auto met = [&](const SurfacePoint& luminaire) {
       if (walk.specular) return 1.0f;
-      return heuristic_weight(Heuristic::power, walk.direction_density,
-                              direct_light_density(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire));
+      return heuristic_weight(Heuristic::power, walk.direction_pdf,
+                              next_event_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire));
     };
     while (walk.next_vertex(met) && !walk.at_end()) {
       const NumberStream::Bounce u = walk.numbers.next_bounce();
@@ -43,19 +43,19 @@ class FaultyGuidedTracer final : public Renderer {
       const bool guided = v.scatters_smoothly();
       walk.add_direct(*light_sampler, u, Heuristic::power, [&](const Vector3& in) {
         ScatterValue f = scattering(v, v.out, in, Transport::radiance);
-        f.density = mixed(in, f.density);
+        f.pdf = mixed(in, f.pdf);
         return f;
       });
       std::optional<ScatterSample> next;
       if (guided && u.lobe_choice < share) {
         const Vector3 in = guide_.sample(u.lobe_choice / share, u.direction);
-        next = scattered_towards(v, in, mixed(in, scattering_density(v, v.out, in, Transport::radiance)), Transport::radiance);
+        next = scattered_towards(v, in, mixed(in, scattering_pdf(v, v.out, in, Transport::radiance)), Transport::radiance);
       } else {
         next = walk.sample_direction(guided ? (u.lobe_choice - share) / (1 - share) : u.lobe_choice, u.direction);
         if (next && guided && !next->specular()) {
-          const float scatter = next->density;
-          next->density = mixed(next->direction, scatter);
-          next->weight *= scatter / next->density;
+          const float scatter = next->pdf;
+          next->pdf = mixed(next->direction, scatter);
+          next->weight *= scatter / next->pdf;
         } else if (next && guided) {
           next->weight /= 1 - share;
         }
@@ -68,8 +68,8 @@ class FaultyGuidedTracer final : public Renderer {
  private:
   static constexpr float share = 0.4f;
   float mixed(const Vector3& in, float scatter) const {
-    const float guide = guide_.density(in);
-    return (fault == Fault::guide_density ? 0 : share * guide) + (1 - share) * scatter;
+    const float guide = guide_.pdf(in);
+    return (fault == Fault::guide_pdf ? 0 : share * guide) + (1 - share) * scatter;
   }
 };
 const Register<FaultyGuidedTracer> registered;

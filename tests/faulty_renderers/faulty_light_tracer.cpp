@@ -1,7 +1,7 @@
 // A light tracer with a fault, of the same parts as LightTracer.
 
-#include "etendue/transport/kept_walk.h"
 #include "etendue/transport/renderer_members.h"
+#include "etendue/transport/subpath.h"
 #include "etendue/transport/visibility.h"
 #include "faults.h"
 
@@ -26,22 +26,22 @@ class FaultyLightTracer final : public Renderer {
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
     EmittedLight light;
-    std::vector<KeptVertex> walk;
-    walk_from_luminaire(context.scene, *light_sampler, ray.time, {max_depth - 1, roulette_depth}, sample, walk, light);
+    std::vector<SubpathVertex> walk;
+    generate_light_subpath(context.scene, *light_sampler, ray.time, {max_depth - 1, roulette_depth}, sample, walk, light);
     for (size_t i = 0; i < walk.size(); ++i) {
-      const KeptVertex& v = walk[i];
+      const SubpathVertex& v = walk[i];
       NumberStream numbers = sample.numbers.fork("lens", std::uint32_t(i));
       const auto lens = context.camera.sample_lens(v.point.position, v.point.time, numbers.next_pair());
-      if (!v.connectable() || !lens || !(lens->density > 0)) continue;
+      if (!v.connectable() || !lens || !(lens->pdf > 0)) continue;
       if (i == 0 && (light.infinite || v.point.normal == Normal3{})) continue;
       MediumStack scratch;
       Spectrum value = i > 0 ? v.throughput * scattering(v, v.out, lens->direction, Transport::importance).value
                              : v.point.object->emission->radiance(v.point, lens->direction, sample.wavelengths) *
                                    (std::abs(dot(v.point.normal, lens->direction)) / (light.choice * light.position));
-      value *= (lens->importance / lens->density) *
-               visible_fraction(context.scene, lens_ray(v, *lens), media_towards(v, lens->direction, scratch),
-                                sample.wavelengths, numbers, sample.arena, Transport::importance);
-      if (fault == Fault::lens_importance) value *= square(lens->distance) / lens->density;
+      value *= (lens->importance / lens->pdf) *
+               shadow_transmittance(context.scene, lens_ray(v, *lens), media_towards(v, lens->direction, scratch),
+                                    sample.wavelengths, numbers, sample.arena, Transport::importance);
+      if (fault == Fault::lens_importance) value *= square(lens->distance) / lens->pdf;
       if (fault == Fault::skipped_length && i + 1 == 4) continue;
       sample.splat(lens->film, value, sample.wavelengths, int(i) + 1);
     }

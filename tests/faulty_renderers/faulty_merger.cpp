@@ -2,7 +2,7 @@
 
 #include "etendue/render/photon_process.h"
 #include "etendue/render/shrinking_bias.h"
-#include "etendue/transport/walk_pair.h"
+#include "etendue/transport/bidirectional_subpaths.h"
 #include "faults.h"
 
 namespace etendue {
@@ -36,12 +36,12 @@ class Process final : public PhotonProcess {
   Photons photons_;
 
   struct Found final : LightListener {
-    const WalkPair& walks;
+    const BidirectionalSubpaths& walks;
     SampleContext& sample;
     Spectrum radiance;
-    Found(const WalkPair& w, SampleContext& at) : walks(w), sample(at) {}
-    void found(const FoundLight& light) override { add_found(sample, walks.light_wavelengths(), light, radiance); }
-    void add(const std::optional<FoundLight>& light) {
+    Found(const BidirectionalSubpaths& w, SampleContext& at) : walks(w), sample(at) {}
+    void found(const PathContribution& light) override { add_contribution(sample, walks.light_wavelengths(), light, radiance); }
+    void add(const std::optional<PathContribution>& light) {
       if (light) found(*light);
     }
   };
@@ -64,17 +64,17 @@ class Process final : public PhotonProcess {
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     const int max_depth = settings_.max_depth;
     const Fault fault = settings_.fault;
-    WalkPair walks(context, *settings_.light_sampler, sample, {Heuristic::power, true, photons_.merging});
+    BidirectionalSubpaths walks(context, *settings_.light_sampler, sample, {Heuristic::power, true, photons_.merging});
     Found found(walks, sample);
     walks.from_camera(ray, {max_depth, 5}, found);
     walks.from_luminaire(ray.time, {max_depth - 1, 5});
     for (int t = 2; t <= walks.camera_vertices(); ++t) {
       walks.meet(t, found);
-      const KeptVertex& z = walks.camera_vertex(t);
+      const SubpathVertex& z = walks.camera_vertex(t);
       if (!z.connectable()) continue;
       photons_.near(context.scene, z, [&](const Photon& photon, float) {
         if (int(photon.vertices) + t - 1 > max_depth) return;
-        std::optional<FoundLight> light = walks.merge(photon, t);
+        std::optional<PathContribution> light = walks.merge(photon, t);
         if (light && fault == Fault::merging_unweighted) light->weight = 1;
         if (light && fault == Fault::kernel_not_shrunk)
           light->light *= float(photons_.merging.surface / (photons_.walks * M_PI * radius_ * radius_));

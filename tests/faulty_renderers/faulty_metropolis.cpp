@@ -1,7 +1,7 @@
 // A Metropolis renderer around a path tracer with a fault, of the same parts as PrimarySampleMetropolis.
 
 #include "etendue/transport/metropolis.h"
-#include "etendue/transport/number_vectors.h"
+#include "etendue/transport/primary_sample_vectors.h"
 #include "faults.h"
 
 namespace etendue {
@@ -45,7 +45,7 @@ class Process final : public RenderProcess {
     Contribution f;
     std::vector<ChainStarts::Path> paths;
     for (std::uint64_t i = 0; i < pool_size; ++i) {
-      evaluate(MutatedNumbers(seed + i), f, arena, direct);
+      evaluate(MutatedPrimarySamples(seed + i), f, arena, direct);
       if (fault_ == Fault::dark_paths_left_out && !(f.brightness({}) > 0)) continue;
       paths.push_back({i, f.brightness({}), 0});
     }
@@ -56,7 +56,7 @@ class Process final : public RenderProcess {
     const bool direct = fault_ == Fault::direct_light_twice;
     const ChainStarts own = pool(seed, arena, direct), other = pool(seed + 1000, arena, direct);
     ChoiceNumbers choices(seed + 2000);
-    MutatedNumbers numbers(seed + own.begin(0, 1, choices.next()));
+    MutatedPrimarySamples numbers(seed + own.begin(0, 1, choices.next()));
     const StateWeights weights{own.mean(), other.mean(), large_steps};
     Contribution u, v;
     evaluate(numbers, u, arena, direct);

@@ -48,15 +48,14 @@ class FaultyPathTracer final : public Renderer {
       if (walk.length >= max_depth) break;
       const NumberStream::Bounce u = walk.numbers.next_bounce();
       DirectLight direct;
-      if (v.scatters_smoothly() &&
-          propose_direct_light(context.scene, *light_sampler, v, ray.time, sample.wavelengths, u.light_choice, u.light_point,
-                               Heuristic::power, direct, ScatteringOf{v}))
+      if (v.scatters_smoothly() && sample_next_event(context.scene, *light_sampler, v, ray.time, sample.wavelengths,
+                                                     u.light_choice, u.light_point, Heuristic::power, direct, ScatteringOf{v}))
         add(walk.length + 1, walk.throughput * arriving(walk, direct));
       const auto next = walk.sample_direction(u.lobe_choice, u.direction);
       if (!next) break;
       const bool in_medium = v.in_medium();
       walk.leave(*next);
-      if (fault == Fault::phase_density && in_medium) walk.throughput *= next->density * (4 * pi);
+      if (fault == Fault::phase_pdf && in_medium) walk.throughput *= next->pdf * (4 * pi);
       const Spectrum before = walk.throughput;
       if (!Roulette{roulette_depth}.survives(walk)) break;
       if (fault == Fault::roulette_undivided) walk.throughput = before;
@@ -69,17 +68,16 @@ class FaultyPathTracer final : public Renderer {
     const SurfacePoint& p = walk.vertex.point;
     const Spectrum light = walk.throughput * p.object->emission->radiance(p, -walk.ray.direction, walk.sample.wavelengths);
     if (walk.specular || light.black() || fault == Fault::luminaire_twice) return light;
-    const float weight =
-        heuristic_weight(Heuristic::power, walk.direction_density,
-                         direct_light_density(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, p));
+    const float weight = heuristic_weight(Heuristic::power, walk.direction_pdf,
+                                          next_event_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, p));
     return light * (fault == Fault::wrong_mis_weight ? std::sqrt(weight) : weight);
   }
 
   Spectrum arriving(Walk<false>& walk, const DirectLight& direct) const {
     MediumStack scratch;
     const Vertex& v = walk.vertex;
-    const Spectrum visible = visible_fraction(walk.scene, direct.shadow, media_towards(v, direct.shadow.direction, scratch),
-                                              walk.sample.wavelengths, walk.numbers, walk.sample.arena);
+    const Spectrum visible = shadow_transmittance(walk.scene, direct.shadow, media_towards(v, direct.shadow.direction, scratch),
+                                                  walk.sample.wavelengths, walk.numbers, walk.sample.arena);
     Spectrum light = direct.light * visible;
     if (fault == Fault::transmittance_squared) light *= visible;
     if (fault == Fault::lost_cosine && v.on_surface()) light /= v.scatter->cosine(direct.shadow.direction);

@@ -43,15 +43,15 @@ class HalfScatter final : public Scatter {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? Spectrum(0.5f * inverse_pi) : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
   bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
     const float r = std::sqrt(u.x), phi = 2 * pi * u.y, z = safe_sqrt(1 - u.x);
     s.in = {r * std::cos(phi), r * std::sin(phi), std::copysign(z, out.z)};
     s.lobe = diffuse_reflection;
-    s.density = local_density(out, s.in, which);
-    s.value = Spectrum(0.5f) * s.density;
+    s.pdf = local_pdf(out, s.in, which);
+    s.value = Spectrum(0.5f) * s.pdf;
     return true;
   }
   Spectrum local_albedo(const Vector3&, Lobes) const override { return Spectrum(0.5f); }

@@ -43,13 +43,13 @@ TEST(MitsubaIntegrator, HiddenEmittersLightAndAreNotSeen) {
   const std::string around = "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"0.5\"/></emitter>";
   EXPECT_NEAR(seen_of(around, false), 0.5, 0.01);
   EXPECT_EQ(seen_of(around, true), 0);
-  EXPECT_NEAR(seen_of(around + wall(matt("0.5")), true), 0.25, 0.005);
+  EXPECT_NEAR(seen_of(around + wall(diffuse("0.5")), true), 0.25, 0.005);
   // A disc of radius 1 at z = 4 that shines towards the wall: sin^2 = 1 / 2.
   const std::string disc =
       "<shape type=\"disk\"><transform name=\"to_world\"><translate z=\"4\"/></transform>"
       "<emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>";
-  EXPECT_NEAR(seen_of(disc + wall(matt("0.5")), true), 0.25, 0.005);
-  EXPECT_EQ(seen_of(disc + wall(matt("0.5")), false), 0);  // its back
+  EXPECT_NEAR(seen_of(disc + wall(diffuse("0.5")), true), 0.25, 0.005);
+  EXPECT_EQ(seen_of(disc + wall(diffuse("0.5")), false), 0);  // its back
 }
 
 // Nothing is prepared while a file is imported or exported: meshes do not know yet whether they are closed.
@@ -61,7 +61,7 @@ TEST(MitsubaIntegrator, HiddenEmittersMayBeMeshesOfGlass) {
                                      sensor() + "<shape type=\"obj\"><string name=\"filename\" value=\"tetrahedron.obj\"/>" +
                                      bsdf + "<emitter type=\"area\"/></shape>"));
   };
-  const Imported matt_one = imported(matt("0.5"));
+  const Imported matt_one = imported(diffuse("0.5"));
   EXPECT_EQ(matt_one.told(), "");
   EXPECT_FALSE(*get(matt_one.object(0), "visible_to_camera").as<bool>());
   const Imported glass = imported("<bsdf type=\"dielectric\"/>");
@@ -99,7 +99,7 @@ TEST(MitsubaLight, ANumberWasWhiteBeforeVersion2) {
 
 TEST(MitsubaLight, PointSpotAndDirectional) {
   const double half = 0.5 / M_PI;  // of a matt wall of reflectance 0.5
-  const auto lit = [](const std::string& light) { return seen(import_text(seen_scene(wall(matt("0.5")) + light)), 256).y; };
+  const auto lit = [](const std::string& light) { return seen(import_text(seen_scene(wall(diffuse("0.5")) + light)), 256).y; };
   EXPECT_NEAR(lit("<emitter type=\"point\"><point name=\"position\" x=\"0\" y=\"0\" z=\"3\"/><rgb name=\"intensity\" "
                   "value=\"8\"/></emitter>"),
               half * 8 / 4, 0.005);
@@ -119,10 +119,11 @@ TEST(MitsubaLight, PointSpotAndDirectional) {
 TEST(MitsubaLight, SurfacesShowTheirFrontAlone) {
   const std::string back = "<rotate y=\"1\" angle=\"180\"/>";
   const std::string light = "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"1\"/></emitter>";
-  EXPECT_NEAR(seen(import_text(seen_scene(light + wall(matt("0.5")))), 4096).y, 0.5, 0.01);
-  EXPECT_EQ(seen(import_text(seen_scene(light + wall(matt("0.5"), back))), 64).y, 0);
-  EXPECT_NEAR(seen(import_text(seen_scene(light + wall("<bsdf type=\"twosided\">" + matt("0.5") + "</bsdf>", back))), 4096).y,
-              0.5, 0.01);
+  EXPECT_NEAR(seen(import_text(seen_scene(light + wall(diffuse("0.5")))), 4096).y, 0.5, 0.01);
+  EXPECT_EQ(seen(import_text(seen_scene(light + wall(diffuse("0.5"), back))), 64).y, 0);
+  EXPECT_NEAR(
+      seen(import_text(seen_scene(light + wall("<bsdf type=\"twosided\">" + diffuse("0.5") + "</bsdf>", back))), 4096).y, 0.5,
+      0.01);
   EXPECT_EQ(seen(import_text(seen_scene(wall("<emitter type=\"area\"/>", back))), 64).y, 0);
   EXPECT_NEAR(
       seen(import_text(seen_scene(wall("<boolean name=\"flip_normals\" value=\"true\"/><emitter type=\"area\"/>", back))), 4096)
@@ -132,7 +133,7 @@ TEST(MitsubaLight, SurfacesShowTheirFrontAlone) {
 
 TEST(MitsubaSensor, AngleAndHandedness) {
   const auto across = [](const std::string& view, int width, int height, bool vertical = false) {
-    Imported i = import_text(scene(sensor(view, width, height) + integrator() + wall(matt("0.5"))));
+    Imported i = import_text(scene(sensor(view, width, height) + integrator() + wall(diffuse("0.5"))));
     EXPECT_EQ(i.told(), "");
     Camera& camera = *i.job->camera;
     camera.prepare();
@@ -150,7 +151,7 @@ TEST(MitsubaSensor, AngleAndHandedness) {
               0.001);
 
   // To the right is the direction times up: -x, where the camera looks along +z with +y up.
-  Imported i = import_text(scene(sensor("<float name=\"fov\" value=\"40\"/>", 10, 10) + integrator() + wall(matt("0.5"))));
+  Imported i = import_text(scene(sensor("<float name=\"fov\" value=\"40\"/>", 10, 10) + integrator() + wall(diffuse("0.5"))));
   i.job->camera->prepare();
   i.job->camera->set_film(10, 10);
   EXPECT_LT(i.job->camera->ray({10, 5}, {}, 0).direction.x, -0.3f);
@@ -161,7 +162,7 @@ TEST(MitsubaSensor, AnOrthographicFilmIsTwoWideTimesItsScale) {
   const Imported i =
       import_text(scene("<sensor type=\"orthographic\"><transform name=\"to_world\"><scale x=\"1.5\" y=\"1.5\"/><translate "
                         "z=\"2\"/></transform><film type=\"hdrfilm\"/></sensor>" +
-                        integrator() + wall(matt("1"))));
+                        integrator() + wall(diffuse("1"))));
   EXPECT_EQ(i.told(), "");
   EXPECT_NEAR(number(*i.job->camera, "width"), 3, 1e-6);
 }
@@ -384,7 +385,8 @@ TEST(MitsubaLight, AProjectorsPictureKeepsItsShape) {
     const std::string view =
         std::string("<float name=\"fov\" value=\"1\"/><transform name=\"to_world\"><lookat origin=\"0 0 0\" target=\"") +
         target + "\" up=\"0 1 0.01\"/></transform>";
-    EXPECT_NEAR(seen(import_text(folder, scene(sensor(view) + integrator() + wall(matt("0.5")) + light)), 64).y, expected, 2e-4)
+    EXPECT_NEAR(seen(import_text(folder, scene(sensor(view) + integrator() + wall(diffuse("0.5")) + light)), 64).y, expected,
+                2e-4)
         << target;
   }
 }

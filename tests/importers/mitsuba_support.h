@@ -72,7 +72,7 @@ inline std::string wall(const std::string& inside, const std::string& more = "")
   return "<shape type=\"rectangle\"><transform name=\"to_world\">" + more +
          "<scale value=\"10\"/><rotate y=\"1\" angle=\"180\"/><translate z=\"5\"/></transform>" + inside + "</shape>\n";
 }
-inline std::string matt(const std::string& reflectance) {
+inline std::string diffuse(const std::string& reflectance) {
   return "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" + reflectance + "\"/></bsdf>";
 }
 

@@ -19,7 +19,7 @@ TEST(MitsubaSurface, TheTwoSidesOfTwosided) {
 }
 
 TEST(MitsubaSurface, NormalsThatAreTurnedRoundExchangeTheSides) {
-  const auto both = "<bsdf type=\"twosided\">" + matt("0.8") + matt("0.2") + "</bsdf>";
+  const auto both = "<bsdf type=\"twosided\">" + diffuse("0.8") + diffuse("0.2") + "</bsdf>";
   const std::string flip = "<boolean name=\"flip_normals\" value=\"true\"/>";
   const auto shown = [&](const std::string& inside) {
     return seen(import_text(
@@ -30,7 +30,7 @@ TEST(MitsubaSurface, NormalsThatAreTurnedRoundExchangeTheSides) {
   EXPECT_NEAR(shown(both), 0.8, 0.01);
   EXPECT_NEAR(shown(both + flip), 0.2, 0.005);
   EXPECT_NEAR(shown("<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.5\"/>" + both + "<bsdf type=\"twosided\">" +
-                    matt("0.4") + "</bsdf></bsdf>" + flip),
+                    diffuse("0.4") + "</bsdf></bsdf>" + flip),
               0.3, 0.006);
   EXPECT_NEAR(shown("<bsdf type=\"mask\"><float name=\"opacity\" value=\"1\"/>" + both + "</bsdf>" + flip), 0.2, 0.005);
   const Imported glass =

@@ -6,7 +6,8 @@ namespace etendue::pbrt_test {
 namespace {
 
 const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
-const std::string matt = "Material \"matte\" \"rgb Kd\" [.5 .5 .5]\n", mirror = "Material \"mirror\" \"rgb Kr\" [.9 .9 .9]\n";
+const std::string diffuse = "Material \"matte\" \"rgb Kd\" [.5 .5 .5]\n",
+                  mirror = "Material \"mirror\" \"rgb Kr\" [.9 .9 .9]\n";
 
 std::string ball(double z) { return "AttributeBegin Translate 0 0 " + std::to_string(z) + " Shape \"sphere\" AttributeEnd\n"; }
 /// A triangle across the z axis, of about this size.
@@ -29,15 +30,15 @@ double brightness(const std::string& integrator, const std::string& world) {
 // half of it comes back, of a point of intensity 10 at distance 5 along the normal 10 / 25 * 0.5 / pi.
 TEST(PbrtIntegrators, WhittedAndDirectLightingSeeAllLuminaires) {
   for (const std::string integrator : {"\"whitted\"", "\"directlighting\"", "\"directlighting\" \"string strategy\" \"one\""}) {
-    EXPECT_NEAR(brightness(integrator, sky + matt + ball(5)), 0.5, 0.005) << integrator;
-    EXPECT_NEAR(brightness(integrator, "LightSource \"point\" \"rgb I\" [10 10 10]\n" + matt + plate(5, 1)),
+    EXPECT_NEAR(brightness(integrator, sky + diffuse + ball(5)), 0.5, 0.005) << integrator;
+    EXPECT_NEAR(brightness(integrator, "LightSource \"point\" \"rgb I\" [10 10 10]\n" + diffuse + plate(5, 1)),
                 10.0 / 25 * 0.5 / M_PI, 0.001)
         << integrator;
     // A luminous sphere all around.
     EXPECT_NEAR(brightness(integrator,
                            "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] ReverseOrientation Shape \"sphere\" "
                            "\"float radius\" 50 AttributeEnd\n" +
-                               matt + ball(5)),
+                               diffuse + ball(5)),
                 0.5, 0.005)
         << integrator;
   }
@@ -45,7 +46,7 @@ TEST(PbrtIntegrators, WhittedAndDirectLightingSeeAllLuminaires) {
 
 // Depths count surfaces that are seen: the first one alone is no mirror, and of glass what is reflected first.
 TEST(PbrtIntegrators, MirrorsAndGlassAreFollowed) {
-  const std::string behind = sky + matt + plate(-5, 5) + mirror + plate(5, 0.2);
+  const std::string behind = sky + diffuse + plate(-5, 5) + mirror + plate(5, 0.2);
   const std::string glass = sky + "Material \"glass\" \"float eta\" 1.5\n" + ball(5);
   for (const std::string integrator : {"\"whitted\"", "\"directlighting\""}) {
     EXPECT_NEAR(brightness(integrator, behind), 0.9 * 0.5, 0.005) << integrator;
@@ -56,8 +57,8 @@ TEST(PbrtIntegrators, MirrorsAndGlassAreFollowed) {
     EXPECT_NEAR(brightness(integrator, glass), 1, 0.002) << integrator;
   }
   // What surfaces send each other is not found.
-  EXPECT_EQ(brightness("\"whitted\"", "LightSource \"point\" \"rgb I\" [1 1 1] \"point from\" [0 9 0]\n" + matt + plate(5, 1) +
-                                          "Translate 0 9 0\n" + ball(0)),
+  EXPECT_EQ(brightness("\"whitted\"", "LightSource \"point\" \"rgb I\" [1 1 1] \"point from\" [0 9 0]\n" + diffuse +
+                                          plate(5, 1) + "Translate 0 9 0\n" + ball(0)),
             0);
 }
 
@@ -77,7 +78,7 @@ TEST(PbrtIntegrators, MetropolisIsTheSame) {
   const Imported i =
       by("\"mlt\" \"integer maxdepth\" 4 \"float largestepprobability\" .4 \"float sigma\" .02 \"integer chains\" 64 "
          "\"integer bootstrapsamples\" 1000 \"integer mutationsperpixel\" 10",
-         sky + matt + ball(5));
+         sky + diffuse + ball(5));
   ASSERT_TRUE(i.job) << i.told();
   EXPECT_EQ(i.told(), "");
   const Component& r = *i.job->renderer;
@@ -89,8 +90,8 @@ TEST(PbrtIntegrators, MetropolisIsTheSame) {
   EXPECT_EQ(number(r, "samples") * number(r, "mutations_per_sample"), 12);  // not fewer than 10
   EXPECT_NE(by("\"mlt\" \"float largestepprobability\" 0", ball(5)).told().find("'largestepprobability' becomes 0.01, not 0"),
             std::string::npos);
-  const double seen_by_paths = brightness("\"path\"", sky + matt + ball(5));
-  EXPECT_NEAR(brightness("\"mlt\" \"integer mutationsperpixel\" 4000", sky + matt + ball(5)), seen_by_paths,
+  const double seen_by_paths = brightness("\"path\"", sky + diffuse + ball(5));
+  EXPECT_NEAR(brightness("\"mlt\" \"integer mutationsperpixel\" 4000", sky + diffuse + ball(5)), seen_by_paths,
               0.02 * seen_by_paths);
 }
 

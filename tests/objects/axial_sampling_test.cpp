@@ -34,12 +34,12 @@ struct Seen {
     Random random(7);
     for (int i = 0; i < samples; ++i) {
       const SurfaceSample s = o.sample_visible(from, random.pair(), time);
-      const double value = s.density > 0 ? 1 / double(s.density) : 0;
+      const double value = s.pdf > 0 ? 1 / double(s.pdf) : 0;
       solid_angle.add(value);
       squares += value * value / samples;
-      found += s.density > 0;
-      if (s.density > 0) {
-        EXPECT_EQ(o.visible_density(from, s.direction, s.point), s.density);
+      found += s.pdf > 0;
+      if (s.pdf > 0) {
+        EXPECT_EQ(o.visible_pdf(from, s.direction, s.point), s.pdf);
       }
     }
   }

@@ -179,11 +179,11 @@ TEST(Csg, DensitiesByAreaGiveTheAreaOfEachPart) {
   Mean bowl, top;
   for (int i = 0; i < 20000; ++i) {
     const SurfaceSample s = object->sample_area(random.pair(), 0);
-    ASSERT_GT(s.density, 0);
+    ASSERT_GT(s.pdf, 0);
     const float z = s.point.position.z;
     const bool on_ball = std::abs(distance(s.point.position, Point3{0, 0, 0.5f}) - 0.4f) < 1e-5f && z < 0.4999f;
-    bowl.add(on_ball ? 1 / double(s.density) : 0);
-    top.add(z > 0.49999f ? 1 / double(s.density) : 0);
+    bowl.add(on_ball ? 1 / double(s.pdf) : 0);
+    top.add(z > 0.49999f ? 1 / double(s.pdf) : 0);
   }
   EXPECT_NEAR(bowl.value(), 2 * M_PI * 0.16, 5 * bowl.error());
   EXPECT_NEAR(top.value(), 1 - M_PI * 0.16, 5 * top.error());
@@ -193,8 +193,8 @@ TEST(Csg, DensitiesByAreaGiveTheAreaOfEachPart) {
   Mean small;
   for (int i = 0; i < 20000; ++i) {
     const SurfaceSample s = balls->sample_area(random.pair(), 0);
-    ASSERT_GT(s.density, 0);
-    small.add(s.point.position.x > 2 ? 1 / double(s.density) : 0);
+    ASSERT_GT(s.pdf, 0);
+    small.add(s.point.position.x > 2 ? 1 / double(s.pdf) : 0);
   }
   EXPECT_NEAR(small.value(), M_PI, 5 * small.error());
 }

@@ -189,8 +189,8 @@ TEST(Curve, BentTubesAreClosed) {
     Mean area;
     for (int i = 0; i < 8000; ++i) {
       const SurfaceSample s = tube->sample_area(random.pair(), 0);
-      area.add(1 / double(s.density));
-      EXPECT_NEAR(tube->area_density(s.point) / s.density, 1, 1e-4f);
+      area.add(1 / double(s.pdf));
+      EXPECT_NEAR(tube->area_pdf(s.point) / s.pdf, 1, 1e-4f);
     }
     EXPECT_NEAR(area.value(), double(tube->area()), 4.5 * area.error() + 1e-5);
   }

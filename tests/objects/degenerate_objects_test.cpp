@@ -47,13 +47,13 @@ void expect_sane(const SceneObject& object, const std::string& what) {
     }
     if (object.unbounded()) continue;
     const SurfaceSample s = object.sample_area(random.pair(), 0);
-    EXPECT_TRUE(s.density >= 0) << "density " << s.density;
-    if (s.density > 0) {
+    EXPECT_TRUE(s.pdf >= 0) << "density " << s.pdf;
+    if (s.pdf > 0) {
       EXPECT_TRUE(is_finite(s.point.position)) << "sampled position";
     }
     const SurfaceSample v = object.sample_visible(r.origin, random.pair(), 0);
-    EXPECT_TRUE(v.density >= 0) << "visible density " << v.density;
-    if (v.density > 0) {
+    EXPECT_TRUE(v.pdf >= 0) << "visible density " << v.pdf;
+    if (v.pdf > 0) {
       EXPECT_TRUE(is_finite(v.point.position) && is_finite(v.direction)) << "visible position";
     }
     if (::testing::Test::HasFailure()) return;
@@ -227,9 +227,9 @@ TEST(DegenerateObjects, TrianglesFlatAtOneKeyAreThereAtOthers) {
     Mean area;
     for (int i = 0; i < 4000; ++i) {
       const SurfaceSample s = mesh->sample_area(random.pair(), time);
-      ASSERT_TRUE(s.density >= 0 && s.density < infinity);
-      ASSERT_TRUE(s.density == 0 || (is_finite(s.point.position) && is_finite(Vector3(s.point.normal))));
-      area.add(s.density > 0 ? 1 / double(s.density) : 0);
+      ASSERT_TRUE(s.pdf >= 0 && s.pdf < infinity);
+      ASSERT_TRUE(s.pdf == 0 || (is_finite(s.point.position) && is_finite(Vector3(s.point.normal))));
+      area.add(s.pdf > 0 ? 1 / double(s.pdf) : 0);
     }
     EXPECT_NEAR(area.value(), 0.5, 5 * area.error() + 1e-6);
   }

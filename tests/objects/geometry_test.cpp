@@ -162,7 +162,7 @@ TEST(Objects, ConcavePolygonIsFilledOnce) {
 double irradiance(const SceneObject& light, const Point3& at, const Normal3& normal, Point2 u) {
   const SurfaceSample s = light.sample_visible(at, u, 0);
   const float here = dot(normal, s.direction), there = -dot(s.point.normal, s.direction);
-  return s.density > 0 && here > 0 && there > 0 ? double(here) / double(s.density) : 0;
+  return s.pdf > 0 && here > 0 && there > 0 ? double(here) / double(s.pdf) : 0;
 }
 
 /// The form factor from one surface to another: mean irradiance over the receiver, over pi.
@@ -316,8 +316,8 @@ TEST(Environment, SurroundsTheScene) {
   for (int i = 0; i < 2000; ++i) {
     const SurfaceSample s = e->sample_visible({1, 2, 3}, random.pair(), 0);
     EXPECT_TRUE(s.infinite);
-    EXPECT_NEAR(s.density, 1 / (4 * pi), 1e-6f);
-    EXPECT_EQ(e->visible_density({1, 2, 3}, s.direction, s.point), s.density);
+    EXPECT_NEAR(s.pdf, 1 / (4 * pi), 1e-6f);
+    EXPECT_EQ(e->visible_pdf({1, 2, 3}, s.direction, s.point), s.pdf);
     EXPECT_NEAR(dot(s.point.normal, s.direction), -1, 1e-5f);
     EXPECT_LT(length(turn(s.point.object_position - Point3{}) - s.direction), 1e-5f);
   }

@@ -68,10 +68,10 @@ TEST(HairCurves, TheWallOfATubeIsNotThereFromInside) {
   const Vector3 out = normalize(Vector3{0.3f, 0.2f, -1});
   const auto s = scatter->sample(out, 0.3f, {0.4f, 0.6f});
   ASSERT_TRUE(s);
-  EXPECT_EQ(s->lobe, pass_through);
+  EXPECT_EQ(s->lobe, null_scattering);
   EXPECT_EQ(s->direction, -out);
   EXPECT_EQ(s->weight[0], 1);
-  EXPECT_FALSE(scatter->sample(-out, 0.3f, {0.4f, 0.6f}, Transport::radiance, pass_through));
+  EXPECT_FALSE(scatter->sample(-out, 0.3f, {0.4f, 0.6f}, Transport::radiance, null_scattering));
 }
 
 }  // namespace

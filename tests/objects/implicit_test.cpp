@@ -98,7 +98,7 @@ TEST(Implicit, PointsLieEvenlyOnTheSurface) {
   Mean outer, up;
   for (int i = 0; i < 8000; ++i) {
     const SurfaceSample s = torus->sample_area(random.pair(), 0);
-    ASSERT_FLOAT_EQ(s.density, 1 / torus->area(0));
+    ASSERT_FLOAT_EQ(s.pdf, 1 / torus->area(0));
     const Point3& p = s.point.position;
     ASSERT_NEAR(std::hypot(std::hypot(p.x, p.y) - 0.65f, p.z), 0.3f, 1e-6f);
     outer.add(std::hypot(p.x, p.y) > 0.65f);

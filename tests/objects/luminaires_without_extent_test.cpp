@@ -20,7 +20,7 @@ TEST(Point, IsFoundWhereItIs) {
   point->transform = Transform::translate({0, 0, 1}) * Transform::scale({2, 2, 2});
   prepare_tree(*point);
   const SurfaceSample a = point->sample_area({0.3f, 0.6f}, 0.25f);
-  EXPECT_EQ(a.density, 1);
+  EXPECT_EQ(a.pdf, 1);
   EXPECT_TRUE(a.delta);
   EXPECT_FALSE(a.infinite);
   EXPECT_EQ(a.point.position, (Point3{2, 4, 7}));
@@ -30,16 +30,16 @@ TEST(Point, IsFoundWhereItIs) {
   EXPECT_EQ(a.point.error, 0);
   EXPECT_EQ(a.point.object, point.get());
   EXPECT_EQ(a.point.time, 0.25f);
-  EXPECT_EQ(point->area_density(a.point), 1);
+  EXPECT_EQ(point->area_pdf(a.point), 1);
 
   const SurfaceSample s = point->sample_visible({2, 1, 3}, {0.3f, 0.6f}, 0);
   EXPECT_TRUE(s.delta);
-  EXPECT_FLOAT_EQ(s.density, 25);
+  EXPECT_FLOAT_EQ(s.pdf, 25);
   EXPECT_FLOAT_EQ(s.distance, 5);
   expect_near(s.direction, {0, 0.6f, 0.8f});
   EXPECT_EQ(s.point.position, (Point3{2, 4, 7}));
-  EXPECT_EQ(point->visible_density({2, 1, 3}, s.direction, s.point), 0);
-  EXPECT_EQ(point->sample_visible({2, 4, 7}, {0.3f, 0.6f}, 0).density, 0);
+  EXPECT_EQ(point->visible_pdf({2, 1, 3}, s.direction, s.point), 0);
+  EXPECT_EQ(point->sample_visible({2, 4, 7}, {0.3f, 0.6f}, 0).pdf, 0);
 
   point->transform = motion(Transform(), Transform::translate({4, 0, 0}));
   prepare_tree(*point);
@@ -69,12 +69,12 @@ TEST(Distant, LightTravelsItsWay) {
   EXPECT_TRUE(sun->delta());
   EXPECT_TRUE(sun->infinite());
   EXPECT_TRUE(sun->bounds().empty());
-  EXPECT_EQ(sun->sample_area({0.5f, 0.5f}, 0).density, 0);
+  EXPECT_EQ(sun->sample_area({0.5f, 0.5f}, 0).pdf, 0);
   sun->enclose({1, 1, 1}, 3);
   EXPECT_FLOAT_EQ(sun->area(0), 9);
   const Point3 from{2, 0, 1};
   SurfaceSample s = sun->sample_visible(from, {0.1f, 0.2f}, 0.5f);
-  EXPECT_EQ(s.density, 1);
+  EXPECT_EQ(s.pdf, 1);
   EXPECT_TRUE(s.delta && s.infinite);
   EXPECT_EQ(s.distance, infinity);
   expect_near(s.direction, {0, 0.6f, -0.8f});
@@ -84,7 +84,7 @@ TEST(Distant, LightTravelsItsWay) {
   EXPECT_EQ(s.point.time, 0.5f);
   EXPECT_GT(distance(s.point.position, {1, 1, 1}), 3);
   expect_near(normalize(s.point.position - from), s.direction);
-  EXPECT_EQ(sun->visible_density(from, s.direction, s.point), 0);
+  EXPECT_EQ(sun->visible_pdf(from, s.direction, s.point), 0);
 
   sun->transform = Transform::rotate(pi / 2, {1, 0, 0});  // y to z, z to -y
   expect_near(sun->sample_visible(from, {}, 0).direction, {0, 0.8f, 0.6f});
@@ -107,7 +107,7 @@ TEST(Distant, PowerIsIrradianceTimesTheScenesDisc) {
                                  std::to_string(std::cos(angle * M_PI / 180)) + "], emission: SpotEmission { radiance: 2 } }");
     beam->enclose({0, 0, 0}, 3);
     const SurfaceSample s = beam->sample_visible({0.1f, 0.2f, 0.3f}, {}, 0);
-    const double irradiance = double(beam->emission->radiance(s.point, -s.direction, w)[0] / s.density);
+    const double irradiance = double(beam->emission->radiance(s.point, -s.direction, w)[0] / s.pdf);
     const double t =
         (std::cos(25 * M_PI / 180) - std::cos(30 * M_PI / 180)) / (std::cos(20 * M_PI / 180) - std::cos(30 * M_PI / 180));
     EXPECT_NEAR(irradiance, angle == 0 ? 2 : 2 * t * t * (3 - 2 * t), 1e-3);

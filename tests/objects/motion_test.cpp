@@ -217,7 +217,7 @@ TEST(Motion, AMeshThatChangesItsShapeIsTheStillOneOfThatTime) {
       for (int i = 0; i < 4000; ++i) {
         const SurfaceSample s = mesh->sample_area(random.pair(), float(time));
         ASSERT_TRUE(mesh->bounds().contains(s.point.position));
-        area.add(1 / double(s.density));
+        area.add(1 / double(s.pdf));
       }
       EXPECT_NEAR(area.value(), double(still->area(0)), 5 * area.error() + 1e-4);
     }

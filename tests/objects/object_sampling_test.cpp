@@ -117,10 +117,10 @@ TEST(Objects, AreaSamplingMatchesItsDensity) {
     Mean area;
     for (int i = 0; i < 20000; ++i) {
       const SurfaceSample s = c.object->sample_area(random.pair(), c.time);
-      ASSERT_GT(s.density, 0);
+      ASSERT_GT(s.pdf, 0);
       ASSERT_EQ(s.point.object, c.object.get());
-      EXPECT_NEAR(c.object->area_density(s.point) / s.density, 1, 1e-4f);
-      area.add(1 / double(s.density));
+      EXPECT_NEAR(c.object->area_pdf(s.point) / s.pdf, 1, 1e-4f);
+      area.add(1 / double(s.pdf));
     }
     EXPECT_NEAR(area.value(), c.object->area(c.time), 5 * area.error() + 1e-4 * area.value());
   }
@@ -172,7 +172,7 @@ TEST(Objects, PointsOfEllipsoidsAddUpToTheirAreas) {
     double sum = 0;
     for (int i = 0; i < side * side; ++i) {
       const SurfaceSample s = shape->sample_area({(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}, 0);
-      sum += 1 / double(s.density) / (side * side);
+      sum += 1 / double(s.pdf) / (side * side);
     }
     EXPECT_NEAR(sum / area, 1, 2e-3) << a << " " << c;
   };
@@ -206,25 +206,25 @@ TEST(Objects, VisibleSamplingMatchesItsDensity) {
       Mean sampled[3], integral[4];
       for (int i = 0; i < 12000; ++i) {
         const SurfaceSample s = c.object->sample_visible(from, random.pair(), c.time);
-        if (s.density == 0) continue;
-        ASSERT_TRUE(std::isfinite(s.density));
+        if (s.pdf == 0) continue;
+        ASSERT_TRUE(std::isfinite(s.pdf));
         EXPECT_LT(length(from + s.distance * s.direction - s.point.position), 1e-4f);
         EXPECT_NEAR(length(s.direction), 1, 1e-5f);
         if (std::abs(dot(s.point.normal, s.direction)) > 1e-3f) {
-          EXPECT_NEAR(c.object->visible_density(from, s.direction, s.point) / s.density, 1, 1e-4f);
+          EXPECT_NEAR(c.object->visible_pdf(from, s.direction, s.point) / s.pdf, 1, 1e-4f);
         }
         for (int k = 0; k < 3; ++k) sampled[k].add(double(s.direction[k]));
       }
       int hits = 0;
       for (int i = 0; i < 40000; ++i) {
         const Vector3 d = random.direction();
-        double density = 0;
+        double pdf = 0;
         for_all_hits(*c.object, ray(from, d, c.time), [&](const SurfacePoint& p) {
           ++hits;
-          density += double(c.object->visible_density(from, d, p)) * 4 * double(pi);
+          pdf += double(c.object->visible_pdf(from, d, p)) * 4 * double(pi);
         });
-        for (int k = 0; k < 3; ++k) integral[k].add(density * double(d[k]));
-        integral[3].add(density);
+        for (int k = 0; k < 3; ++k) integral[k].add(pdf * double(d[k]));
+        integral[3].add(pdf);
       }
       if (hits < 400) continue;  // seen edge-on: too few for a standard error to mean anything
       ++judged;
@@ -241,15 +241,15 @@ TEST(Objects, SolidAngleDensities) {
                          slanted = object("Rectangle", {{"edge_u", {1, 0, 0}}, {"edge_v", {1e-4, 1, 0}}});
   for (float h : {0.2f, 0.5f, 1.0f, 1.3f}) {
     const double omega = 4 * std::asin(1 / (1 + 4 * double(h) * h));
-    EXPECT_NEAR(square->sample_visible({0, 0, h}, {0.3f, 0.6f}, 0).density * omega, 1, 2e-4) << h;
+    EXPECT_NEAR(square->sample_visible({0, 0, h}, {0.3f, 0.6f}, 0).pdf * omega, 1, 2e-4) << h;
     Mean mean;
     Random random(6);
-    for (int i = 0; i < 4000; ++i) mean.add(1 / double(slanted->sample_visible({0, 0, h}, random.pair(), 0).density));
+    for (int i = 0; i < 4000; ++i) mean.add(1 / double(slanted->sample_visible({0, 0, h}, random.pair(), 0).pdf));
     EXPECT_NEAR(mean.value() / omega, 1, 3e-3) << h;
   }
   for (double d : {1.2, 3.0, 1000.0}) {
     const double sine2 = 1 / (d * d), omega = 2 * double(pi) * sine2 / (1 + std::sqrt(1 - sine2));
-    EXPECT_NEAR(sphere->sample_visible({float(d), 0, 0}, {0.3f, 0.6f}, 0).density * omega, 1, 1e-5) << d;
+    EXPECT_NEAR(sphere->sample_visible({float(d), 0, 0}, {0.3f, 0.6f}, 0).pdf * omega, 1, 1e-5) << d;
   }
 }
 

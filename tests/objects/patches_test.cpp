@@ -180,7 +180,7 @@ TEST(NurbsSurface, TrimmedByACircle) {
       const bool met = o->intersect(ray({at.x, at.y, 1}, {0, 0, -1}), hit);
       EXPECT_TRUE(std::abs(from_edge) < 1e-5f || met == ((from_edge < 0) == (keep == "inside"))) << from_edge;
       const SurfaceSample s = o->sample_area(random.pair(), 0);
-      ASSERT_GT(s.density, 0);
+      ASSERT_GT(s.pdf, 0);
       const float off = std::hypot(s.point.position.x - 0.5f, s.point.position.y - 0.5f) - radius;
       EXPECT_TRUE(keep == "inside" ? off < 1e-5f : off > -1e-5f);
       found.add(double(s.point.position.x > 0.7f));

@@ -244,17 +244,17 @@ TEST(Quadrics, VisibleDensitiesIntegrateToOne) {
       constexpr int rays = 8000;
       for (int i = 0; i < rays; ++i) {
         const Vector3 d = random.direction();
-        double density = 0;
+        double pdf = 0;
         for_all_hits(*o, ray(from, d),
-                     [&](const SurfacePoint& p, float) { density += 4 * M_PI * double(o->visible_density(from, d, p)); });
-        integral.add(density);
-        for (int k = 0; k < 3; ++k) expected[k].add(density * double(d[k]));
+                     [&](const SurfacePoint& p, float) { pdf += 4 * M_PI * double(o->visible_pdf(from, d, p)); });
+        integral.add(pdf);
+        for (int k = 0; k < 3; ++k) expected[k].add(pdf * double(d[k]));
         const SurfaceSample s = o->sample_visible(from, random.pair(), 0);
-        for (int k = 0; k < 3; ++k) sampled[k].add(s.density > 0 ? double(s.direction[k]) : 0);
-        if (s.density == 0) continue;
+        for (int k = 0; k < 3; ++k) sampled[k].add(s.pdf > 0 ? double(s.direction[k]) : 0);
+        if (s.pdf == 0) continue;
         ++found;
         if (std::abs(dot(s.point.normal, s.direction)) > 1e-3f) {
-          EXPECT_NEAR(o->visible_density(from, s.direction, s.point) / s.density, 1, 1e-3f);
+          EXPECT_NEAR(o->visible_pdf(from, s.direction, s.point) / s.pdf, 1, 1e-3f);
         }
       }
       // What finds nothing is missing from the integral.
@@ -310,8 +310,8 @@ TEST(Quadrics, InfinitePlane) {
   EXPECT_FALSE(plane->occludes(p.leave({0, 0, -1})));
   EXPECT_TRUE(plane->occludes(ray({0, 0, 3}, normalize(Vector3{1, 0, -1e-6f}))));
   EXPECT_FALSE(plane->occludes(ray({0, 0, 3}, {1, 0, 0})));
-  EXPECT_EQ(plane->sample_area({0.5f, 0.5f}, 0).density, 0);
-  EXPECT_EQ(plane->sample_visible({0, 0, 3}, {0.5f, 0.5f}, 0).density, 0);
+  EXPECT_EQ(plane->sample_area({0.5f, 0.5f}, 0).pdf, 0);
+  EXPECT_EQ(plane->sample_visible({0, 0, 3}, {0.5f, 0.5f}, 0).pdf, 0);
 }
 
 TEST(Quadrics, HostileMembersAreRefused) {

@@ -16,16 +16,16 @@ class MinnaertScatter final : public Scatter {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? color_ * ((k_ + 1) / (2 * pi) * std::pow(out.z * in.z, k_ - 1)) : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
-    return out.z * in.z > 0 ? warp::power_cosine_density(std::abs(in.z), k_) : 0;
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? warp::power_cosine_pdf(std::abs(in.z), k_) : 0;
   }
   bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
     s.in = warp::power_cosine(u, k_);
     s.in.z = std::copysign(s.in.z, out.z);
     s.lobe = diffuse_reflection;
-    s.density = local_density(out, s.in, which);
-    s.value = local_albedo(out, which) * s.density;
-    return s.density > 0;
+    s.pdf = local_pdf(out, s.in, which);
+    s.value = local_albedo(out, which) * s.pdf;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3& out, Lobes) const override { return color_ * std::pow(std::abs(out.z), k_ - 1); }
 

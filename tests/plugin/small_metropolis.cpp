@@ -7,7 +7,7 @@
 // then its mean is exact from the first state on (Veach 1997, section 11.3.1). Instead of choosing between the states before
 // and after a proposal with acceptance a, both are added, weighted by 1 - a and a.
 #include "etendue/render/renderer.h"
-#include "etendue/transport/number_vectors.h"
+#include "etendue/transport/primary_sample_vectors.h"
 
 using namespace etendue;
 
@@ -42,7 +42,7 @@ class MetropolisProcess final : public RenderProcess {
     double brightness = 0;
   };
 
-  void evaluate(const MutatedNumbers& numbers, Contribution& f, Arena& arena, const std::atomic<bool>* abort) const {
+  void evaluate(const MutatedPrimarySamples& numbers, Contribution& f, Arena& arena, const std::atomic<bool>* abort) const {
     const ImageBuffer& image = context.image;
     f.parts.clear();
     PathRequest request;
@@ -63,7 +63,7 @@ class MetropolisProcess final : public RenderProcess {
     double b = 0;
     std::vector<double> brightness(size_t(settings_.bootstrap));
     for (size_t i = 0; i < brightness.size(); ++i) {
-      const MutatedNumbers numbers(bits(i));
+      const MutatedPrimarySamples numbers(bits(i));
       evaluate(numbers, current, arena, abort);
       b += brightness[i] = current.brightness;
     }
@@ -73,7 +73,7 @@ class MetropolisProcess final : public RenderProcess {
     for (double rest = uniform(1u << 20) * b; first + 1 < brightness.size() && rest >= brightness[first]; ++first)
       rest -= brightness[first];
     b /= double(brightness.size());
-    MutatedNumbers numbers(bits(first));
+    MutatedPrimarySamples numbers(bits(first));
     evaluate(numbers, current, arena, abort);
 
     const auto add = [&](const Contribution& f, double weight) {

@@ -11,8 +11,8 @@
 
 #include "etendue/render/renderer.h"
 #include "etendue/render/shrinking_bias.h"
-#include "etendue/transport/kept_walk.h"
 #include "etendue/transport/renderer_members.h"
+#include "etendue/transport/subpath.h"
 #include "etendue/transport/walk.h"
 
 using namespace etendue;
@@ -30,7 +30,7 @@ class SmallPhotonMapper final : public Renderer, public ShrinkingBias {
     describe_max_depth<&SmallPhotonMapper::max_depth>(d);
   }
   PathClasses finds() const override {
-    return all_paths & ~(scattering_media | emitting_media | uneven_media | subsurface_light | light_through_surfaces);
+    return all_paths & ~(scattering_media | emitting_media | heterogeneous_media | subsurface_light | light_through_surfaces);
   }
   Expectation expectation() const override { return Expectation::consistent; }
   std::uint32_t samples_per_step(std::uint32_t) const override { return 1; }
@@ -75,15 +75,15 @@ class PhotonProcess final : public RenderProcess {
 
     const auto item_size = 1000u, items = (unsigned(settings_.photons) + item_size - 1) / item_size;
     photons_ = schedule.collect<Photon>(items, [&](std::uint64_t item, std::vector<Photon>& out, Arena& arena) {
-      std::vector<KeptVertex> walk;
+      std::vector<SubpathVertex> walk;
       const auto first = unsigned(item) * item_size, last = std::min(first + item_size, unsigned(settings_.photons));
       for (unsigned n = first; n < last; ++n) {
         const ArenaScope memory(arena);
         Wavelengths w = wavelengths_;
         SampleContext sample{w, {*settings_.sampler, SampleKey(context.seed, -2, int(step.number), n)}, arena};
         EmittedLight light;
-        walk_from_luminaire(context.scene, *settings_.light_sampler, context.camera.shutter_open, {settings_.max_depth - 1, 5},
-                            sample, walk, light);
+        generate_light_subpath(context.scene, *settings_.light_sampler, context.camera.shutter_open,
+                               {settings_.max_depth - 1, 5}, sample, walk, light);
         for (size_t i = 1; i < walk.size(); ++i)
           if (walk[i].scatters_smoothly())
             out.push_back({walk[i].point.position, walk[i].out, walk[i].throughput / float(settings_.photons), int(i) + 1,

@@ -21,8 +21,8 @@ TEST(AdviceText, every_kind_of_light_has_its_words) {
   SceneTraits all;
   for (std::vector<std::string>* list :
        {&all.specular, &all.refracting, &all.smooth, &all.diffuse, &all.glossy, &all.points, &all.distant, &all.areas,
-        &all.environments, &all.media, &all.emissive_media, &all.uneven_media, &all.moved_exits, &all.pass_through,
-        &all.seen_areas, &all.seen_environments})
+        &all.environments, &all.media, &all.emissive_media, &all.heterogeneous_media, &all.subsurface_exits,
+        &all.null_scattering, &all.seen_areas, &all.seen_environments})
     list->push_back("'it'");
   EXPECT_EQ(paths_in(all), all_paths);
   EXPECT_EQ(paths_in({}), no_paths);

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "etendue/transport/number_vectors.h"
+#include "etendue/transport/primary_sample_vectors.h"
 #include "support/checkpoint_test_support.h"
 
 namespace etendue::checkpoint_test {
@@ -77,8 +77,8 @@ TEST_F(CheckpointTest, what_paths_note_comes_in_a_fixed_order_and_is_kept) {
   EXPECT_EQ(state(2, true), one);
 }
 
-TEST(MutatedNumbers, go_on_from_their_saved_state) {
-  const auto walk = [](MutatedNumbers& numbers, int steps) {
+TEST(MutatedPrimarySamples, go_on_from_their_saved_state) {
+  const auto walk = [](MutatedPrimarySamples& numbers, int steps) {
     std::vector<float> seen;
     for (int n = 0; n < steps; ++n) {
       if (n % 5 == 0)
@@ -98,12 +98,12 @@ TEST(MutatedNumbers, go_on_from_their_saved_state) {
     }
     return seen;
   };
-  MutatedNumbers numbers(11);
+  MutatedPrimarySamples numbers(11);
   walk(numbers, 23);
   std::vector<std::byte> bytes;
   numbers.save(bytes);
   bytes.push_back(std::byte{9});  // the next one's
-  MutatedNumbers other(99);
+  MutatedPrimarySamples other(99);
   std::span<const std::byte> rest(bytes);
   other.load(rest);
   EXPECT_EQ(rest.size(), 1u);

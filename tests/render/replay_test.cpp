@@ -59,10 +59,10 @@ TEST(Replay, json_tells_where_all_light_of_a_pixel_comes_from) {
     lit += luminance > 0;
     several += path["contributions"].size() > 1;
     EXPECT_FALSE(path["single"].get<bool>()) << "the light of each wavelength that was followed is in its place";
-    bool parted = false;
+    bool photon_occluded = false;
     for (const auto& v : path["vertices"])
-      parted |= v.contains("note") && v["note"].get<std::string>().starts_with("dispersion");
-    dispersed += parted;
+      photon_occluded |= v.contains("note") && v["note"].get<std::string>().starts_with("dispersion");
+    dispersed += photon_occluded;
   }
   EXPECT_NEAR(shares, 1, 1e-9);
   EXPECT_EQ(samples.size(), 64u) << "each sample once";

@@ -6,7 +6,7 @@
 
 #include "components/renderers/virtual_light_tree.h"
 #include "etendue/transport/metropolis.h"
-#include "etendue/transport/number_vectors.h"
+#include "etendue/transport/primary_sample_vectors.h"
 #include "support/checkpoint_test_support.h"
 
 namespace etendue::checkpoint_test {
@@ -111,7 +111,7 @@ TEST(VirtualLightTree, OneOfEachGroupStandsForAll) {
   };
   double all = 0;
   for (std::uint32_t i = 0; i < lights.size(); ++i) all += brought(i);
-  const MutatedNumbers source(7);
+  const MutatedPrimarySamples source(7);
   for (const size_t nodes : {size_t(1), size_t(6), size_t(1000)}) {
     constexpr int repeats = 20000;
     double sum = 0, squares = 0;

@@ -78,10 +78,10 @@ TEST(CameraNumbers, ImportanceOfParallelRaysIsOverTheFilmsArea) {
   EXPECT_NEAR(std::abs(r.origin.x), (15 - 12.25) * 0.1, 1e-6);
   EXPECT_NEAR(r.origin.y, (10 - 3.5) * 0.1, 1e-6);
   EXPECT_NEAR(camera->importance(r), 1 / (3.0f * 2), 1e-6f);
-  EXPECT_NEAR(camera->density(r).position, 1 / (3.0f * 2), 1e-6f);
+  EXPECT_NEAR(camera->pdf(r).position, 1 / (3.0f * 2), 1e-6f);
   const auto s = camera->sample_lens({0.4f, -0.3f, 5}, 0, {});
   ASSERT_TRUE(s);
-  EXPECT_NEAR(s->importance / s->density, 1 / 6.0f, 1e-6f);
+  EXPECT_NEAR(s->importance / s->pdf, 1 / 6.0f, 1e-6f);
   EXPECT_NEAR(s->distance, 5, 1e-6f);
 }
 
@@ -99,8 +99,8 @@ TEST(CameraNumbers, ImportanceOfALensIntegratesToOne) {
         const double c = double(r.direction.z), half = std::tan(35 * M_PI / 180),
                      area = 4 * half * half * 40 / 25 / (steps * steps);
         sum += double(camera->importance(r)) * c * c * c * c * area * M_PI * 0.25 * 0.25;
-        EXPECT_NEAR(double(camera->density(r).direction) * c * c * c * area * steps * steps, 1, 1e-3);
-        EXPECT_NEAR(double(camera->density(r).position) * M_PI * 0.25 * 0.25, 1, 1e-4);
+        EXPECT_NEAR(double(camera->pdf(r).direction) * c * c * c * area * steps * steps, 1, 1e-3);
+        EXPECT_NEAR(double(camera->pdf(r).position) * M_PI * 0.25 * 0.25, 1, 1e-4);
       }
     EXPECT_NEAR(sum, 1, 1e-3);
   }

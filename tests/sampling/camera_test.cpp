@@ -106,7 +106,7 @@ TEST(Camera, RaysThatMissAreEmpty) {
     ray.direction = -forward;
     EXPECT_FALSE(c.camera->film_point(ray)) << c.name;
     EXPECT_EQ(c.camera->importance(ray), 0) << c.name;
-    EXPECT_EQ(c.camera->density(ray).direction, 0) << c.name;
+    EXPECT_EQ(c.camera->pdf(ray).direction, 0) << c.name;
     ray.direction = normalize(forward + Vector3{0, 3, 0});
     EXPECT_FALSE(c.camera->film_point(ray)) << c.name;
     EXPECT_FALSE(c.camera->sample_lens(ray.origin - 2 * forward, 0, {0.5f, 0.5f})) << c.name;
@@ -125,7 +125,7 @@ TEST(Camera, ImportanceMatchesDensities) {
     const Vector3 axis = normalize(Vector3{-0.5f, -1, 7});
     for (int i = 0; i < 200; ++i) {
       const Ray ray = c.camera->ray(random_film(random), random.pair(), 0);
-      const CameraDensity d = c.camera->density(ray);
+      const CameraPdf d = c.camera->pdf(ray);
       EXPECT_NEAR(c.camera->importance(ray) * dot(axis, ray.direction), d.position * d.direction,
                   1e-4f * d.position * d.direction)
           << c.name;
@@ -143,12 +143,12 @@ TEST(Camera, DensityIntegratesToOne) {
     constexpr int count = 100000;
     for (int i = 0; i < count; ++i) {
       Ray ray = c.camera->ray({width / 2.0f, height / 2.0f}, random.pair(), 0);  // any point of the lens
-      const float lens_density = c.camera->density(ray).position;
+      const float lens_pdf = c.camera->pdf(ray).position;
       // Uniform in the cone of half angle 60 degrees: it holds all of the film.
       const float z = 1 - 0.5f * random(), phi = 2 * pi * random(), r = safe_sqrt(1 - z * z);
       ray.direction = Frame(Normal3(axis)).to_world({r * std::cos(phi), r * std::sin(phi), z});
-      direction_sum += double(c.camera->density(ray).direction) * M_PI / count;
-      importance_sum += double(c.camera->importance(ray) * dot(axis, ray.direction) / lens_density) * M_PI / count;
+      direction_sum += double(c.camera->pdf(ray).direction) * M_PI / count;
+      importance_sum += double(c.camera->importance(ray) * dot(axis, ray.direction) / lens_pdf) * M_PI / count;
     }
     EXPECT_NEAR(direction_sum, 1, 0.03) << c.name;  // about six standard errors
     EXPECT_NEAR(importance_sum, 1, 0.03) << c.name;
@@ -179,8 +179,7 @@ TEST(PerspectiveCamera, RaysFollowDensity) {
         const double cosine = 1 / std::sqrt(1 + x * x + y * y);
         Ray ray = central;
         ray.direction = frame.to_world(normalize(Vector3{float(x), float(y), 1}));
-        expected[cell] +=
-            count * double(c.camera->density(ray).direction) * std::pow(cosine, 3) * 16.0 / (grid * grid * sub * sub);
+        expected[cell] += count * double(c.camera->pdf(ray).direction) * std::pow(cosine, 3) * 16.0 / (grid * grid * sub * sub);
       }
     }
     test::Random random(12);
@@ -225,12 +224,12 @@ TEST(Camera, LensSamplesAgreeWithRays) {
       EXPECT_NEAR(film->y, s->film.y, 2e-2f) << c.name;
       EXPECT_NEAR(c.camera->importance(back), s->importance, 1e-3f * s->importance) << c.name;
       if (c.name == "orthographic") {
-        EXPECT_EQ(s->density, 1);
+        EXPECT_EQ(s->pdf, 1);
         continue;
       }
       // Density by lens area becomes one by solid angle: distance^2 / cos.
       const float cosine = dot(normalize(Vector3{-0.5f, -1, 7}), back.direction);
-      EXPECT_NEAR(s->density, c.camera->density(back).position * square(s->distance) / cosine, 1e-3f * s->density) << c.name;
+      EXPECT_NEAR(s->pdf, c.camera->pdf(back).position * square(s->distance) / cosine, 1e-3f * s->pdf) << c.name;
     }
 }
 
@@ -253,7 +252,7 @@ TEST(Camera, BothDirectionsMeasureTheSame) {
       const float r = radius * std::sqrt(random()), phi = 2 * pi * random();
       const Point3 point = centre + frame.to_world({r * std::cos(phi), r * std::sin(phi), 0});
       const auto s = c.camera->sample_lens(point, 0, random.pair());
-      if (s) by_lens += double(pi * radius * radius * dot(frame.n, s->direction) * s->importance / s->density) / count;
+      if (s) by_lens += double(pi * radius * radius * dot(frame.n, s->direction) * s->importance / s->pdf) / count;
     }
     EXPECT_GT(by_rays, 0.005);
     EXPECT_NEAR(by_lens, by_rays, 5 * std::sqrt(by_rays / count)) << c.name;

@@ -126,7 +126,7 @@ TEST(LensCamera, RaysLeadBack) {
       EXPECT_NEAR(back->x, film.x, 0.01f);
       EXPECT_NEAR(back->y, film.y, 0.01f);
       // From its lens point the same light is found.
-      const CameraDensity d = camera->density(sent.ray);
+      const CameraPdf d = camera->pdf(sent.ray);
       const Vector3 axis = normalize(Vector3{-0.5f, -1, 7});
       const float cosine = dot(axis, sent.ray.direction);
       EXPECT_NEAR(sent.weight.average() * d.position * d.direction / camera->importance(sent.ray), cosine, 1e-3f);

@@ -187,7 +187,7 @@ TEST(WavelengthNumbers, VisibleDistributionIsThePapersAlsoWhenCut) {
         EXPECT_GE(double(w[k]), r.low);
         EXPECT_LE(double(w[k]), r.high);
         const double p = 1 / std::pow(std::cosh(0.0072 * (double(w[k]) - 538)), 2) / norm;
-        EXPECT_NEAR(double(w.density(k)), p, 3e-3 * p + 8e-6) << w[k];
+        EXPECT_NEAR(double(w.pdf(k)), p, 3e-3 * p + 8e-6) << w[k];
       }
     }
     // Drawn by what is said: u of them lies below the wavelength of u.
@@ -202,7 +202,7 @@ TEST(WavelengthNumbers, VisibleDistributionIsThePapersAlsoWhenCut) {
       create<WavelengthSampler>("HeroWavelengths", {{"low", 400.0}, {"high", 700.0}, {"distribution", "uniform"}});
   const Wavelengths w = uniform->sample(SampleKey(1, 2, 3, 0), 0.125f);
   for (int k = 0; k < spectrum_size; ++k) {
-    EXPECT_NEAR(w.density(k), 1 / 300.0f, 1e-6f);
+    EXPECT_NEAR(w.pdf(k), 1 / 300.0f, 1e-6f);
     double expected = 400 + 300 * (0.125 + double(k) / spectrum_size);
     if (expected >= 700) expected -= 300;
     EXPECT_NEAR(double(w[k]), expected, 0.02);
@@ -219,7 +219,7 @@ TEST(WavelengthNumbers, GridTakesCentresOfItsCellsEvenlyApart) {
       const double cell = (double(w[k]) - 410) / 20;
       EXPECT_NEAR(cell, std::round(cell), 1e-4);
       ++counts[int(std::lround(cell))];
-      EXPECT_NEAR(w.density(k), 1 / 320.0f, 1e-7f);
+      EXPECT_NEAR(w.pdf(k), 1 / 320.0f, 1e-7f);
       double apart = double(w[k]) - double(w[0]);
       if (apart < 0) apart += 320;
       EXPECT_NEAR(apart, 320.0 / spectrum_size * k, 1e-3);

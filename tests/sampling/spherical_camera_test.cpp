@@ -45,8 +45,8 @@ TEST(SphericalCamera, FilmPointsComeBackAndDensitiesAreThoseOfPixels) {
       const Vector3 across = camera->ray({film.x + step, film.y}, {}, 0).direction - ray.direction,
                     down = camera->ray({film.x, film.y + step}, {}, 0).direction - ray.direction;
       const double omega = double(length(cross(across, down))) / (step * step) * width * height;  // of the whole film, if even
-      EXPECT_NEAR(double(camera->density(ray).direction) * omega, 1, 0.02) << mapping << " " << film.x << " " << film.y;
-      EXPECT_EQ(camera->importance(ray), camera->density(ray).direction);
+      EXPECT_NEAR(double(camera->pdf(ray).direction) * omega, 1, 0.02) << mapping << " " << film.x << " " << film.y;
+      EXPECT_EQ(camera->importance(ray), camera->pdf(ray).direction);
       // The cone covers as much as the pixel.
       EXPECT_NEAR(ray.spread * ray.spread / (omega / (width * height)), 1, 0.02);
     }

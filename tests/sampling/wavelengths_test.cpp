@@ -94,8 +94,8 @@ TEST(HeroWavelengths, DensityIsThatOfTheDistribution) {
     for (int k = 0; k < spectrum_size; ++k) {
       EXPECT_GE(w[k], 360);
       EXPECT_LE(w[k], 830);
-      inverse.add(1 / double(w.density(k)));
-      EXPECT_NEAR(w.density(k) * norm / shape(double(w[k])), 1, 0.035);  // constant within a cell, 4 nm wide at the red end
+      inverse.add(1 / double(w.pdf(k)));
+      EXPECT_NEAR(w.pdf(k) * norm / shape(double(w[k])), 1, 0.035);  // constant within a cell, 4 nm wide at the red end
     }
   }
   EXPECT_NEAR(inverse.mean(), 470, 0.01);
@@ -107,7 +107,7 @@ TEST(HeroWavelengths, SpreadsTheOthers) {
   for (int i = 0; i < spectrum_size; ++i) {
     const double u = std::fmod(0.3 + double(i) / spectrum_size, 1.0);
     EXPECT_NEAR(w[i], 360 + 470 * u, 1e-3);
-    EXPECT_NEAR(w.density(i), 1 / 470.0, 1e-7);
+    EXPECT_NEAR(w.pdf(i), 1 / 470.0, 1e-7);
   }
   for (const float u : {0.0f, one_minus_epsilon, 1.0f}) EXPECT_TRUE(sampler->sample({}, u)[0] <= 830);
 }
@@ -129,7 +129,7 @@ TEST(GridWavelengths, EveryPointIsUsedEqually) {
         ++heroes[w.hero()];
         for (int k = 0; k < spectrum_size; ++k) {
           ++used[w[k]];
-          EXPECT_FLOAT_EQ(w.density(k), 1 / 300.0f);
+          EXPECT_FLOAT_EQ(w.pdf(k), 1 / 300.0f);
         }
         for (const auto& [name, color] : light()) sums[name] += 1.0 / count * to_xyz(color->evaluate(w, ColorUse::radiance), w);
       }

@@ -11,7 +11,7 @@ class TestEmission final : public EmissionShader {
  public:
   Spectrum radiance(const SurfacePoint&, const Vector3&, const Wavelengths&) const override { return Spectrum(1.0f); }
   DirectionSample sample(const SurfacePoint&, Point2) const override { return {}; }
-  float density(const SurfacePoint&, const Vector3&) const override { return 0; }
+  float pdf(const SurfacePoint&, const Vector3&) const override { return 0; }
   Spectrum power(const SceneObject&, const Wavelengths&) const override { return Spectrum(1.0f); }
 };
 

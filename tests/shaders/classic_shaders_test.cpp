@@ -187,9 +187,9 @@ TEST(ClassicShaders, SamplesFollowDensity) {
       for (const Lobes which : {Lobes(all_lobes), Lobes(glossy_reflection | diffuse_transmission)}) {
         if (!scatter->has(which) || (which != all_lobes && scatter->lobes() == which)) continue;
         const Vector3 out = direction(angle, 40);
-        const std::vector<double> fine = test::integrate_cells(
-            scatter->frame(), finer * rows, finer * columns,
-            [&](const Vector3& in) { return double(scatter->density(out, in, Transport::radiance, which)); });
+        const std::vector<double> fine =
+            test::integrate_cells(scatter->frame(), finer * rows, finer * columns,
+                                  [&](const Vector3& in) { return double(scatter->pdf(out, in, Transport::radiance, which)); });
         std::vector<double> expected(size_t(rows * columns));
         for (size_t i = 0; i < fine.size(); ++i) {
           const size_t row = i / (finer * columns), column = i % (finer * columns);
@@ -226,9 +226,9 @@ TEST(ClassicShaders, AreReciprocalAndConsistent) {
       const auto s = scatter->sample(out, choice, random.pair(), Transport::radiance, which);
       if (!s || s->specular()) continue;
       ++seen;
-      const ScatterValue both = scatter->value_and_density(out, s->direction, Transport::radiance, which);
-      EXPECT_NEAR(both.density, s->density, 2e-3f * s->density) << c.name;
-      EXPECT_NEAR(both.value[0], s->weight[0] * s->density, 2e-3f * s->weight[0] * s->density) << c.name;
+      const ScatterValue both = scatter->value_and_pdf(out, s->direction, Transport::radiance, which);
+      EXPECT_NEAR(both.pdf, s->pdf, 2e-3f * s->pdf) << c.name;
+      EXPECT_NEAR(both.value[0], s->weight[0] * s->pdf, 2e-3f * s->weight[0] * s->pdf) << c.name;
       const double there = scatter.value(out, s->direction), back = scatter.value(s->direction, out);
       EXPECT_NEAR(there, back, 1e-5 * there) << c.name;
     }

@@ -63,7 +63,7 @@ TEST(MixShader, OfLambertiansIsTheLambertianOfTheMean) {
   const Scatter& scatter = *mix->bind(test::surface_point(), test::wavelengths(), arena);
   const Vector3 out = at_angle(scatter.frame(), 40), in = at_angle(scatter.frame(), 70, 2);
   EXPECT_NEAR(scatter.evaluate(out, in)[0], 0.35f * inverse_pi * scatter.cosine(in), 1e-6f);
-  EXPECT_NEAR(scatter.density(out, in), scatter.cosine(in) * inverse_pi, 1e-6f);
+  EXPECT_NEAR(scatter.pdf(out, in), scatter.cosine(in) * inverse_pi, 1e-6f);
   EXPECT_NEAR(scatter.albedo(out)[0], 0.35f, 1e-6f);
   test::Random random(1);
   for (int i = 0; i < 100; ++i) {
@@ -91,7 +91,7 @@ TEST(TwoSidedShader, IsEachOfItsPartsFromItsSide) {
     const Vector3 out = at_angle(frame, side + 30), in = at_angle(frame, side + 50, 2.1), behind = at_angle(frame, side + 150);
     EXPECT_GT(part->evaluate(out, in)[0], 0);
     EXPECT_EQ(whole->evaluate(out, in)[0], part->evaluate(out, in)[0]);
-    EXPECT_EQ(whole->density(out, in), part->density(out, in));
+    EXPECT_EQ(whole->pdf(out, in), part->pdf(out, in));
     EXPECT_EQ(whole->evaluate(out, behind)[0], 0);
     EXPECT_EQ(whole->albedo(out)[0], part->albedo(out)[0]);
     const auto sample = whole->sample(out, 0.3f, {0.2f, 0.7f}), own = part->sample(out, 0.3f, {0.2f, 0.7f});
@@ -120,9 +120,9 @@ TEST(MixShader, KeepsTheAdjointOfPartsWithOtherNormals) {
     // The weight of a sample is f |cos| / density for both.
     for (const Transport t : {Transport::radiance, Transport::importance})
       if (const auto s = scatter.sample(a, to_unit_float(std::uint32_t(i) << 23), random.pair(), t)) {
-        const ScatterValue v = scatter.value_and_density(a, s->direction, t);
-        EXPECT_NEAR(s->weight[0], v.value[0] / v.density, 2e-3f * s->weight[0]);
-        EXPECT_NEAR(s->density, v.density, 2e-3f * v.density);
+        const ScatterValue v = scatter.value_and_pdf(a, s->direction, t);
+        EXPECT_NEAR(s->weight[0], v.value[0] / v.pdf, 2e-3f * s->weight[0]);
+        EXPECT_NEAR(s->pdf, v.pdf, 2e-3f * v.pdf);
       }
   }
   EXPECT_GT(seen, 100);
@@ -136,10 +136,10 @@ TEST(MaskShader, LetsTheRestPass) {
   const SurfacePoint p = test::surface_point();
   const Scatter &scatter = *mask->bind(p, test::wavelengths(), arena), &both = *mix->bind(p, test::wavelengths(), arena);
   const Vector3 out = at_angle(scatter.frame(), 20), in = at_angle(scatter.frame(), 50, 2);
-  EXPECT_NEAR(scatter.sample(out, 0, {}, Transport::radiance, pass_through)->weight[0], 0.7f, 1e-6f);
-  EXPECT_NEAR(both.sample(out, 0, {}, Transport::radiance, pass_through)->weight[0], 0.85f, 1e-6f);
+  EXPECT_NEAR(scatter.sample(out, 0, {}, Transport::radiance, null_scattering)->weight[0], 0.7f, 1e-6f);
+  EXPECT_NEAR(both.sample(out, 0, {}, Transport::radiance, null_scattering)->weight[0], 0.85f, 1e-6f);
   EXPECT_NEAR(scatter.evaluate(out, in)[0], 0.15f * inverse_pi * scatter.cosine(in), 1e-6f);
-  EXPECT_EQ(scatter.lobes(), pass_through | diffuse_reflection);
+  EXPECT_EQ(scatter.lobes(), null_scattering | diffuse_reflection);
   // Of all lobes: 70 % straight on, 15 % reflected. Both weights are constant, so the means are exact to counting.
   test::Random random(2);
   double straight = 0, reflected = 0;
@@ -148,8 +148,8 @@ TEST(MaskShader, LetsTheRestPass) {
     const float choice = (float(i) + 0.5f) / count;
     const auto s = scatter.sample(out, choice, random.pair());
     if (!s) continue;
-    (s->lobe == pass_through ? straight : reflected) += double(s->weight[0]) / count;
-    EXPECT_EQ(s->direction == -out, s->lobe == pass_through);
+    (s->lobe == null_scattering ? straight : reflected) += double(s->weight[0]) / count;
+    EXPECT_EQ(s->direction == -out, s->lobe == null_scattering);
   }
   EXPECT_NEAR(straight, 0.7, 1e-3);
   EXPECT_NEAR(reflected, 0.15, 1e-3);

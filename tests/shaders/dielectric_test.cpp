@@ -48,11 +48,11 @@ TEST(Dielectric, SamplesReflectAndRefract) {
     const auto mirrored = scatter.sample(out, f * 0.99f, {}), through = scatter.sample(out, f * 1.01f, {});
     ASSERT_TRUE(mirrored && through);
     EXPECT_EQ(mirrored->lobe, specular_reflection);
-    EXPECT_NEAR(mirrored->density, f, 1e-6f);
+    EXPECT_NEAR(mirrored->pdf, f, 1e-6f);
     EXPECT_NEAR(mirrored->weight[0], 1, 1e-6f);
     EXPECT_EQ(mirrored->eta, 1);
     EXPECT_EQ(through->lobe, specular_transmission);
-    EXPECT_NEAR(through->density, 1 - f, 1e-6f);
+    EXPECT_NEAR(through->pdf, 1 - f, 1e-6f);
     EXPECT_FLOAT_EQ(through->eta, eta);
     EXPECT_FALSE(through->dispersive);
     // Snell: the tangential part of eta times the direction is continuous.
@@ -194,7 +194,7 @@ TEST(Dielectric, TintsMultiplyEachPart) {
     const Spectrum a = plain.evaluate(out, in), b = tinted.evaluate(out, in);
     for (int i = 0; i < spectrum_size; ++i)
       EXPECT_NEAR(b[i], a[i] * (angle > 90 ? most : half)->at(w[i], ColorUse::reflectance), 1e-5f * a[i]);
-    EXPECT_EQ(plain.density(out, in), tinted.density(out, in));
+    EXPECT_EQ(plain.pdf(out, in), tinted.pdf(out, in));
   }
 }
 

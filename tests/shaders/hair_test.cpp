@@ -113,7 +113,7 @@ TEST(Hair, SamplesFollowDensity) {
       const Scatter* scatter = hair->bind(on_ribbon(v), test::wavelengths(), arena);
       const Vector3 out = normalize(Vector3{0.4f, v - 0.3f, 0.8f});
       auto expected = test::integrate_cells(scatter->frame(), rows, columns,
-                                            [&](const Vector3& in) { return double(scatter->density(out, in)); });
+                                            [&](const Vector3& in) { return double(scatter->pdf(out, in)); });
       double total = 0;
       for (double& e : expected) {
         total += e;
@@ -165,7 +165,7 @@ TEST(Hair, MatchesAnotherImplementation) {
   struct Row {
     float along, around, tilt, eta, h, absorption;
     Vector3 out, in;
-    float value, density;
+    float value, pdf;
   };
   const Row rows[] = {
       {0.6188216f,
@@ -234,17 +234,17 @@ TEST(Hair, MatchesAnotherImplementation) {
     const auto cosine = [](const Vector3& v) { return std::sqrt(v.y * v.y + v.z * v.z); };
     const HairFibre::Section s = fibre.section(r.out.x, cosine(r.out), r.h, Spectrum(r.absorption));
     const float difference = std::atan2(r.in.z, r.in.y) - std::atan2(r.out.z, r.out.y);
-    float value = 0, density = 0, sum = 0;
+    float value = 0, pdf = 0, sum = 0;
     for (int p = 0; p < HairFibre::lobes; ++p) {
       const float a = s.attenuation[size_t(p)][0];
       const float shape =
           fibre.longitudinal(p, r.out.x, cosine(r.out), r.in.x, cosine(r.in)) * fibre.azimuthal(p, s, difference);
       value += a * shape;
-      density += a * shape;
+      pdf += a * shape;
       sum += a;
     }
     EXPECT_NEAR(value, r.value, 0.01f * r.value);
-    EXPECT_NEAR(density / sum, r.density, 0.01f * r.density);
+    EXPECT_NEAR(pdf / sum, r.pdf, 0.01f * r.pdf);
   }
 }
 

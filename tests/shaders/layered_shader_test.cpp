@@ -22,7 +22,7 @@ Ref<Shader> layered(const Ref<Shader>& top, const Ref<Shader>& bottom, std::vect
   return create<Shader>("LayeredShader", settings);
 }
 Ref<Shader> glass(double ior = 1.5) { return create<Shader>("Dielectric", {{"ior", ior}}); }
-Ref<Shader> matt(double color) { return create<Shader>("Lambertian", {{"color", color}}); }
+Ref<Shader> diffuse(double color) { return create<Shader>("Lambertian", {{"color", color}}); }
 Ref<VolumeShader> fog(double absorption, double scattering, double g) {
   return create<VolumeShader>("HomogeneousVolume", {{"absorption", absorption}, {"scattering", scattering}, {"anisotropy", g}});
 }
@@ -62,7 +62,7 @@ const Frame frame(Normal3(0, 0, 1));
 
 TEST(LayeredShader, AnInvisibleCoatChangesNothing) {
   for (const auto& coat : {glass(1), create<Shader>("PassThrough")}) {
-    const Ref<Shader> shader = layered(coat, matt(0.6));
+    const Ref<Shader> shader = layered(coat, diffuse(0.6));
     for (const double angle : {0.0, 50.0, 120.0}) {
       const Vector3 out = at_angle(frame, angle), in = at_angle(frame, angle < 90 ? 65 : 140, 3);
       Mean value;
@@ -74,7 +74,7 @@ TEST(LayeredShader, AnInvisibleCoatChangesNothing) {
 }
 
 TEST(LayeredShader, OverBlackOnlyTheCoatReflects) {
-  const Ref<Shader> shader = layered(glass(), matt(0));
+  const Ref<Shader> shader = layered(glass(), diffuse(0));
   Arena arena;
   const Scatter& s = *shader->bind(test::surface_point({0, 0, 1}), test::wavelengths(), arena);
   EXPECT_EQ(s.lobes(), specular_reflection);
@@ -91,7 +91,7 @@ TEST(LayeredShader, SmoothPlastic) {
   // f = rho / pi (1 - F(out)) (1 - F(in)) / (n^2 (1 - rho 0.596346)): what gets in is diffuse ever after, and the mean
   // internal reflectance of n = 1.5 says how much stays each time.
   for (const double rho : {0.3, 0.9}) {
-    const Ref<Shader> shader = layered(glass(), matt(rho));
+    const Ref<Shader> shader = layered(glass(), diffuse(rho));
     for (const double angle : {10.0, 60.0, 85.0}) {
       const Vector3 out = at_angle(frame, angle), in = at_angle(frame, 40, 3);
       const auto into = [](const Vector3& v) { return double(1 - fresnel_dielectric(v.z, 1.5f)); };
@@ -144,10 +144,10 @@ TEST(LayeredShader, AbsorbsOnTheWay) {
   const Ref<Shader> shader = layered(none, none, {{"medium", fog(300, 0, 0)}, {"thickness", 0.002}});
   Arena arena;
   const Scatter& s = *shader->bind(test::surface_point({0, 0, 1}), test::wavelengths(), arena);
-  EXPECT_EQ(s.lobes(), pass_through);
+  EXPECT_EQ(s.lobes(), null_scattering);
   for (const double angle : {0.0, 60.0, 130.0}) {
     const float expected = float(std::exp(-0.6 / std::abs(std::cos(angle * M_PI / 180))));
-    EXPECT_NEAR(s.sample(at_angle(frame, angle), 0, {}, Transport::radiance, pass_through)->weight[0], expected, 1e-5f);
+    EXPECT_NEAR(s.sample(at_angle(frame, angle), 0, {}, Transport::radiance, null_scattering)->weight[0], expected, 1e-5f);
     EXPECT_NEAR(s.sample(at_angle(frame, angle), 0.5f, {})->weight[0], expected, 1e-5f);
     EXPECT_NEAR(s.albedo(at_angle(frame, angle))[0], expected, 1e-5f);
   }
@@ -200,11 +200,11 @@ std::vector<Case> cases() {
   const Ref<Shader> shiny = create<Shader>("PhongShader", {{"exponent", 30.0}, {"color", 0.1}, {"specular", 0.8}});
   const Ref<Shader> mirror = create<Shader>("PerfectSpecular", {{"color", 0.9}});
   const Ref<Shader> half = create<Shader>("MixShader", {{"first", mirror}, {"second", shiny}});
-  const Ref<Shader> dull = create<Shader>("MixShader", {{"first", glass()}, {"second", matt(0.7)}, {"amount", 0.4}});
+  const Ref<Shader> dull = create<Shader>("MixShader", {{"first", glass()}, {"second", diffuse(0.7)}, {"amount", 0.4}});
   const Ref<Shader> paper = create<Shader>("DiffuseTransmitter", {{"reflectance", 0.4}, {"transmittance", 0.6}});
   const Ref<Shader> waxed = create<Shader>("MixShader", {{"first", glass()}, {"second", paper}, {"amount", 0.5}});
-  const Ref<Shader> plastic = layered(glass(), matt(0.8));
-  return {{"white under glass", layered(glass(), matt(1)), {0, 0}, true},
+  const Ref<Shader> plastic = layered(glass(), diffuse(0.8));
+  return {{"white under glass", layered(glass(), diffuse(1)), {0, 0}, true},
           {"shiny under glass", layered(glass(), shiny), {0.135, 0.135}},
           {"shiny mirror under tinted glass", layered(glass(), half, {{"medium", fog(100, 0, 0)}}), {0.062, 0.062}},
           {"mirror under milk", layered(glass(), mirror, {{"medium", fog(100, 500, 0.4)}}), {0.132, 0.132}},
@@ -234,15 +234,15 @@ TEST(LayeredShader, ValuesAreThoseOfSamples) {
           const auto sample = s.sample(out, choice, random.pair(), t);
           const double sampled = sample && !sample->specular() ? double(sample->weight[0]) * probe(sample->direction) : 0;
           const Vector3 in = warp::sphere(random.pair());
-          const ScatterValue v = s.value_and_density(out, in, t);
-          const double value = double(v.value[0] / warp::sphere_density) * probe(in);
+          const ScatterValue v = s.value_and_pdf(out, in, t);
+          const double value = double(v.value[0] / warp::sphere_pdf) * probe(in);
           difference.add(sampled - value);
           const auto weight = [](double p, double q) { return p > 0 ? p / (p + q) : 0; };
-          combined.add(sampled * (sampled > 0 ? weight(double(sample->density), double(warp::sphere_density)) : 0) +
-                       value * weight(double(warp::sphere_density), double(v.density)) - value);
+          combined.add(sampled * (sampled > 0 ? weight(double(sample->pdf), double(warp::sphere_pdf)) : 0) +
+                       value * weight(double(warp::sphere_pdf), double(v.pdf)) - value);
           if (sample && !sample->specular()) {
-            EXPECT_FLOAT_EQ(sample->density, s.density(out, sample->direction, t)) << c.name;
-            EXPECT_GT(sample->density, 0);
+            EXPECT_FLOAT_EQ(sample->pdf, s.pdf(out, sample->direction, t)) << c.name;
+            EXPECT_GT(sample->pdf, 0);
           }
         });
         EXPECT_MEAN(difference, 0) << c.name << " at " << angle;
@@ -335,7 +335,7 @@ TEST(LayeredShader, AlbedoOfFogIsThatOfTwoStreams) {
 TEST(LayeredShader, DispersesEachWavelengthItsOwnWay) {
   // Values hold for all wavelengths of a path, each refracted by its own index: the closed form for plastic, per wavelength.
   const Color index = table_spectrum({360, 830}, {1.8f, 1.3f});
-  const Ref<Shader> shader = layered(create<Shader>("Dielectric", {{"ior", index}}), matt(0.5));
+  const Ref<Shader> shader = layered(create<Shader>("Dielectric", {{"ior", index}}), diffuse(0.5));
   const Vector3 out = at_angle(frame, 30), in = at_angle(frame, 55, 3);
   Mean value[spectrum_size];
   at_many_points(*shader, 3000, [&](const Scatter& s, test::Random&) {

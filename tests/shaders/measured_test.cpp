@@ -177,11 +177,11 @@ TEST_F(Measured, RglAgreesWithMitsuba) {
     const Scatter* scatter = shader->bind(p, four, arena);
     for (int i = 0; i < 4; ++i) {
       const Vector3 out = normalize(pairs[i][0]), in = normalize(pairs[i][1]);
-      const ScatterValue v = scatter->value_and_density(out, in);
+      const ScatterValue v = scatter->value_and_pdf(out, in);
       for (int k = 0; k < spectrum_size; ++k)
         EXPECT_NEAR(v.value[k], expected[anisotropic][i][k % 4], 3e-4f * expected[anisotropic][i][k % 4]) << i << " " << k;
-      const float density = 0.9f * expected[anisotropic][i][4] + 0.1f * in.z / pi;
-      EXPECT_NEAR(v.density, density, 3e-4f * density) << i;
+      const float pdf = 0.9f * expected[anisotropic][i][4] + 0.1f * in.z / pi;
+      EXPECT_NEAR(v.pdf, pdf, 3e-4f * pdf) << i;
     }
   }
 }
@@ -221,10 +221,10 @@ TEST_F(Measured, RglOfAWideDistributionAgreesWithMitsuba) {
       const auto& a = pairs[i];
       const float* wanted = expected[anisotropic][i];
       const Vector3 in = towards(a[2], a[3]);
-      const ScatterValue v = scatter->value_and_density(towards(a[0], a[1]), in);
+      const ScatterValue v = scatter->value_and_pdf(towards(a[0], a[1]), in);
       for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(v.value[k], wanted[k % 4], 1e-3f * wanted[k % 4]) << i << " " << k;
-      const float density = 0.9f * wanted[4] + 0.1f * in.z / pi;
-      if (wanted[4] > 0) EXPECT_NEAR(v.density, density, 1e-3f * density) << i;
+      const float pdf = 0.9f * wanted[4] + 0.1f * in.z / pi;
+      if (wanted[4] > 0) EXPECT_NEAR(v.pdf, pdf, 1e-3f * pdf) << i;
     }
   }
 }
@@ -279,8 +279,8 @@ TEST_F(Measured, SamplesFollowDensity) {
       const Scatter* scatter = shaders[n]->bind(p, test::wavelengths(), arena);
       const double t = angle * M_PI / 180;
       const Vector3 out = scatter->frame().to_world({float(std::sin(t) * 0.6), float(std::sin(t) * 0.8), float(std::cos(t))});
-      std::vector<double> expected = test::integrate_cells(
-          scatter->frame(), rows, columns, [&](const Vector3& in) { return double(scatter->density(out, in)); });
+      std::vector<double> expected = test::integrate_cells(scatter->frame(), rows, columns,
+                                                           [&](const Vector3& in) { return double(scatter->pdf(out, in)); });
       double total = 0;
       for (double& e : expected) {
         total += e;
@@ -295,9 +295,9 @@ TEST_F(Measured, SamplesFollowDensity) {
         const auto s = scatter->sample(out, choice, random.pair());
         ++counts[s ? test::cell_of(scatter->frame(), rows, columns, s->direction) : counts.size() - 1];
         if (!s || i % 100) continue;
-        const ScatterValue v = scatter->value_and_density(out, s->direction);
-        EXPECT_NEAR(v.density, s->density, 2e-3f * v.density);
-        EXPECT_NEAR(s->weight[1], v.value[1] / v.density, 5e-3f * s->weight[1]);
+        const ScatterValue v = scatter->value_and_pdf(out, s->direction);
+        EXPECT_NEAR(v.pdf, s->pdf, 2e-3f * v.pdf);
+        EXPECT_NEAR(s->weight[1], v.value[1] / v.pdf, 5e-3f * s->weight[1]);
         const Spectrum back = scatter->evaluate(s->direction, out) * (scatter->cosine(s->direction) / scatter->cosine(out));
         if (shaders[n]->reciprocal()) {
           EXPECT_NEAR(back[0], v.value[0], 1e-3f * v.value[0]);

@@ -63,9 +63,9 @@ TEST(Microfacet, FacetsCoverTheSurfaceAndWhatIsSeenOfThem) {
       const double seen = mean_over_facets(
           d, 300, [&](const Vector3& m) { return double(d.G1(v, m) * std::max(dot(v, m), 0.0f) / (m.z * v.z)); });
       EXPECT_NEAR(seen, 1, 1e-3) << name_of(d) << " at " << angle;
-      const double density = mean_over_facets(
-          d, 300, [&](const Vector3& m) { return d.D(m) > 0 ? double(d.visible_density(v, m) / (d.D(m) * m.z)) : 0; });
-      EXPECT_NEAR(density, seen, 1e-4) << name_of(d) << " at " << angle;
+      const double pdf = mean_over_facets(
+          d, 300, [&](const Vector3& m) { return d.D(m) > 0 ? double(d.visible_pdf(v, m) / (d.D(m) * m.z)) : 0; });
+      EXPECT_NEAR(pdf, seen, 1e-4) << name_of(d) << " at " << angle;
     }
   }
 }
@@ -79,7 +79,7 @@ TEST(Microfacet, VisibleNormalsFollowTheirDensity) {
     for (const double angle : {0.0, 50.0, 85.0, 120.0}) {  // the last from below
       const Vector3 v = at_angle(angle);
       std::vector<double> expected = test::integrate_cells(
-          frame, rows, columns, [&](const Vector3& m) { return m.z > 0 ? double(d.visible_density(v, m)) * count : 0; });
+          frame, rows, columns, [&](const Vector3& m) { return m.z > 0 ? double(d.visible_pdf(v, m)) * count : 0; });
       std::vector<double> counts(expected.size());
       test::Random random(seed++);
       for (int i = 0; i < count; ++i) ++counts[test::cell_of(frame, rows, columns, d.sample_visible(v, random.pair()))];
@@ -293,7 +293,7 @@ TEST(ThinDielectric, AllReflectionsInside) {
   const Scatter& s = *shader->bind(test::surface_point(), test::wavelengths(), arena);
   EXPECT_FALSE(shader->transmits());
   const Vector3 normal = at_angle(s.frame(), 0);
-  EXPECT_NEAR(s.albedo(normal, pass_through)[0], 0.923077, 1e-6);
+  EXPECT_NEAR(s.albedo(normal, null_scattering)[0], 0.923077, 1e-6);
   EXPECT_NEAR(s.albedo(normal, specular_reflection)[0], 1 - 0.923077, 1e-6);
   for (const double angle : {20.0, 56.3, 80.0, 130.0}) {
     const Vector3 out = at_angle(s.frame(), angle);
@@ -304,8 +304,8 @@ TEST(ThinDielectric, AllReflectionsInside) {
     double transmitted = 0;
     for (const double R : {double(r.s), double(r.p)})
       for (int k = 0; k < 10; ++k) transmitted += 0.5 * (1 - R) * (1 - R) * std::pow(R, 2 * k);
-    EXPECT_NEAR(s.albedo(out, pass_through)[0], transmitted, 1e-4);
-    const auto straight = s.sample(out, 0, {}, Transport::radiance, pass_through);
+    EXPECT_NEAR(s.albedo(out, null_scattering)[0], transmitted, 1e-4);
+    const auto straight = s.sample(out, 0, {}, Transport::radiance, null_scattering);
     EXPECT_NEAR(straight->weight[0], transmitted, 1e-4);
     EXPECT_LT(length(straight->direction + out), 1e-6f);
     EXPECT_EQ(straight->eta, 1);
@@ -313,7 +313,7 @@ TEST(ThinDielectric, AllReflectionsInside) {
   // Half is absorbed on one passage: T' = (1 - R)^2 a / (1 - a^2 R^2).
   const Scatter& grey =
       *create<Shader>("ThinDielectric", {{"color", 0.5}})->bind(test::surface_point(), test::wavelengths(), arena);
-  EXPECT_NEAR(grey.albedo(normal, pass_through)[0], 0.96 * 0.96 * 0.5 / (1 - 0.25 * 0.04 * 0.04), 1e-6);
+  EXPECT_NEAR(grey.albedo(normal, null_scattering)[0], 0.96 * 0.96 * 0.5 / (1 - 0.25 * 0.04 * 0.04), 1e-6);
 }
 
 TEST(Plastic, AlbedoIsThatOfTheFormula) {

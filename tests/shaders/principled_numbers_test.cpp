@@ -134,7 +134,7 @@ TEST(PrincipledNumbers, CoatsRoughenAndTint) {
 // coat's inside sends back of diffuse light, 1 - (1 - F) / eta^2 with the mean F from outside, and E_b the albedo of base and
 // its surface.
 TEST(PrincipledNumbers, CoatsDarkenMattBodies) {
-  const auto matt = [](double color, double amount, double weight) {
+  const auto diffuse = [](double color, double amount, double weight) {
     return value(principled({{"base_color", color},
                              {"specular_roughness", 0.3},
                              {"coat_weight", weight},
@@ -150,7 +150,8 @@ TEST(PrincipledNumbers, CoatsDarkenMattBodies) {
     const double gloss = pow2((1.6 / 1.5 - 1) / (1.6 / 1.5 + 1)), E = gloss + color * (1 - gloss);
     for (const auto& [amount, weight] : {std::pair{1.0, 1.0}, {0.5, 1.0}}) {
       const double expected = 1 - amount + amount * (1 - K) / (1 - E * K);
-      EXPECT_NEAR(matt(color, amount, weight) / matt(color, 0, weight), expected, 2e-3 * expected) << color << " " << amount;
+      EXPECT_NEAR(diffuse(color, amount, weight) / diffuse(color, 0, weight), expected, 2e-3 * expected)
+          << color << " " << amount;
     }
     // At a weight of 0.5 only half of the surface is darkened.
     const double half_gloss = [&] {  // the ratio of indices is mixed as well
@@ -159,7 +160,7 @@ TEST(PrincipledNumbers, CoatsDarkenMattBodies) {
     }();
     const double half_E = half_gloss + color * (1 - half_gloss);
     const double half = 0.5 + 0.5 * (1 - K) / (1 - half_E * K);
-    EXPECT_NEAR(matt(color, 1, 0.5) / matt(color, 0, 0.5), half, 3e-3 * half) << color;
+    EXPECT_NEAR(diffuse(color, 1, 0.5) / diffuse(color, 0, 0.5), half, 3e-3 * half) << color;
   }
 }
 

@@ -37,10 +37,10 @@ struct Bound {
     double sum = 0;
     const auto flux = [&](const Vector3& in) { return double(scatter->evaluate(out, in, Transport::importance, which)[i]); };
     for (const double cell : test::integrate_cells(scatter->frame(), 48, 40, flux)) sum += cell;
-    for (const Lobe lobe : {specular_reflection, specular_transmission, pass_through})
+    for (const Lobe lobe : {specular_reflection, specular_transmission, null_scattering})
       if (scatter->has(Lobes(lobe & which)))
         if (const auto s = scatter->sample(out, 0.5f, {0.5f, 0.5f}, Transport::importance, lobe))
-          sum += double(s->weight[i] * s->density);
+          sum += double(s->weight[i] * s->pdf);
     return sum;
   }
   Arena arena;
@@ -122,7 +122,7 @@ TEST(Principled, SmoothSurfacesFollowFresnel) {
   const double cosine = std::cos(50 * M_PI / 180), r = double(fresnel_dielectric(float(cosine), 1.5f));
   const auto specular = [](const Bound& b, Lobe lobe) {
     const auto s = b.scatter->sample(b.at(50), 0.5f, {0.5f, 0.5f}, Transport::importance, lobe);
-    return s ? double(s->weight[0] * s->density) : -1;
+    return s ? double(s->weight[0] * s->pdf) : -1;
   };
   const Settings smooth{{"specular_roughness", 0.0}, {"transmission_weight", 1.0}};
   const Bound body(smooth);
@@ -147,7 +147,7 @@ TEST(Principled, SpecularWeightScalesTheReflectanceAndTheIndex) {
     const Bound b({{"specular_weight", weight}, {"specular_roughness", 0.0}, {"transmission_weight", 1.0}});
     const auto s = b.scatter->sample(b.at(0), 0, {0.5f, 0.5f}, Transport::importance, specular_reflection);
     ASSERT_TRUE(s);
-    EXPECT_NEAR(s->weight[0] * s->density, 0.04 * weight, 1e-5);
+    EXPECT_NEAR(s->weight[0] * s->pdf, 0.04 * weight, 1e-5);
     const float n = b.shader->interior_index(test::wavelengths())[0];
     EXPECT_NEAR(square((n - 1) / (n + 1)), 0.04 * weight, 1e-5);
   }
@@ -239,8 +239,8 @@ TEST(Principled, SamplesFollowDensity) {
       const Bound bound(cases[k]);
       const Frame& frame = bound.scatter->frame();
       const Vector3 out = bound.at(angle);
-      std::vector<double> expected = test::integrate_cells(
-          frame, rows, columns, [&](const Vector3& in) { return double(bound.scatter->density(out, in)); });
+      std::vector<double> expected =
+          test::integrate_cells(frame, rows, columns, [&](const Vector3& in) { return double(bound.scatter->pdf(out, in)); });
       double total = 0;
       for (double& e : expected) {
         total += e;

@@ -66,12 +66,11 @@ TEST(ShaderFormulas, LambertianAndTransmitter) {
       EXPECT_NEAR(double(f[k]) * M_PI, crosses ? through(double(w[k])) : back(double(w[k])), 1e-5);
     double r = 0, t = 0;
     for (int k = 0; k < spectrum_size; ++k) r += back(double(w[k])), t += through(double(w[k]));
-    EXPECT_NEAR(double(s.density(out, in)), std::abs(double(in.z)) / M_PI * (crosses ? t : r) / (r + t), 1e-5);
+    EXPECT_NEAR(double(s.pdf(out, in)), std::abs(double(in.z)) / M_PI * (crosses ? t : r) / (r + t), 1e-5);
     const auto sample = s.sample(out, random(), random.pair());
     ASSERT_TRUE(sample);
     const bool sample_crosses = sample->direction.z * out.z < 0;
-    EXPECT_NEAR(double(sample->density), std::abs(double(sample->direction.z)) / M_PI * (sample_crosses ? t : r) / (r + t),
-                1e-5);
+    EXPECT_NEAR(double(sample->pdf), std::abs(double(sample->direction.z)) / M_PI * (sample_crosses ? t : r) / (r + t), 1e-5);
     EXPECT_NEAR(double(sample->weight[0]), (sample_crosses ? through(double(w[0])) / t : back(double(w[0])) / r) * (r + t),
                 1e-4);
   }
@@ -178,8 +177,8 @@ TEST(ShaderFormulas, CoupledMatteSpecular) {
       const auto sample = s.sample(out, random(), random.pair());
       ASSERT_TRUE(sample);
       if (sample->specular()) continue;
-      const ScatterValue v = s.value_and_density(out, sample->direction);
-      for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(sample->weight[k], v.value[k] / v.density, 1e-4f * sample->weight[k]);
+      const ScatterValue v = s.value_and_pdf(out, sample->direction);
+      for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(sample->weight[k], v.value[k] / v.pdf, 1e-4f * sample->weight[k]);
     }
   }
 }

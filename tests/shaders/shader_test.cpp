@@ -38,8 +38,8 @@ TEST(Shader, SamplesFollowDensity) {
       const Scatter* scatter = c.shader->bind(p, test::wavelengths(), arena);
       ASSERT_NE(scatter, nullptr);
       const Vector3 out = at_angle(scatter->frame(), angle);
-      std::vector<double> expected = test::integrate_cells(
-          scatter->frame(), rows, columns, [&](const Vector3& in) { return double(scatter->density(out, in)); });
+      std::vector<double> expected = test::integrate_cells(scatter->frame(), rows, columns,
+                                                           [&](const Vector3& in) { return double(scatter->pdf(out, in)); });
       double total = 0;
       for (double& e : expected) {
         total += e;
@@ -74,11 +74,11 @@ TEST(Shader, WeightIsValueTimesCosineOverDensity) {
             const auto s = scatter->sample(out, choice, random.pair(), transport, which);
             if (!s) continue;
             ++seen;
-            const ScatterValue both = scatter->value_and_density(out, s->direction, transport, which);
-            EXPECT_NEAR(both.density, s->density, 2e-3f * s->density) << c.name;
-            EXPECT_FLOAT_EQ(both.density, scatter->density(out, s->direction, transport, which));
+            const ScatterValue both = scatter->value_and_pdf(out, s->direction, transport, which);
+            EXPECT_NEAR(both.pdf, s->pdf, 2e-3f * s->pdf) << c.name;
+            EXPECT_FLOAT_EQ(both.pdf, scatter->pdf(out, s->direction, transport, which));
             const Spectrum value = scatter->evaluate(out, s->direction, transport, which);
-            const Spectrum weight = value / both.density;
+            const Spectrum weight = value / both.pdf;
             for (int k = 0; k < spectrum_size; ++k) {
               EXPECT_FLOAT_EQ(value[k], both.value[k]);
               EXPECT_NEAR(weight[k], s->weight[k], 2e-3f * s->weight[k]) << c.name;
@@ -166,7 +166,7 @@ TEST(Shader, NoLightLeaksThroughShadingNormals) {
       if (dot(p.normal, a) * dot(p.normal, b) < 0) {
         ++opposite;
         EXPECT_TRUE(scatter->evaluate(a, b).black());
-        EXPECT_EQ(scatter->density(a, b), 0);
+        EXPECT_EQ(scatter->pdf(a, b), 0);
       }
       const float choice = random();
       const auto s = scatter->sample(a, choice, random.pair());
@@ -189,7 +189,7 @@ TEST(Shader, LobesAreMasked) {
   EXPECT_GT(glossy, diffuse);
   EXPECT_NEAR(both, diffuse + glossy, 1e-5f);
   EXPECT_TRUE(scatter->evaluate(a, b, Transport::radiance, transmission_lobes).black());
-  EXPECT_EQ(scatter->density(a, b, Transport::radiance, specular_lobes), 0);
+  EXPECT_EQ(scatter->pdf(a, b, Transport::radiance, specular_lobes), 0);
   EXPECT_FALSE(scatter->sample(a, 0.5f, {0.5f, 0.5f}, Transport::radiance, specular_lobes));
   // A black lobe is not there.
   EXPECT_EQ(create<Shader>("PhongShader", {{"color", 0.0}})->bind(test::surface_point(), test::wavelengths(), arena)->lobes(),
@@ -215,7 +215,7 @@ TEST(PerfectSpecular, Mirrors) {
     const Vector3 n(scatter->frame().n), mirrored = 2 * dot(n, out) * n - out;
     EXPECT_LT(length(mirrored - s->direction), 1e-6f);
     EXPECT_TRUE(scatter->evaluate(out, s->direction).black());
-    EXPECT_EQ(scatter->density(out, s->direction), 0);
+    EXPECT_EQ(scatter->pdf(out, s->direction), 0);
   }
 }
 

@@ -168,7 +168,7 @@ TEST(Subsurface, PlaneReturnsTheColourAtAllWavelengths) {
 TEST(Subsurface, BoundaryAndExitConserveEnergy) {
   Body body(sphere, "color: 1, ior: 1.5");
   const Shader& shader = *body.entry.object->shader;
-  EXPECT_TRUE(shader.moves_exit());
+  EXPECT_TRUE(shader.has_subsurface_exit());
   EXPECT_FALSE(shader.transmits());
   const Scatter* boundary = shader.bind(body.entry, test::wavelengths(), body.arena);
   test::Random random(4);

@@ -49,7 +49,7 @@ TEST(ThinPane, AbsorbsAlongEachPassageAtAllAngles) {
   const Scatter& s = *shader->bind(flat_point(), w, arena);
   for (const double angle : {0.0, 35.0, 60.0, 80.0, 100.0, 150.0, 180.0}) {
     const Vector3 out = direction(angle);
-    const auto through = s.sample(out, 0, {}, Transport::radiance, pass_through),
+    const auto through = s.sample(out, 0, {}, Transport::radiance, null_scattering),
                back = s.sample(out, 0, {}, Transport::radiance, specular_reflection);
     ASSERT_TRUE(through && back);
     EXPECT_LT(length(through->direction + out), 1e-6f);
@@ -76,7 +76,7 @@ TEST(ThinPane, AbsorbsAlongEachPassageAtAllAngles) {
       double mean[2] = {};
       for (int k = 0; k < 1000; ++k)
         if (const auto sample = s.sample(out, (float(k) + 0.5f) / 1000, {}))
-          mean[sample->lobe == pass_through] += double(sample->weight[i]) / 1000;
+          mean[sample->lobe == null_scattering] += double(sample->weight[i]) / 1000;
       EXPECT_NEAR(mean[0], reflected, 3e-3);
       EXPECT_NEAR(mean[1], transmitted, 3e-3);
     }
@@ -240,11 +240,11 @@ TEST(GratingNumbers, OrdersLeaveAcrossTheGroovesAndEfficienciesAddUp) {
 
 TEST(ThinPane, MasksAndMixturesLetOnWhatTheirPartsDo) {
   const Ref<Shader> pane = create<Shader>("ThinDielectric", {{"color", 0.6}}),
-                    matt = create<Shader>("Lambertian", {{"color", 0.5}});
+                    diffuse = create<Shader>("Lambertian", {{"color", 0.5}});
   Arena arena;
   const auto straight = [&](const Ref<Shader>& shader, const Vector3& out) {
     const auto s =
-        shader->bind(flat_point(), test::wavelengths(), arena)->sample(out, 0, {}, Transport::radiance, pass_through);
+        shader->bind(flat_point(), test::wavelengths(), arena)->sample(out, 0, {}, Transport::radiance, null_scattering);
     return s ? double(s->weight[0]) : 0.0;
   };
   for (const double angle : {0.0, 50.0, 130.0}) {
@@ -252,8 +252,8 @@ TEST(ThinPane, MasksAndMixturesLetOnWhatTheirPartsDo) {
     const double t = straight(pane, out);
     EXPECT_GT(t, 0.2);
     EXPECT_NEAR(straight(create<Shader>("MaskShader", {{"shader", pane}, {"opacity", 0.3}}), out), 0.7 + 0.3 * t, 1e-5);
-    EXPECT_NEAR(straight(create<Shader>("MaskShader", {{"shader", matt}, {"opacity", 0.3}}), out), 0.7, 1e-6);
-    EXPECT_NEAR(straight(create<Shader>("MixShader", {{"first", pane}, {"second", matt}, {"amount", 0.25}}), out), 0.75 * t,
+    EXPECT_NEAR(straight(create<Shader>("MaskShader", {{"shader", diffuse}, {"opacity", 0.3}}), out), 0.7, 1e-6);
+    EXPECT_NEAR(straight(create<Shader>("MixShader", {{"first", pane}, {"second", diffuse}, {"amount", 0.25}}), out), 0.75 * t,
                 1e-5);
     const Ref<Shader> both =
         create<Shader>("MixShader", {{"first", pane}, {"second", create<Shader>("PassThrough")}, {"amount", 0.25}});

@@ -83,7 +83,7 @@ inline std::string case_name(const testing::TestParamInfo<Case>& info) {
 }
 
 inline const std::string glow = "DiffuseEmission { radiance: 1, sides: both }";
-inline const std::string matt = "shader: Lambertian { color: 1 }";
+inline const std::string diffuse = "shader: Lambertian { color: 1 }";
 
 inline std::string pinhole(const std::string& from, const std::string& to) {
   return "PerspectiveCamera { from: " + from + ", to: " + to + ", up: [0, 1, 0], fov: 0.01 deg }";

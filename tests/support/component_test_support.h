@@ -83,7 +83,7 @@ class TestSquare final : public SceneObject {
     s.point.uv = u;
     s.point.time = time;
     s.point.object = this;
-    s.density = 1 / area(time);
+    s.pdf = 1 / area(time);
     return s;
   }
 

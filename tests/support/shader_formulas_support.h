@@ -77,9 +77,9 @@ inline void expect_formula(const std::string& name, const Ref<Shader>& shader, d
     // What is drawn has the weight that value and density say.
     const float choice = random();
     if (const auto s = scatter->sample(out, choice, random.pair(), Transport::radiance, which); s && !s->specular()) {
-      const ScatterValue both = scatter->value_and_density(out, s->direction, Transport::radiance, which);
+      const ScatterValue both = scatter->value_and_pdf(out, s->direction, Transport::radiance, which);
       for (int k = 0; k < spectrum_size; ++k)
-        EXPECT_NEAR(s->weight[k], both.value[k] / both.density, 3e-3f * s->weight[k] + 1e-5f) << name;
+        EXPECT_NEAR(s->weight[k], both.value[k] / both.pdf, 3e-3f * s->weight[k] + 1e-5f) << name;
     }
   }
   EXPECT_GT(compared, 1000) << name;

@@ -16,7 +16,7 @@ struct MadeUp {
   int last;
   std::vector<float> from_light, from_camera;
   std::vector<bool> specular;  ///< scattering at x_i is
-  float direct;
+  float pdf_next_event;
   double merging;
 
   MadeUp(std::mt19937& random, int length, double merged, double mirrors) : last(length), merging(merged) {
@@ -27,33 +27,33 @@ struct MadeUp {
       from_camera.push_back(u(random));
       specular.push_back(i > 0 && i < last && mirror(random));
     }
-    direct = u(random);
+    pdf_next_event = u(random);
   }
 
   /// Product of densities of strategy j; `of_walk`: x_0 as a walk begins, in strategy 1 as well.
-  double density(int j, bool of_walk = false) const {
+  double pdf(int j, bool of_walk = false) const {
     double p = 1;
     for (int i = 0; i <= last; ++i)
-      p *= double(i >= j ? from_camera[size_t(i)] : (i == 0 && j == 1 && !of_walk) ? direct : from_light[size_t(i)]);
+      p *= double(i >= j ? from_camera[size_t(i)] : (i == 0 && j == 1 && !of_walk) ? pdf_next_event : from_light[size_t(i)]);
     return p;
   }
-  double merged_density(int i) const { return density(i, true) * merging * double(from_light[size_t(i)]); }
+  double merged_pdf(int i) const { return pdf(i, true) * merging * double(from_light[size_t(i)]); }
   bool connects(int j) const {
     if (j == 0) return true;
     return !specular[size_t(j - 1)] && !specular[size_t(j)] && last > 1;
   }
 
   float weight(int s, bool merge, Heuristic heuristic) const {
-    std::vector<KeptVertex> light, camera;
+    std::vector<SubpathVertex> light, camera;
     for (int i = 0; i < s; ++i) light.push_back(vertex(i, from_light[size_t(i)], from_camera[size_t(i)]));
     for (int i = last; i >= s; --i) camera.push_back(vertex(i, from_camera[size_t(i)], from_light[size_t(i)]));
     // What a connection changes stands wrong in the walks themselves: nobody may look at it there. Where walks end or connect
     // they may have gone on by a mirror as well as not.
     if (!merge && s > 0) light.back().specular = !light.back().specular;
     camera.back().specular = !camera.back().specular;
-    for (std::vector<KeptVertex>* walk : {&light, &camera})
+    for (std::vector<SubpathVertex>* walk : {&light, &camera})
       for (size_t k = 0; k < 2 && k < walk->size(); ++k)
-        if (!merge || walk == &camera || k == 0) (*walk)[walk->size() - 1 - k].reverse = -1;
+        if (!merge || walk == &camera || k == 0) (*walk)[walk->size() - 1 - k].pdf_reverse = -1;
     const auto at = [](const std::vector<float>& list, int i) {
       return i >= 0 && size_t(i) < list.size() ? list[size_t(i)] : 0;
     };
@@ -65,7 +65,7 @@ struct MadeUp {
                        at(from_camera, s - 2),
                        at(from_light, s),
                        at(from_light, s + 1),
-                       direct,
+                       pdf_next_event,
                        from_light[0],
                        true,
                        {merging, 0}};
@@ -76,20 +76,20 @@ struct MadeUp {
     path.light_before_from_camera = -1;
     const PhotonWeight photon = photon_weight(path, path.camera_last_from_light, heuristic);
     path.light = nullptr;
-    path.light_last_from_camera = path.direct = path.begun = -1;
+    path.light_last_from_camera = path.pdf_next_event = path.pdf_emission_origin = -1;
     return merging_weight(path, photon, back, heuristic);
   }
-  KeptVertex vertex(int i, float forward, float reverse) const {
-    KeptVertex v;
+  SubpathVertex vertex(int i, float pdf_forward, float pdf_reverse) const {
+    SubpathVertex v;
     v.kind = i == 0 ? Vertex::Kind::luminaire : i == last ? Vertex::Kind::camera : Vertex::Kind::surface;
     v.specular = specular[size_t(i)];
-    v.forward = forward;
-    v.reverse = reverse;
+    v.pdf_forward = pdf_forward;
+    v.pdf_reverse = pdf_reverse;
     return v;
   }
 };
 
-TEST(BidirectionalWeight, of_all_strategies_sum_to_one_in_proportion_to_their_densities) {
+TEST(BidirectionalWeight, of_all_strategies_sum_to_one_in_proportion_to_their_pdfs) {
   std::mt19937 random(3);
   for (const Heuristic heuristic : {Heuristic::balance, Heuristic::power})
     for (const double merging : {0.0, 0.7, 40.0})
@@ -100,15 +100,15 @@ TEST(BidirectionalWeight, of_all_strategies_sum_to_one_in_proportion_to_their_de
         std::vector<std::pair<double, double>> known;  // weight, density
         // The last strategy, all from the luminaire, would have to meet the lens.
         for (int s = 0; s <= path.last; ++s)
-          if (path.connects(s)) known.emplace_back(path.weight(s, false, heuristic), path.density(s));
+          if (path.connects(s)) known.emplace_back(path.weight(s, false, heuristic), path.pdf(s));
         for (int i = 1; merging > 0 && i < path.last; ++i)
-          if (!path.specular[size_t(i)]) known.emplace_back(path.weight(i, true, heuristic), path.merged_density(i));
-        for (const auto& [weight, density] : known) {
+          if (!path.specular[size_t(i)]) known.emplace_back(path.weight(i, true, heuristic), path.merged_pdf(i));
+        for (const auto& [weight, pdf] : known) {
           sum += weight;
-          all += std::pow(density, power);
+          all += std::pow(pdf, power);
         }
         EXPECT_NEAR(sum, 1, 1e-5);
-        for (const auto& [weight, density] : known) EXPECT_NEAR(weight, std::pow(density, power) / all, 1e-5);
+        for (const auto& [weight, pdf] : known) EXPECT_NEAR(weight, std::pow(pdf, power) / all, 1e-5);
       }
 }
 

@@ -101,21 +101,22 @@ std::vector<Row> surface_rows() {
                    {"DistributionRenderer", endless, 4}}});
   rows.push_back({"R03_PointInSphereDirectly", aside, middle, 0.5, all({8, 0, 8, 8, 256, 4, 8, 1})});
 
-  const std::string receiver = "Rectangle { corner: [0,0,0], edge_u: [1,0,0], edge_v: [0,1,0], " + matt + " }\n";
+  const std::string receiver = "Rectangle { corner: [0,0,0], edge_u: [1,0,0], edge_v: [0,1,0], " + diffuse + " }\n";
   rows.push_back({"R04_ParallelSquares", square("[0.5, 0.5, 0.5]", "[0.5, 0.5, 0]", 1),
                   receiver + "Rectangle { corner: [0,0,1], edge_u: [1,0,0], edge_v: [0,1,0], emission: " + glow + " }",
                   0.199825, all({8, 80, 8, 16, 512, 4, 8, 0})});
   rows.push_back({"R05_SquaresAtRightAngles", square("[0.5, 0.5, 5]", "[0.5, 0.5, 0]", 1),
                   receiver + "Rectangle { corner: [0,0,0], edge_u: [0,1,0], edge_v: [0,0,1], emission: " + glow + " }",
                   0.200044, all({8, 64, 8, 24, 512, 4, 8, 0})});
-  rows.push_back({"R06_Discs", square("[0, 0, 0.5]", "[0, 0, 0]", 2),  // the picture is the square around the disc
-                  "Disc { radius: 1, " + matt + " }\nDisc { radius: 1, transform: translate(0, 0, 1), emission: " + glow + " }",
-                  0.381966 * exact_pi / 4, all({16, 128, 16, 16, 160, 8, 16, 0})});
+  rows.push_back(
+      {"R06_Discs", square("[0, 0, 0.5]", "[0, 0, 0]", 2),  // the picture is the square around the disc
+       "Disc { radius: 1, " + diffuse + " }\nDisc { radius: 1, transform: translate(0, 0, 1), emission: " + glow + " }",
+       0.381966 * exact_pi / 4, all({16, 128, 16, 16, 160, 8, 16, 0})});
 
-  rows.push_back({"R07_Rectangle", pinhole("[0, 0, 0.5]", "[0, 0, 0]"), plate(9, 0, matt) + plate(1, 1, "emission: " + glow),
+  rows.push_back({"R07_Rectangle", pinhole("[0, 0, 0.5]", "[0, 0, 0]"), plate(9, 0, diffuse) + plate(1, 1, "emission: " + glow),
                   1.740840 / exact_pi, all({8, 32, 8, 8, 0, 4, 8, 0})});
   rows.push_back({"R07_RectangleOverASquare", square("[0, 0, 0.5]", "[0, 0, 0]", 1),
-                  plate(0.5, 0, matt) + plate(1, 1, "emission: " + glow),
+                  plate(0.5, 0, diffuse) + plate(1, 1, "emission: " + glow),
                   mean_over_square(0.5,
                                    [](double x, double y) {
                                      double e = 0;
@@ -126,17 +127,17 @@ std::vector<Row> surface_rows() {
                   all({8, 48, 8, 8, 768, 4, 8, 0})});
 
   rows.push_back({"R08_Sphere", pinhole("[0, 0.2, 0.5]", "[0, 0, 0]"),
-                  plate(1, 0, matt) + "Sphere { centre: [0, 0, 3], radius: 1, emission: " + glow + " }", 0.349066 / exact_pi,
+                  plate(1, 0, diffuse) + "Sphere { centre: [0, 0, 3], radius: 1, emission: " + glow + " }", 0.349066 / exact_pi,
                   all({8, 0, 8, 8, 0, 4, 8, 0})});
   // A shell around the sphere has the row's irradiance everywhere.
   rows.push_back({"R08_SphereInAShell", "PerspectiveCamera { from: [0, 0, 1.2], to: [0, 0, 3], fov: 120 }",
-                  "Sphere { radius: 3, " + matt + " }\nSphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }",
+                  "Sphere { radius: 3, " + diffuse + " }\nSphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }",
                   1.0 / 9, all({8, 256, 8, 12, 512, 4, 8, 0})});
   rows.push_back({"R09_HalfASphere", pinhole("[0, 0.2, 0.5]", "[0, 0, 0]"),
-                  "Disc { radius: 0.1, " + matt + " }\nSphere { centre: [3, 0, 0], radius: 1, emission: " + glow + " }",
+                  "Disc { radius: 0.1, " + diffuse + " }\nSphere { centre: [3, 0, 0], radius: 1, emission: " + glow + " }",
                   irradiance_beside_sphere(3) / exact_pi, all({32, 0, 32, 32, 0, 24, 32, 0})});
   rows.push_back({"R09_HalfASphereOverASquare", square("[0, 0, 5]", "[0, 0, 0]", 6),
-                  plate(3, 0, matt) + "Sphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }", sphere_on_a_floor(),
+                  plate(3, 0, diffuse) + "Sphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }", sphere_on_a_floor(),
                   all({24, 128, 32, 32, 64, 16, 24, 0})});
 
   // Inclined by 60 degrees, so that an irradiance of 2 across the light is 1 on the plane.
@@ -151,8 +152,8 @@ std::vector<Row> surface_rows() {
   for (const auto& [degrees, samples] : phases) {
     const double a = degrees * exact_pi / 180, intensity = 2.0 / 3 * (std::sin(a) + (exact_pi - a) * std::cos(a)) / exact_pi;
     rows.push_back({fmt::format("R11_SphereAtPhase{}", degrees), square("[0, 0, 5]", "[0, 0, 0]", 2),
-                    fmt::format("Sphere {{ radius: 1, {} }}\nDistant {{ direction: [{:.9f}, 0, {:.9f}], emission: {} }}", matt,
-                                -std::sin(a), -std::cos(a), glow),
+                    fmt::format("Sphere {{ radius: 1, {} }}\nDistant {{ direction: [{:.9f}, 0, {:.9f}], emission: {} }}",
+                                diffuse, -std::sin(a), -std::cos(a), glow),
                     intensity / 4, all(samples)});
   }
 

@@ -18,23 +18,24 @@ struct Setup {
 /// Rows of the table of closed forms: form factors of receivers of reflectance 1, and irradiance over pi.
 std::vector<Setup> direct_light_setups() {
   const std::string from_above = "OrthographicCamera { from: [0.5,0.5,0.5], to: [0.5,0.5,0], up: [0,1,0], width: 1 }";
-  const std::string square = "Rectangle { corner: [0,0,0], edge_u: [1,0,0], edge_v: [0,1,0], " + matt + " }\n";
+  const std::string square = "Rectangle { corner: [0,0,0], edge_u: [1,0,0], edge_v: [0,1,0], " + diffuse + " }\n";
   return {
       {"parallel squares", from_above,
        square + "Rectangle { corner: [0,0,1], edge_u: [1,0,0], edge_v: [0,1,0], emission: " + lit + " }", 0.199825},
       {"squares at right angles", from_above,
        square + "Rectangle { corner: [0,0,0], edge_u: [0,1,0], edge_v: [0,0,1], emission: " + lit + " }", 0.200044},
       {"discs", "OrthographicCamera { from: [0,0,0.5], to: [0,0,0], up: [0,1,0], width: 2 }",
-       "Disc { radius: 1, " + matt + " }\nDisc { radius: 1, transform: translate(0, 0, 1), emission: " + lit + " }",
+       "Disc { radius: 1, " + diffuse + " }\nDisc { radius: 1, transform: translate(0, 0, 1), emission: " + lit + " }",
        0.381966 * double(pi) / 4},
       {"rectangle", pinhole("[0,0,0.5]", "[0,0,0]"),
-       "Rectangle { corner: [-9,-9,0], edge_u: [18,0,0], edge_v: [0,18,0], " + matt +
+       "Rectangle { corner: [-9,-9,0], edge_u: [18,0,0], edge_v: [0,18,0], " + diffuse +
            " }\nRectangle { corner: [-1,-1,1], edge_u: [2,0,0], edge_v: [0,2,0], emission: " + lit + " }",
        1.740840 / double(pi)},
       {"sphere", pinhole("[0,0.2,0.5]", "[0,0,0]"),
-       "Disc { radius: 1, " + matt + " }\nSphere { centre: [0,0,3], radius: 1, emission: " + lit + " }", 0.349066 / double(pi)},
+       "Disc { radius: 1, " + diffuse + " }\nSphere { centre: [0,0,3], radius: 1, emission: " + lit + " }",
+       0.349066 / double(pi)},
       {"half a sphere", pinhole("[0,0.2,0.5]", "[0,0,0]"),
-       "Disc { radius: 0.1, " + matt + " }\nSphere { centre: [3,0,0], radius: 1, emission: " + lit + " }",
+       "Disc { radius: 0.1, " + diffuse + " }\nSphere { centre: [3,0,0], radius: 1, emission: " + lit + " }",
        0.025567 / double(pi)},
   };
 }

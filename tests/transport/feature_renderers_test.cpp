@@ -17,7 +17,7 @@ TEST(AmbientOcclusionRenderer, InsideASphere) {
   // fraction is 1 - (d / 2R)^2.
   for (const double d : {0.0, 0.5, 1.0, 1.9}) {
     const Measured m = measure(job_text(fmt::format("AmbientOcclusionRenderer {{ distance: {}, rays: 8, samples: 32 }}", d),
-                                        furnace_camera, 16, "Sphere { radius: 1, " + matt + " }"));
+                                        furnace_camera, 16, "Sphere { radius: 1, " + diffuse + " }"));
     const double expected = d > 0 ? 1 - d * d / 4 : 0;
     EXPECT_EQ(m.bad, 0u);
     EXPECT_NEAR(m.mean.y, expected, 4.5 * m.error + 1e-6) << d;

@@ -44,7 +44,7 @@ LobeMixture all_kinds() {
   return m;
 }
 
-TEST(LobeMixture, its_density_integrates_to_one_and_is_that_of_its_samples) {
+TEST(LobeMixture, its_pdf_integrates_to_one_and_is_that_of_its_samples) {
   for (const Point3& from : {Point3{0.3f, -0.2f, 1}, Point3{0, 0, 0}, Point3{1, 2, -1}}) {
     const SeenLobes lobes(all_kinds(), from);
     constexpr int fine = 1024, rows = 16, columns = 32;
@@ -52,7 +52,7 @@ TEST(LobeMixture, its_density_integrates_to_one_and_is_that_of_its_samples) {
     double integral = 0;
     for (int i = 0; i < fine; ++i)
       for (int j = 0; j < fine; ++j) {
-        const double p = double(lobes.density(direction_at((i + 0.5) / fine, (j + 0.5) / fine))) * 4 * M_PI / (fine * fine);
+        const double p = double(lobes.pdf(direction_at((i + 0.5) / fine, (j + 0.5) / fine))) * 4 * M_PI / (fine * fine);
         integral += p;
         expected[size_t(i * rows / fine * columns + j * columns / fine)] += p;
       }
@@ -91,7 +91,7 @@ TEST(LobeMixture, its_density_integrates_to_one_and_is_that_of_its_samples) {
 }
 
 // k / (4 pi sinh k) exp(k cos), Fisher 1953, and what follows from where a place is.
-TEST(LobeMixture, is_fishers_density_and_points_at_one_place_from_everywhere) {
+TEST(LobeMixture, is_fishers_pdf_and_points_at_one_place_from_everywhere) {
   LobeMixture m;
   const Vector3 axis = normalize(Vector3{1, 2, 2});
   const float k = 12;
@@ -100,7 +100,7 @@ TEST(LobeMixture, is_fishers_density_and_points_at_one_place_from_everywhere) {
   for (const float cosine : {1.0f, 0.9f, 0.3f, -0.5f}) {
     const Vector3 d = Frame(Normal3(axis)).to_world({std::sqrt(1 - cosine * cosine), 0, cosine});
     const double expected = 12 / (4 * M_PI * std::sinh(12.0)) * std::exp(12 * double(cosine));
-    EXPECT_NEAR(here.density(d), expected, 2e-6 * 12 * expected);
+    EXPECT_NEAR(here.pdf(d), expected, 2e-6 * 12 * expected);
   }
   const Point3 place = Point3{1, 1, 1} + 2 * axis, other{4, -2, 0.5f};
   const Vector3 way = place - other;
@@ -108,7 +108,7 @@ TEST(LobeMixture, is_fishers_density_and_points_at_one_place_from_everywhere) {
   EXPECT_LT(length(lobe.direction - normalize(way)), 1e-6f);
   EXPECT_NEAR(1 / lobe.nearness, length(way), 1e-4f);
   EXPECT_NEAR(lobe.concentration, k * length_squared(way) / 4, 1e-3f * lobe.concentration);
-  EXPECT_NEAR(SeenLobes(m, other).density(lobe.direction), lobe.concentration / (2 * pi), 1e-3f * lobe.concentration);
+  EXPECT_NEAR(SeenLobes(m, other).pdf(lobe.direction), lobe.concentration / (2 * pi), 1e-3f * lobe.concentration);
   // At infinity it is the same for all.
   m.set({1, 1, 1}, 3, {axis, 0, k, 1});
   EXPECT_EQ(m.seen_from(other, 3).direction, axis);
@@ -199,7 +199,7 @@ TEST(Guide, samples_of_no_distance_or_no_number_spoil_nothing) {
 /// batch after the other. Returns E[X^2] / E[X]^2 - 1 of the last.
 struct LampOverFloor {
   GuideSettings settings;
-  bool forgets_density = false;
+  bool forgets_pdf = false;
 
   double learn(Guide& guide, int batches, std::vector<double>* means = nullptr) const {
     Random random(4);
@@ -220,15 +220,15 @@ struct LampOverFloor {
           s.direction = lobes.sample(choice / a, random.pair());
         else
           s.direction = warp::hemisphere(random.pair());
-        s.scatter = s.direction.z > 0 ? warp::hemisphere_density : 0;
-        const float density = (a > 0 ? a * lobes.density(s.direction) : 0) + (1 - a) * s.scatter;
+        s.scatter = s.direction.z > 0 ? warp::hemisphere_pdf : 0;
+        const float pdf = (a > 0 ? a * lobes.pdf(s.direction) : 0) + (1 - a) * s.scatter;
         const Point3 above = s.position + (2 / s.direction.z) * s.direction;
         s.nearness = s.direction.z / 2;
         const bool hit = s.direction.z > 0 && std::abs(above.x) < 0.2f && std::abs(above.y) < 0.2f;
-        s.found = hit ? s.direction.z / density : 0;
+        s.found = hit ? s.direction.z / pdf : 0;
         mean += double(s.found) / count;
         square += double(s.found) * double(s.found) / count;
-        if (forgets_density) s.found *= density;
+        if (forgets_pdf) s.found *= pdf;
         samples.push_back(s);
       }
       if (means) means->push_back(mean);
@@ -273,11 +273,11 @@ TEST(Guide, finds_a_lamp_and_means_stay_what_they_are) {
 }
 
 // Samples that are not divided by their density leave the mean as it is: it is seen by what the guide is worth.
-TEST(Guide, a_density_forgotten_in_training_is_seen_in_the_variance) {
+TEST(Guide, a_pdf_forgotten_in_training_is_seen_in_the_variance) {
   LampOverFloor scene;
   Guide sound(scene.settings), faulty(scene.settings);
   const double right = scene.learn(sound, 6);
-  scene.forgets_density = true;
+  scene.forgets_pdf = true;
   std::vector<double> means;
   const double wrong = scene.learn(faulty, 6, &means);
   EXPECT_GT(wrong, 1.4 * right);

@@ -51,7 +51,7 @@ TEST(HomogeneousVolume, EndsWithItsObjectWhereNothingElseEndsARay) {
   EXPECT_NEAR(within_object(medium, ray), 0.5f, 1e-6f);
   for (const float far : {infinity, 0.5f}) {
     EXPECT_NEAR(transmittance(medium, ray, far, w, stream)[0], std::exp(-1.5f), 1e-5f);
-    EXPECT_NEAR(likely_transmittance(medium, ray, far, w)[0], std::exp(-1.5f), 1e-5f);
+    EXPECT_NEAR(weighting_transmittance(medium, ray, far, w)[0], std::exp(-1.5f), 1e-5f);
     EXPECT_NEAR(sample_free_flight(medium, ray, far, Spectrum(1.0f), w, stream).emitted[0], 2 * (1 - std::exp(-1.5f)), 1e-5f);
   }
   int scattered = 0;
@@ -86,10 +86,10 @@ TEST(HomogeneousVolume, SamplesFollowThePhaseFunction) {
     Random random(seed++);
     double cosines = 0, squares = 0;
     for (int i = 0; i < count; ++i) {
-      float density = 0;
-      const Vector3 in = m->sample_phase({}, out, random.pair(), density);
+      float pdf = 0;
+      const Vector3 in = m->sample_phase({}, out, random.pair(), pdf);
       ASSERT_NEAR(length(in), 1, 1e-5f);
-      EXPECT_NEAR(density, m->phase({}, out, in), 1e-3f * density);
+      EXPECT_NEAR(pdf, m->phase({}, out, in), 1e-3f * pdf);
       const Vector3 v = frame.to_local(in);
       const double h = double(length_squared(in - peak)) / 2, cosine = -double(dot(in, out));
       const int row = std::min(int(below(h) * rows), rows - 1);
@@ -109,9 +109,9 @@ TEST(HomogeneousVolume, AVeryNarrowPeakStaysExact) {
   Random random(4);
   int near = 0;
   for (int i = 0; i < 1000; ++i) {
-    float density = 0;
-    const Vector3 out = random.direction(), in = m->sample_phase({}, out, random.pair(), density);
-    EXPECT_NEAR(density, m->phase({}, out, in), 2e-2f * density);
+    float pdf = 0;
+    const Vector3 out = random.direction(), in = m->sample_phase({}, out, random.pair(), pdf);
+    EXPECT_NEAR(pdf, m->phase({}, out, in), 2e-2f * pdf);
     near += length(in + out) < 3e-4f;
   }
   EXPECT_GT(near, 500);  // P = 0.68 for sin(theta) up to 3 (1 - g)
@@ -150,7 +150,7 @@ TEST(HomogeneousVolume, RefusesWhatCannotBe) {
 TEST(PassThrough, EverythingGoesStraightOn) {
   const Ref<Shader> shader = create<Shader>("PassThrough");
   EXPECT_TRUE(shader->transmits());
-  EXPECT_EQ(shader->possible_lobes(), Lobes(pass_through));
+  EXPECT_EQ(shader->possible_lobes(), Lobes(null_scattering));
   EXPECT_EQ(shader->interior_index(wavelengths())[0], 1);
   // The shading normal disagrees with the surface from many of these directions: nothing may be lost there.
   const SurfacePoint p = surface_point({0.1f, 0.2f, 1}, {0.9f, 0.1f, 0.3f});
@@ -164,15 +164,15 @@ TEST(PassThrough, EverythingGoesStraightOn) {
       const auto s = scatter->sample(out, random(), random.pair(), transport);
       ASSERT_TRUE(s.has_value());
       EXPECT_LT(length(s->direction + out), 1e-6f);
-      EXPECT_EQ(s->lobe, pass_through);
+      EXPECT_EQ(s->lobe, null_scattering);
       EXPECT_TRUE(s->specular());
       EXPECT_TRUE(s->transmitted());
-      EXPECT_EQ(s->density, 1);
+      EXPECT_EQ(s->pdf, 1);
       EXPECT_EQ(s->eta, 1);
       EXPECT_FALSE(s->dispersive);
       for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(s->weight[k], 1, 1e-6f / std::abs(dot(p.normal, out)));
       EXPECT_TRUE(scatter->evaluate(out, -out, transport).black());
-      EXPECT_EQ(scatter->density(out, -out, transport), 0);
+      EXPECT_EQ(scatter->pdf(out, -out, transport), 0);
     }
     EXPECT_EQ(scatter->albedo(out)[0], 1);
     EXPECT_TRUE(scatter->albedo(out, smooth_lobes).black());

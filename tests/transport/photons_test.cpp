@@ -59,7 +59,7 @@ TEST(Photons, do_not_shine_through_walls) {
 }
 
 // The light that a small glass ball and a mirror throw on is the same whether walks begin everywhere or towards them alone.
-TEST(EmissionTargets, bring_the_same_caustics) {
+TEST(ProjectionMap, bring_the_same_caustics) {
   const std::string things = R"(
     Rectangle { corner: [-5, -5, 0], edge_u: [10, 0, 0], edge_v: [0, 10, 0], shader: Lambertian { color: 0.5 } }
     Sphere { centre: [0, 0, 1], radius: 0.8, shader: Dielectric { ior: 1.5 } }
@@ -78,10 +78,10 @@ TEST(EmissionTargets, bring_the_same_caustics) {
     Render render(job);  // prepares the parts
     const RenderContext context{*job->scene, *job->camera, *job->image, *job->wavelengths};
     const std::unique_ptr<RenderProcess> process = job->renderer->start(context);  // and the light sampler
-    const EmissionTargets targets(*job->scene);
+    const ProjectionMap targets(*job->scene);
     ASSERT_TRUE(targets.useful());
     // Mean and standard error over 20 sets of walks, each with its own step.
-    const auto flux = [&](const EmissionTargets* towards, double& error) {
+    const auto flux = [&](const ProjectionMap* towards, double& error) {
       constexpr int sets = 20;
       double sum = 0, squares = 0;
       for (int set = 0; set < sets; ++set) {
@@ -117,13 +117,13 @@ TEST(EmissionTargets, bring_the_same_caustics) {
   }
 }
 
-TEST(EmissionTargets, are_not_used_where_they_are_as_large_as_the_scene) {
+TEST(ProjectionMap, are_not_used_where_they_are_as_large_as_the_scene) {
   const Ref<Job> job = load_job_text(
       job_text("LightTracer { samples: 1 }", "PerspectiveCamera {}", 4,
                "Sphere { radius: 3, shader: Dielectric { ior: 1.5 } }\nPoint { emission: DiffuseEmission { radiance: 1 } }"),
       "ball.etd");
   Render render(job);
-  EXPECT_FALSE(EmissionTargets(*job->scene).useful());
+  EXPECT_FALSE(ProjectionMap(*job->scene).useful());
 }
 
 TEST(Photons, shrink_as_knaus_and_zwicker_say) {

@@ -49,13 +49,13 @@ class RealLensCamera final : public Camera {
     s.distance = 5 - from.z;
     s.film = {(from.x + 1) / 2 * width_, (1 - from.y) / 2 * height_};
     if (s.film.x < width_ / 4 || s.film.x >= width_ || s.film.y < 0 || s.film.y >= height_) return std::nullopt;
-    s.density = 1;
+    s.pdf = 1;
     s.importance = 1.0f / 4;  // over the 4 m^2 of the whole film
     return s;
   }
   Spectrum lens_weight(const LensSample& s, const Wavelengths& w) const override { return weight(s.film, w); }
   float importance(const Ray& r) const override { return film_point(r) ? 0.25f : 0; }
-  CameraDensity density(const Ray& r) const override { return film_point(r) ? CameraDensity{0.25f, 1} : CameraDensity{}; }
+  CameraPdf pdf(const Ray& r) const override { return film_point(r) ? CameraPdf{0.25f, 1} : CameraPdf{}; }
 
  private:
   Spectrum weight(Point2 film, const Wavelengths& w) const {

@@ -124,7 +124,7 @@ std::vector<Experiment> experiments() {
   const auto board = [](const char* shader, double a, double b) {
     return fmt::format(fmt::runtime(shader), fmt::format(fmt::runtime(board_of), a, b));
   };
-  const auto matt = "Lambertian {{ color: {} }}";
+  const auto diffuse = "Lambertian {{ color: {} }}";
   const auto metal = "Conductor {{ roughness: {} }}";
   const auto mask = "MaskShader {{ shader: Lambertian {{ color: 0.9 }}, opacity: {} }}";
   const auto bump = [](const std::string& formula) {
@@ -132,7 +132,7 @@ std::vector<Experiment> experiments() {
   };
   const auto plain = [](const char* shader, double a) { return fmt::format(fmt::runtime(shader), a); };
   // u has 2 m, a tooth is 0.0125 u long and half as long on each side: slopes of +- 0.5
-  return {{"color", board(matt, 0.02, 0.9), plain(matt, 0.02), plain(matt, 0.9), on_second},
+  return {{"color", board(diffuse, 0.02, 0.9), plain(diffuse, 0.02), plain(diffuse, 0.9), on_second},
           {"roughness", board(metal, 0.15, 0.6), plain(metal, 0.15), plain(metal, 0.6), on_second},
           {"opacity", board(mask, 0.0, 0.9), plain(mask, 0), plain(mask, 0.9), on_second},
           {"bump", bump("0.0125 * abs(fract(80 * u + 0.5) - 0.5)"), bump("1 - u"), bump("u"), rising}};
@@ -225,7 +225,7 @@ TEST(Unbiased, TheFilmAtItsBorder) {
         for (int i = 0; i < size * size; ++i) {
           const int px = i % size, py = i / size;
           // Beside the film there is nothing: light and density of samples.
-          const auto density = [&](double x, double y) {
+          const auto pdf = [&](double x, double y) {
             if (!(x >= 0 && x < size && y >= 0 && y < size)) return 0;
             return samples > 0 ? 1 : 1 + 2 * ((int(x) + int(y)) & 1);
           };
@@ -234,7 +234,7 @@ TEST(Unbiased, TheFilmAtItsBorder) {
           for (int j = -reach; j < reach; ++j)
             for (int k = -reach; k < reach; ++k) {
               const double x = (k + 0.5) / 64, y = (j + 0.5) / 64;
-              const double part = double(filter->weight(float(x), float(y))) * density(px + 0.5 + x, py + 0.5 + y);
+              const double part = double(filter->weight(float(x), float(y))) * pdf(px + 0.5 + x, py + 0.5 + y);
               whole += part;
               if (px + 0.5 + x < edge) light += part;
             }

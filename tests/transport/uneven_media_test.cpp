@@ -29,8 +29,8 @@ class RampVolume final : public VolumeShader {
   bool emits() const override { return glow > 0; }
   Spectrum majorant(const Wavelengths&) const override { return Spectrum(low + slope * top); }
   float phase(const Point3&, const Vector3&, const Vector3&) const override { return 1 / (4 * pi); }
-  Vector3 sample_phase(const Point3&, const Vector3&, Point2 u, float& density) const override {
-    density = 1 / (4 * pi);
+  Vector3 sample_phase(const Point3&, const Vector3&, Point2 u, float& pdf) const override {
+    pdf = 1 / (4 * pi);
     const float z = 1 - 2 * u.x, r = std::sqrt(std::max(0.0f, 1 - z * z));
     return {r * std::cos(2 * pi * u.y), r * std::sin(2 * pi * u.y), z};
   }
@@ -160,7 +160,7 @@ TEST(UnevenMedia, AreRefusedWhereTheyCannotBeRendered) {
       "Job { camera: OrthographicCamera {}, scene: EmbreeScene { objects: [ " + box("low: 1") + " ] } }", "ramp.etd");
   prepare_tree(*job);
   const SceneTraits traits = scene_traits(*job->scene, *job->camera);
-  EXPECT_EQ(paths_in(traits) & uneven_media, PathClasses(uneven_media));
+  EXPECT_EQ(paths_in(traits) & heterogeneous_media, PathClasses(heterogeneous_media));
   for (const char* name : {"DirectRenderer", "DistributionRenderer", "WhittedRenderer"})
     EXPECT_FALSE(ref_cast<Renderer>(Registry::instance().create(name))->misses(traits).empty()) << name;
 }

@@ -40,8 +40,8 @@ Vector sampled(const SceneObject& lamp, const Point3& from) {
   Vector sum{};
   for (int i = 0; i < side * side; ++i) {
     const SurfaceSample s = lamp.sample_visible(from, {(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}, 0);
-    if (!(s.density > 0)) continue;
-    for (size_t k = 0; k < 3; ++k) sum[k] += double(s.direction[int(k)]) / double(s.density) / (side * side);
+    if (!(s.pdf > 0)) continue;
+    for (size_t k = 0; k < 3; ++k) sum[k] += double(s.direction[int(k)]) / double(s.pdf) / (side * side);
   }
   return sum;
 }

@@ -30,7 +30,7 @@ TEST(WhittedRenderer, LambertSphereFromAfar) {  // the mean over its disc is (2/
     const double a = degrees * double(pi) / 180;
     const Measured m =
         measure(job_text(whitted(2, 64), "OrthographicCamera { from: [0,0,5], to: [0,0,0], up: [0,1,0], width: 2 }", 64,
-                         "Sphere { radius: 1, " + matt + " }\n" + distant(std::sin(a), 0, -std::cos(a))));
+                         "Sphere { radius: 1, " + diffuse + " }\n" + distant(std::sin(a), 0, -std::cos(a))));
     const double mean = 2.0 / 3 * (std::sin(a) + (double(pi) - a) * std::cos(a)) / double(pi * pi);
     EXPECT_EQ(m.bad, 0u);
     EXPECT_NEAR(m.mean.y, mean * double(pi) / 4, 0.003 * mean) << degrees;

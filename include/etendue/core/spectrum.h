@@ -128,12 +128,12 @@ struct Xyz {
 class Wavelengths {
  public:
   Wavelengths() = default;
-  Wavelengths(const std::array<float, spectrum_size>& lambda, const std::array<float, spectrum_size>& density) {
-    for (int i = 0; i < spectrum_size; ++i) place(i, lambda[size_t(i)], density[size_t(i)]);
+  Wavelengths(const std::array<float, spectrum_size>& lambda, const std::array<float, spectrum_size>& pdf) {
+    for (int i = 0; i < spectrum_size; ++i) place(i, lambda[size_t(i)], pdf[size_t(i)]);
   }
 
   /// The same, given as vectors.
-  Wavelengths(const detail::Lanes& lambda, const detail::Lanes& density) : lambda_(lambda), density_(density) {
+  Wavelengths(const detail::Lanes& lambda, const detail::Lanes& pdf) : lambda_(lambda), pdf_(pdf) {
     constexpr float length = wavelength_high - wavelength_low;
     detail::Lanes x = lambda - wavelength_low;
     x = x > 0 ? x : detail::Lanes{};  // zero for what is not a number
@@ -146,7 +146,7 @@ class Wavelengths {
   float operator[](int i) const { return lambda_[i]; }
   float hero() const { return lambda_[0]; }
   /// [1/nm]
-  float density(int i) const { return density_[i]; }
+  float pdf(int i) const { return pdf_[i]; }
 
   /// The path goes on with the hero only. Returns what its throughput must be multiplied by: size for the hero, 0 for the
   /// others. So the mean over wavelengths in `to_xyz` stays an unbiased estimate, and what the path gathered before
@@ -163,8 +163,8 @@ class Wavelengths {
   /// The i-th as the hero, and alone, for a branch of the path that follows it. The hero takes the other's place.
   Wavelengths alone(int i) const {
     Wavelengths one = *this;
-    one.place(0, lambda_[i], density_[i]);
-    one.place(i, lambda_[0], density_[0]);
+    one.place(0, lambda_[i], pdf_[i]);
+    one.place(i, lambda_[0], pdf_[0]);
     one.single_ = true;
     return one;
   }
@@ -175,11 +175,11 @@ class Wavelengths {
   const detail::IntLanes& table_indices() const { return index_; }
   const detail::Lanes& table_fractions() const { return fraction_; }
   /// All of them [1/nm].
-  const detail::Lanes& densities() const { return density_; }
+  const detail::Lanes& pdfs() const { return pdf_; }
 
-  void place(int i, float lambda, float density) {
+  void place(int i, float lambda, float pdf) {
     lambda_[i] = lambda;
-    density_[i] = density;
+    pdf_[i] = pdf;
     const float x = clamp(lambda - wavelength_low, 0, wavelength_high - wavelength_low);
     const int k = std::min(int(x), int(wavelength_high - wavelength_low) - 1);
     index_[i] = k;
@@ -187,7 +187,7 @@ class Wavelengths {
   }
 
  private:
-  detail::Lanes lambda_{}, density_{}, fraction_{};
+  detail::Lanes lambda_{}, pdf_{}, fraction_{};
   detail::IntLanes index_{};
   bool single_ = false;
 };

@@ -29,7 +29,7 @@ inline Vector3 cosine_hemisphere(Point2 u) {
   const float r = std::max(std::abs(2 * u.x - 1), std::abs(2 * u.y - 1));
   return {d.x, d.y, safe_sqrt((1 - r) * (1 + r))};
 }
-inline float cosine_hemisphere_density(float cosine) { return std::max(cosine, 0.0f) * inverse_pi; }
+inline float cosine_hemisphere_pdf(float cosine) { return std::max(cosine, 0.0f) * inverse_pi; }
 
 /// A unit direction, uniform over the sphere; density 1/(4 pi) [1/sr].
 inline Vector3 sphere(Point2 u) {
@@ -38,7 +38,7 @@ inline Vector3 sphere(Point2 u) {
   sin_cos_turn(u.y, sine, cosine);
   return {r * cosine, r * sine, z};
 }
-inline constexpr float sphere_density = 1 / (4 * pi);
+inline constexpr float sphere_pdf = 1 / (4 * pi);
 
 /// A unit direction, uniform over the hemisphere z >= 0; density 1/(2 pi) [1/sr].
 inline Vector3 hemisphere(Point2 u) {
@@ -47,7 +47,7 @@ inline Vector3 hemisphere(Point2 u) {
   sin_cos_turn(u.y, sine, cosine);
   return {r * cosine, r * sine, u.x};
 }
-inline constexpr float hemisphere_density = 1 / (2 * pi);
+inline constexpr float hemisphere_pdf = 1 / (2 * pi);
 
 /// A unit direction uniform in the cone around +z whose 1 - cos(half angle) is given (so that narrow cones stay exact).
 inline Vector3 cone(Point2 u, float one_minus_cosine) {
@@ -58,7 +58,7 @@ inline Vector3 cone(Point2 u, float one_minus_cosine) {
   return {r * cosine, r * sine, 1 - h};
 }
 /// [1/sr]
-inline float cone_density(float one_minus_cosine) { return 1 / (2 * pi * one_minus_cosine); }
+inline float cone_pdf(float one_minus_cosine) { return 1 / (2 * pi * one_minus_cosine); }
 
 /// A unit direction with density (n + 1)/(2 pi) cos(theta)^n [1/sr] around +z.
 inline Vector3 power_cosine(Point2 u, float n) {
@@ -67,7 +67,7 @@ inline Vector3 power_cosine(Point2 u, float n) {
   sin_cos_turn(u.y, sine, cosine);
   return {r * cosine, r * sine, z};
 }
-inline float power_cosine_density(float cosine, float n) { return cosine > 0 ? (n + 1) / (2 * pi) * std::pow(cosine, n) : 0; }
+inline float power_cosine_pdf(float cosine, float n) { return cosine > 0 ? (n + 1) / (2 * pi) * std::pow(cosine, n) : 0; }
 
 /// Barycentric coordinates (of the second and third vertex), uniform over a triangle; density 1/area.
 /// (Heitz 2019, "A low-distortion map between triangle and square".)

@@ -24,12 +24,12 @@ class GuidedScattering {
   /// f |cos| and p, as direct light is weighted.
   ScatterValue operator()(const Vector3& in) const {
     ScatterValue f = scattering(vertex_, vertex_.out, in, Transport::radiance);
-    if (share_ > 0 && !f.value.black()) f.density = mixed(lobes_.density(in), f.density);
+    if (share_ > 0 && !f.value.black()) f.pdf = mixed(lobes_.pdf(in), f.pdf);
     return f;
   }
 
   /// p, where scattering alone has the density `scatter` [1/sr].
-  float density(const Vector3& in, float scatter) const { return share_ > 0 ? mixed(lobes_.density(in), scatter) : scatter; }
+  float pdf(const Vector3& in, float scatter) const { return share_ > 0 ? mixed(lobes_.pdf(in), scatter) : scatter; }
 
   struct Choice {
     std::optional<ScatterSample> next;
@@ -45,37 +45,37 @@ class GuidedScattering {
       const Vector3 in = lobes_.sample(choice / share_, u);
       const ScatterValue f = scattering(vertex_, vertex_.out, in, Transport::radiance);
       if (f.value.black()) return c;
-      c.scatter = f.density;
-      const float p = mixed(lobes_.density(in), f.density);
+      c.scatter = f.pdf;
+      const float p = mixed(lobes_.pdf(in), f.pdf);
       if (!(p > 0)) return c;
       ScatterSample& s = c.next.emplace();
       s.direction = in;
       s.weight = f.value / p;
-      s.density = p;
+      s.pdf = p;
       if (vertex_.on_surface() && (dot(vertex_.point.normal, in) > 0) != (dot(vertex_.point.normal, vertex_.out) > 0))
         s.lobe = diffuse_transmission;
       if (alone(s)) c.next.reset();
-      if (f.density > 0) c.more = p / f.density;
+      if (f.pdf > 0) c.more = p / f.pdf;
       return c;
     }
     c.next = scatter(std::min((choice - share_) / (1 - share_), one_minus_epsilon));
     if (!c.next) return c;
     ScatterSample& s = *c.next;
-    c.scatter = s.density;
+    c.scatter = s.pdf;
     if (alone(s)) {
       s.weight /= 1 - share_;
       c.more = 1 - share_;
     } else if (share_ > 0) {
-      s.density = mixed(lobes_.density(s.direction), c.scatter);
-      s.weight *= c.scatter / s.density;
-      c.more = s.density / c.scatter;
+      s.pdf = mixed(lobes_.pdf(s.direction), c.scatter);
+      s.weight *= c.scatter / s.pdf;
+      c.more = s.pdf / c.scatter;
     }
     return c;
   }
 
   /// Whether only scattering chooses such directions: those of mirrors, and into bodies that light leaves elsewhere.
   bool alone(const ScatterSample& s) const {
-    return s.specular() || (vertex_.on_surface() && !vertex_.moved && enters_body(vertex_.point, s));
+    return s.specular() || (vertex_.on_surface() && !vertex_.subsurface_exit && enters_subsurface(vertex_.point, s));
   }
 
  private:

@@ -51,14 +51,14 @@ class SeenLobes {
   SeenLobes(const LobeMixture&, const Point3& from);
 
   /// [1/sr]
-  float density(const Vector3& direction) const {
-    const LobeLanes each = densities(direction);
+  float pdf(const Vector3& direction) const {
+    const LobeLanes each = pdfs(direction);
     float sum = 0;
     for (int i = 0; i < LobeMixture::size; ++i) sum += each[i];
     return sum;
   }
   /// Of each lobe, times its weight [1/sr].
-  LobeLanes densities(const Vector3& direction) const;
+  LobeLanes pdfs(const Vector3& direction) const;
   /// A direction with that density. `choice`: among lobes.
   Vector3 sample(float choice, Point2 u) const;
 
@@ -107,7 +107,7 @@ inline SeenLobes::SeenLobes(const LobeMixture& m, const Point3& from) : weight_(
   factor_ = m.weight * concentration_ * (1 / (2 * pi)) / (1 - detail::exp_of_negative(-2 * concentration_));
 }
 
-inline LobeLanes SeenLobes::densities(const Vector3& w) const {
+inline LobeLanes SeenLobes::pdfs(const Vector3& w) const {
   // m . w - 1 = -|m - w|^2 / 2 without the cancellation.
   const LobeLanes x = x_ - w.x, y = y_ - w.y, z = z_ - w.z;
   return factor_ * detail::exp_of_negative((x * x + y * y + z * z) * concentration_ * -0.5f);

@@ -35,11 +35,11 @@ class PhotonDirections {
     return Frame(Normal3(photons_[k]->out)).to_world(warp::cone(u, opening));
   }
   /// [1/sr]
-  float density(const Vector3& direction) const {
+  float pdf(const Vector3& direction) const {
     float met = 0;
     for (size_t k = 0; k < count_; ++k)
       if (dot(direction, photons_[k]->out) >= 1 - opening) met += carried_[k];
-    return met / sum_ * warp::cone_density(opening);
+    return met / sum_ * warp::cone_pdf(opening);
   }
 
  private:

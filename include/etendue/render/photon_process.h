@@ -25,11 +25,11 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
   struct Request {
     std::uint64_t walks = 0;  ///< from luminaires; 0: one for each pixel
     std::uint64_t most = 0;   ///< photons; where there would be more, each is kept with a chance
-    WalkLimits limits = {};
+    SubpathLimits limits = {};
     PhotonKinds kinds = PhotonKinds::all;
-    const EmissionTargets* targets = nullptr;  ///< see PhotonWalks
+    const ProjectionMap* targets = nullptr;  ///< see PhotonWalks
     int fewest_vertices = 1, fewest_in_media = 1;
-    bool in_even_media = true;
+    bool in_homogeneous_media = true;
     double radius = 0;                    ///< of the first step [m]
     double shrinking = 1;                 ///< a: see photons.h
     const Heuristic* weighted = nullptr;  ///< how photons are weighted against connections; null: they are not
@@ -43,9 +43,9 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
     /// Calls `visit(photon, n pi r^2 or n 4/3 pi r^3)` for those within the radius of a vertex from which nothing parts them.
     template <class Visit>
     void near(const Scene& scene, const Vertex& v, const Visit& visit) const {
-      const auto density = float(v.in_medium() ? merging.medium : merging.surface);
+      const auto pdf = float(v.in_medium() ? merging.medium : merging.surface);
       map.within(v.point.position, radius(v), [&](const Photon& p) {
-        if (p.in_medium == v.in_medium() && !parted(scene, v, p, radius(v))) visit(p, density);
+        if (p.in_medium == v.in_medium() && !photon_occluded(scene, v, p, radius(v))) visit(p, pdf);
       });
     }
     /// Calls `visit(photon, t, n pi r^2)` for those in media within the radius of a ray's first `reach` [m] from which nothing
@@ -54,7 +54,7 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
     void along(const Scene& scene, const Ray& ray, float reach, const Visit& visit) const {
       map.tree().along(ray.origin, ray.direction, reach, surface_radius, [&](std::uint32_t i, float t) {
         const Photon& p = map[i];
-        if (p.in_medium && !parted(scene, ray(t), {}, ray.time, p.position, {}, surface_radius))
+        if (p.in_medium && !photon_occluded(scene, ray(t), {}, ray.time, p.position, {}, surface_radius))
           visit(p, t, float(merging.surface));
       });
     }
@@ -69,7 +69,7 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
     void along(const Scene& scene, const Medium& medium, const Ray& ray, float reach, NumberStream& numbers,
                const Visit& visit) const {
       map.along(ray, reach, numbers, [&](const PhotonBeam& b, float s, float t, float width) {
-        if (b.volume == medium.volume && !parted(scene, ray(t), {}, ray.time, b.origin + s * b.direction, {}, radius))
+        if (b.volume == medium.volume && !photon_occluded(scene, ray(t), {}, ray.time, b.origin + s * b.direction, {}, radius))
           visit(b, s, t, float(walks * double(width)));
       });
     }

@@ -32,7 +32,7 @@ struct ShownLobes {
   static constexpr int rows = 32, columns = 64;
   /// [1/sr], the mean over each cell: rows by equal steps of z from 1 to -1, columns by equal steps of the angle from x
   /// towards y; so all cells have the same solid angle.
-  std::vector<float> density;
+  std::vector<float> pdf;
   float share = 0;  ///< the probability with which the guide is asked, and not the surface; 0: nothing is learned yet
   /// The direction of the middle of a cell, or of another point of it, both coordinates in [0, 1].
   static Vector3 direction(int row, int column, float down = 0.5f, float along = 0.5f);

@@ -23,7 +23,7 @@
 namespace etendue {
 
 struct VirtualLight {
-  KeptVertex at;
+  SubpathVertex at;
   int vertices = 0;                        ///< of its walk up to it, the luminaire's and its own included
   const SceneObject* luminaire = nullptr;  ///< that its walk began at
 };
@@ -72,7 +72,7 @@ class VirtualLightProcess : public PhotonProcess {
   /// What a light brings to the last vertex of a walk: w f_z G V f_y alpha_y.
   template <class Walk>
   Spectrum light_from(const VirtualLight& y, const Walk& walk, NumberStream& numbers) const {
-    KeptVertex z;
+    SubpathVertex z;
     static_cast<Vertex&>(z) = walk.vertex;
     z.throughput = Spectrum(1.0f);
     z.single = walk.sample.wavelengths.single();
@@ -89,7 +89,7 @@ class VirtualLightProcess : public PhotonProcess {
     const Roulette roulette{settings_.roulette_depth};
     CameraWalk<false> walk(context.scene, sample, ray, settings_.max_depth);
     const auto met = [&](const SurfacePoint& luminaire) {
-      return walk.weight_of_met(luminaires, settings_.heuristic, luminaire);
+      return walk.emitter_hit_weight(luminaires, settings_.heuristic, luminaire);
     };
     while (walk.next_vertex(met) && !walk.at_end()) {
       const Vertex& v = walk.vertex;
@@ -98,15 +98,15 @@ class VirtualLightProcess : public PhotonProcess {
       const bool smooth = v.scatters_smoothly(), gathered = !walk.specular;  // at the vertex before
       // What virtual lights here bring to that is there already. Without compensation that is all there is, but for luminaires
       // that the walk meets, which may lie behind panes.
-      if (smooth && gathered && !v.moved)
+      if (smooth && gathered && !v.subsurface_exit)
         walk.throughput *= settings_.compensate ? 1 - part(v.point.position, v.normal(), walk.from, walk.from_normal) : 0;
       if (smooth && !walk.throughput.black()) {
         walk.add_direct(luminaires, u, settings_.heuristic);
         gather(walk);
       }
       const auto next = walk.sample_direction(u.lobe_choice, u.direction);
-      if (next && (next->specular() || enters_body_of(v, *next))) walk.throughput = whole;
-      if (next && !settings_.compensate && gathered && next->lobe != pass_through) walk.throughput = {};
+      if (next && (next->specular() || enters_subsurface_of(v, *next))) walk.throughput = whole;
+      if (next && !settings_.compensate && gathered && next->lobe != null_scattering) walk.throughput = {};
       if (next && !walk.throughput.black() && walk.go_on(*next) && roulette.survives(walk)) continue;
       walk.end();
     }
@@ -114,8 +114,8 @@ class VirtualLightProcess : public PhotonProcess {
   }
 
  private:
-  static bool enters_body_of(const Vertex& v, const ScatterSample& next) {
-    return v.on_surface() && !v.moved && enters_body(v.point, next);
+  static bool enters_subsurface_of(const Vertex& v, const ScatterSample& next) {
+    return v.on_surface() && !v.subsurface_exit && enters_subsurface(v.point, next);
   }
 
   VirtualLightSettings settings_;
@@ -125,7 +125,7 @@ class VirtualLightProcess : public PhotonProcess {
 template <auto max_depth, auto roulette_depth, auto heuristic, auto nearest, auto compensate, class R>
 void describe_virtual_lights(Description<R>& d) {
   d.group("Paths");
-  describe_max_depth<max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+  describe_max_depth<max_depth>(d, stored_subpath_depth, range(1, longest_stored_subpath));
   describe_roulette_depth<roulette_depth>(d);
   describe_heuristic<heuristic>(d);
   d.group("Virtual lights")

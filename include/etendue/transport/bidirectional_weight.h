@@ -17,8 +17,8 @@
 // A strategy that would connect at a vertex whose scattering is specular, or meet a luminaire without extent, cannot
 // happen and is left out, as is meeting the lens.
 
-#include "etendue/transport/kept_walk.h"
 #include "etendue/transport/multiple_importance.h"
+#include "etendue/transport/subpath.h"
 
 namespace etendue {
 
@@ -38,17 +38,17 @@ struct StrategyWeights {
 /// A path: `light[0 … s-1]` from the luminaire, `camera[0 … t-1]` from the lens, and what the connection changes. The vertices
 /// hold the densities of their own walks; those next to the connection are seen from the other side with these.
 struct ConnectedPath {
-  const KeptVertex* light = nullptr;
+  const SubpathVertex* light = nullptr;
   int s = 0;
-  const KeptVertex* camera = nullptr;
+  const SubpathVertex* camera = nullptr;
   int t = 0;
   float light_last_from_camera = 0;    ///< E of light[s-1]
   float light_before_from_camera = 0;  ///< E of light[s-2]
   float camera_last_from_light = 0;    ///< L of camera[t-1]
   float camera_before_from_light = 0;  ///< L of camera[t-2]
-  float direct = 0;                    ///< D_0
-  float begun = 0;                     ///< L_0
-  bool luminaire_can_be_met = true;
+  float pdf_next_event = 0;            ///< D_0
+  float pdf_emission_origin = 0;       ///< L_0
+  bool emitter_can_be_hit = true;
   Merging merging = {};
 };
 
@@ -57,7 +57,7 @@ float bidirectional_weight(const ConnectedPath&, Heuristic);
 
 /// What weights need of the light walk that brought a photon, so that the walk need not be kept. x_s is the photon.
 struct PhotonWeight {
-  float forward = 0;     ///< L_s
+  float pdf_forward = 0;  ///< L_s
   float connecting = 0;  ///< (p_s / prod L E)^beta: of connecting to the photon's vertex before; (D_0 / L_0)^beta where that is
                          ///< the first, else 1; 0 where it cannot be
   double others = 0;  ///< of strategies with fewer vertices from the luminaire, over the power beta of the density [1/sr] with
@@ -65,7 +65,7 @@ struct PhotonWeight {
 };
 /// `path.light[0 … s-1]` are the vertices the photon came by, without itself; of the camera's part nothing is looked at, and
 /// light_last_from_camera is per unit of the density [1/sr] of that direction. `forward` is the photon's own L.
-PhotonWeight photon_weight(const ConnectedPath& path, float forward, Heuristic);
+PhotonWeight photon_weight(const ConnectedPath& path, float pdf_forward, Heuristic);
 /// Of merging a photon with camera[t-1]. Of the path's light part `merging` alone is looked at; `back` is the density [1/sr] of
 /// the walk from camera[t-1] to the vertex that the photon came from.
 float merging_weight(const ConnectedPath& path, const PhotonWeight&, float back, Heuristic);

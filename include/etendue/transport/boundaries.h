@@ -42,6 +42,6 @@ void coincident_hits(const Scene&, const Ray&, const Hit&, const SurfacePoint&, 
 /// After a path has come to a surface, decides which one it has come to where several lie in the same place, and lets `media`
 /// know of the others. One that lets nothing through comes first (a glass stands on the table, with no air between), then
 /// that of the highest priority, as everywhere.
-void settle_coincident(const Scene&, const Ray&, Hit&, SurfacePoint&, MediumStack& media);
+void resolve_coincident(const Scene&, const Ray&, Hit&, SurfacePoint&, MediumStack& media);
 
 }  // namespace etendue

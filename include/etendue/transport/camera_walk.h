@@ -23,8 +23,8 @@
 #include <limits>
 
 #include "etendue/transport/direct_light.h"
-#include "etendue/transport/division.h"
 #include "etendue/transport/light_groups.h"
+#include "etendue/transport/splitting.h"
 #include "etendue/transport/visibility.h"
 #include "etendue/transport/walk.h"
 
@@ -39,8 +39,8 @@ class CameraWalk : public Walk<clear> {
 
   CameraWalk(const Scene& scene_, SampleContext& sample_, const Ray& ray_, int longest_)
       : Base(scene_, sample_, ray_, longest_), memory_(sample_.arena.mark()), one_luminaire_(scene_.luminaires().size() == 1) {
-    this->gathers = true;
-    this->watched = sample.observe.features || sample.observe.record;
+    this->collects_light = true;
+    this->observed = sample.observe.features || sample.observe.record;
     if (!clear && scene.has_interiors()) media_at(scene, ray.origin, ray.time, this->media);
   }
 
@@ -52,11 +52,11 @@ class CameraWalk : public Walk<clear> {
   /// ended, and all that was added has arrived (light of one vertex is settled on the way to the next).
   template <class Weight>
   [[gnu::always_inline]] bool next_vertex(const Weight& weight) {
-    if (!goes_on_ || moved_) {
+    if (!goes_on_ || exits_subsurface_) {
       settle(awaits_ && !(clear && scene.any(direct_.shadow)));
       earlier = radiance;
-      if (!moved_) return false;
-      moved_ = goes_on_ = false;  // it came to the vertex through a body
+      if (!exits_subsurface_) return false;
+      exits_subsurface_ = goes_on_ = false;  // it came to the vertex through a body
       sample.observe.surface(vertex.point, placed(throughput));
       return true;
     }
@@ -73,7 +73,7 @@ class CameraWalk : public Walk<clear> {
       sample.observe.surface(vertex.point, placed(throughput));
       if (length == 1)
         sample.observe.first_surface(scene, vertex.point, this->hit, vertex.scatter, vertex.out, sample.wavelengths,
-                                     this->crossed);
+                                     this->null_crossed_distance);
       if (vertex.point.object->luminaire()) add_luminaire(weight);
     } else {
       for (const SceneObject* far : scene.infinite_luminaires(ray)) {
@@ -99,15 +99,15 @@ class CameraWalk : public Walk<clear> {
   template <class Scattering>
   [[gnu::always_inline]] void add_direct(const LightSampler& lights, const NumberStream::Bounce& u, Heuristic heuristic,
                                          const Scattering& scattering) {
-    if (!vertex.scatters_smoothly() || !propose_direct_light(scene, lights, vertex, ray.time, sample.wavelengths,
-                                                             u.light_choice, u.light_point, heuristic, direct_, scattering))
+    if (!vertex.scatters_smoothly() || !sample_next_event(scene, lights, vertex, ray.time, sample.wavelengths, u.light_choice,
+                                                          u.light_point, heuristic, direct_, scattering))
       return;
     direct_.light *= throughput;
     if constexpr (!clear) {
       MediumStack scratch;
       NumberStream way = numbers.fork("shadow", std::uint32_t(length));
-      direct_.light *= visible_fraction(scene, direct_.shadow, media_towards(vertex, direct_.shadow.direction, scratch),
-                                        sample.wavelengths, way, sample.arena);
+      direct_.light *= shadow_transmittance(scene, direct_.shadow, media_towards(vertex, direct_.shadow.direction, scratch),
+                                            sample.wavelengths, way, sample.arena);
       if (direct_.light.black()) return;
     }
     direct_.light = placed(direct_.light);
@@ -122,11 +122,11 @@ class CameraWalk : public Walk<clear> {
 
   /// The weight of a luminaire that the walk meets, which `add_direct` could have sampled at the vertex before; behind a mirror
   /// it could not.
-  [[gnu::always_inline]] float weight_of_met(const LightSampler& lights, Heuristic heuristic,
-                                             const SurfacePoint& luminaire) const {
+  [[gnu::always_inline]] float emitter_hit_weight(const LightSampler& lights, Heuristic heuristic,
+                                                  const SurfacePoint& luminaire) const {
     if (this->specular) return 1;
-    return heuristic_weight(heuristic, this->direction_density,
-                            direct_light_density(lights, this->from, this->from_normal, ray.direction, luminaire));
+    return heuristic_weight(heuristic, this->direction_pdf,
+                            next_event_pdf(lights, this->from, this->from_normal, ray.direction, luminaire));
   }
 
   /// Goes on from the last vertex; false: it is absorbed there.
@@ -137,12 +137,12 @@ class CameraWalk : public Walk<clear> {
   /// The same in a direction that was chosen already: by `sample_direction`, or by somebody else (scattered_towards).
   [[gnu::always_inline]] bool go_on(const ScatterSample& next) {
     sample.observe.scattered(next);
-    if (!clear && next.lobe == pass_through) {
+    if (!clear && next.lobe == null_scattering) {
       this->pass_on(next);
       return goes_on_ = true;
     }
-    if (vertex.on_surface() && !vertex.moved && enters_body(vertex.point, next))
-      return moved_ = goes_on_ = this->leave_body(next);
+    if (vertex.on_surface() && !vertex.subsurface_exit && enters_subsurface(vertex.point, next))
+      return exits_subsurface_ = goes_on_ = this->subsurface_exit_found(next);
     if (whole_ > 0) [[unlikely]]
       come_together(next);
     this->leave(next);
@@ -164,33 +164,33 @@ class CameraWalk : public Walk<clear> {
   int lane() const { return lane_; }
 
   /// Whether the walk is to be divided at its last vertex.
-  [[gnu::always_inline]] bool divides(const Division& division) const {
-    if (!vertex.on_surface() || !vertex.scatter || vertex.moved) return false;
+  [[gnu::always_inline]] bool splits(const Splitting& splitting) const {
+    if (!vertex.on_surface() || !vertex.scatter || vertex.subsurface_exit) return false;
     const Lobes ways = ways_on();
-    if (ways == no_lobes || (ways & ~both_ways)) return false;
-    return (vertex.scatter->dispersed() && division.wavelengths > 1) || bends_both_ways(division);
+    if (ways == no_lobes || (ways & ~reflect_and_refract)) return false;
+    return (vertex.scatter->dispersed() && splitting.wavelengths > 1) || splits_reflection_and_refraction(splitting);
   }
 
   /// Goes on from such a vertex. Light that is refracted is followed by branches where it is one part of several:
   /// `follow(branch)` returns what a walk gathers. Reflected light is the walk's own way.
   template <class Follow>
-  void divide(const Division& division, const NumberStream::Bounce& u, const Follow& follow) {
+  void split(const Splitting& splitting, const NumberStream::Bounce& u, const Follow& follow) {
     const Scatter& scatter = *vertex.scatter;
     Lobes ways = ways_on();
     float choice = u.lobe_choice;
     NumberStream refracted = numbers;
-    if (bends_both_ways(division)) {
+    if (splits_reflection_and_refraction(splitting)) {
       ++bends_;
-      if (!(whole_ > 0)) whole_ = this->mean_left();
+      if (!(whole_ > 0)) whole_ = this->mean_roulette_weight();
       refracted = numbers.fork("refracted", std::uint32_t(length));
-    } else if (ways == both_ways) {
+    } else if (ways == reflect_and_refract) {
       ways = choose_way(scatter, choice);
     }
     const auto sampled = [&](Lobe lobe) {
       return ways & lobe ? scatter.sample(vertex.out, choice, u.direction, Transport::radiance, lobe) : std::nullopt;
     };
     std::optional<ScatterSample> own = sampled(specular_reflection);
-    if (const int n = ways & scatter.dispersed() ? division.wavelengths : 1; n > 1)
+    if (const int n = ways & scatter.dispersed() ? splitting.wavelengths : 1; n > 1)
       for (int i = 0; i < n; ++i) follow_wavelength(i * spectrum_size / n, n, choice, u.direction, refracted, follow);
     else if (own)
       follow_refracted(sampled(specular_transmission), refracted, follow);
@@ -203,10 +203,10 @@ class CameraWalk : public Walk<clear> {
   }
 
   /// Lets it end after all.
-  void end() { goes_on_ = moved_ = false; }
+  void end() { goes_on_ = exits_subsurface_ = false; }
 
  private:
-  static constexpr Lobes both_ways = specular_reflection | specular_transmission;
+  static constexpr Lobes reflect_and_refract = specular_reflection | specular_transmission;
 
   CameraWalk(const CameraWalk& walk, SampleContext& own)
       : Base(walk, own),
@@ -217,7 +217,9 @@ class CameraWalk : public Walk<clear> {
         one_luminaire_(walk.one_luminaire_) {}
 
   Lobes ways_on() const { return Lobes(vertex.scatter->lobes() & vertex.lobes); }
-  bool bends_both_ways(const Division& division) const { return bends_ < division.both_ways && ways_on() == both_ways; }
+  bool splits_reflection_and_refraction(const Splitting& splitting) const {
+    return bends_ < splitting.reflect_and_refract && ways_on() == reflect_and_refract;
+  }
 
   /// One of both ways, with the probability of what the walk's wavelengths together carry there: the hero may have nothing
   /// left, or be reflected as a whole where others are refracted. `choice` becomes what is left of it.
@@ -278,10 +280,10 @@ class CameraWalk : public Walk<clear> {
   /// of all direct light there (multiple importance sampling), has been taken.
   void come_together(const ScatterSample& next) {
     if (!this->specular) {
-      this->due = part_;
+      this->pending_survival = part_;
       whole_ = 0;
     } else if (!next.specular()) {
-      part_ = std::min(1.0f, this->mean_left() / whole_);
+      part_ = std::min(1.0f, this->mean_roulette_weight() / whole_);
     }
   }
 
@@ -310,7 +312,7 @@ class CameraWalk : public Walk<clear> {
 
   [[gnu::always_inline]] void add(int segments, const Spectrum& light, const SceneObject* luminaire) {
     radiance += light;
-    tell_light(sample.observe, segments, light, luminaire);
+    report_light(sample.observe, segments, light, luminaire);
   }
 
   template <class Weight>
@@ -320,7 +322,7 @@ class CameraWalk : public Walk<clear> {
     if (light.black()) return;
     const float w = weight(vertex.point);
     add(length, light * w, vertex.point.object);
-    sample.observe.met(light * w, length, w);
+    sample.observe.emitter_hit(light * w, length, w);
   }
 
   /// Adds the light that waited for its shadow ray. Whether it comes cannot be guessed, so nothing hangs on it.
@@ -328,10 +330,10 @@ class CameraWalk : public Walk<clear> {
     if (!awaits_) return;
     awaits_ = false;
     add(direct_length_, lit ? direct_.light : Spectrum(), direct_.luminaire);
-    if (lit) sample.observe.sampled(direct_.light, direct_length_, direct_.weight);
+    if (lit) sample.observe.next_event(direct_.light, direct_length_, direct_.weight);
   }
 
-  bool goes_on_ = true, moved_ = false, awaits_ = false;
+  bool goes_on_ = true, exits_subsurface_ = false, awaits_ = false;
   int direct_length_ = 0;
   int bends_ = 0;               ///< how often it was sent both ways; as often as can be: it met something else
   float whole_ = 0, part_ = 1;  ///< see come_together

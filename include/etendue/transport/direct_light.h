@@ -25,23 +25,23 @@ struct DirectLight {
 /// All but V is computed here; false: nothing can come, and `direct` is not to be looked at.
 // Inlined whatever its size: a twentieth of the time of simple scenes.
 template <class Scattering, class Leave>
-[[gnu::always_inline]] inline bool propose_light(const Scene& scene, const LightSampler& lights, const Point3& from,
-                                                 const Normal3& normal, float time, const Wavelengths& wavelengths,
-                                                 float choice, Point2 u, Heuristic heuristic, DirectLight& direct,
-                                                 const Scattering& scattering, const Leave& leave) {
+[[gnu::always_inline]] inline bool sample_next_event_from(const Scene& scene, const LightSampler& lights, const Point3& from,
+                                                          const Normal3& normal, float time, const Wavelengths& wavelengths,
+                                                          float choice, Point2 u, Heuristic heuristic, DirectLight& direct,
+                                                          const Scattering& scattering, const Leave& leave) {
   const LightChoice light = lights.choose(from, normal, choice);
   if (!light.luminaire) return false;
   SurfaceSample s = light.luminaire->sample_visible(from, u, time);
-  if (!(s.density > 0)) return false;
+  if (!(s.pdf > 0)) return false;
   const ScatterValue f = scattering(s.direction);
   if (f.value.black()) return false;
   const Spectrum emitted = light.luminaire->emission->radiance(s.point, -s.direction, wavelengths);
   if (emitted.black() || !scene.in_front(s.point, -s.direction)) return false;
   leave(s, direct.shadow);
-  const float density = light.probability * s.density;
-  const float weight = weight_over_density(heuristic, density, s.delta ? 0 : f.density);
+  const float pdf = light.probability * s.pdf;
+  const float weight = weight_over_pdf(heuristic, pdf, s.delta ? 0 : f.pdf);
   direct.light = f.value * emitted * weight;
-  direct.weight = weight * density;
+  direct.weight = weight * pdf;
   direct.luminaire = light.luminaire;
   return true;
 }
@@ -57,32 +57,31 @@ struct ScatteringOf {
 /// From a path's vertex. Light of a luminaire that scattering can meet as well is weighted against that: see
 /// CameraWalk::add_direct.
 template <class Scattering>
-[[gnu::always_inline]] inline bool propose_direct_light(const Scene& scene, const LightSampler& lights, const Vertex& vertex,
-                                                        float time, const Wavelengths& wavelengths, float choice, Point2 u,
-                                                        Heuristic heuristic, DirectLight& direct,
-                                                        const Scattering& scattering) {
-  return propose_light(scene, lights, vertex.point.position, vertex.normal(), time, wavelengths, choice, u, heuristic, direct,
-                       scattering, [&](const SurfaceSample& s, Ray& ray) __attribute__((always_inline)) {
-                         ray.time = time;
-                         if (vertex.in_medium()) {
-                           ray.origin = vertex.point.position;
-                           ray.direction = s.direction;
-                           ray.maximum = infinity;
-                           if (!s.infinite) SurfacePoint::end_at(s.point, ray);
-                         } else if (s.infinite) {
-                           vertex.point.leave(s.direction, ray);
-                         } else {
-                           vertex.point.towards(s.point, ray);
-                         }
-                       });
+[[gnu::always_inline]] inline bool sample_next_event(const Scene& scene, const LightSampler& lights, const Vertex& vertex,
+                                                     float time, const Wavelengths& wavelengths, float choice, Point2 u,
+                                                     Heuristic heuristic, DirectLight& direct, const Scattering& scattering) {
+  return sample_next_event_from(scene, lights, vertex.point.position, vertex.normal(), time, wavelengths, choice, u, heuristic,
+                                direct, scattering, [&](const SurfaceSample& s, Ray& ray) __attribute__((always_inline)) {
+                                  ray.time = time;
+                                  if (vertex.in_medium()) {
+                                    ray.origin = vertex.point.position;
+                                    ray.direction = s.direction;
+                                    ray.maximum = infinity;
+                                    if (!s.infinite) SurfacePoint::end_at(s.point, ray);
+                                  } else if (s.infinite) {
+                                    vertex.point.leave(s.direction, ray);
+                                  } else {
+                                    vertex.point.towards(s.point, ray);
+                                  }
+                                });
 }
 
 /// The solid-angle density [1/sr] with which the above would have given a point of a luminaire, seen from `from`.
-inline float direct_light_density(const LightSampler& lights, const Point3& from, const Normal3& normal,
-                                  const Vector3& direction, const SurfacePoint& on_luminaire) {
+inline float next_event_pdf(const LightSampler& lights, const Point3& from, const Normal3& normal, const Vector3& direction,
+                            const SurfacePoint& on_luminaire) {
   const SceneObject& luminaire = *on_luminaire.object;
   const float probability = lights.probability(from, normal, luminaire);
-  return probability > 0 ? probability * luminaire.visible_density(from, direction, on_luminaire) : 0;
+  return probability > 0 ? probability * luminaire.visible_pdf(from, direction, on_luminaire) : 0;
 }
 
 }  // namespace etendue

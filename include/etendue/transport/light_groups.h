@@ -3,7 +3,7 @@
 // with each group made brighter, darker or of another colour is the sum of the groups, each multiplied: a scene is lit anew
 // without rendering it again.
 //
-// Which luminaire a part of the light comes from is known where paths meet, sample, or begin at one: there `tell_light` is
+// Which luminaire a part of the light comes from is known where paths meet, sample, or begin at one: there `report_light` is
 // called, and `splat_light` for what is brought elsewhere on the film. What is collected is of the sample at hand on the same
 // thread (LightParts), so that nothing has to carry it along paths. It costs the test that path lengths cost already when
 // nobody wants groups.
@@ -38,7 +38,7 @@ class LightGroups {
 };
 
 /// The light of a sample in the parts that a film keeps: by path length and by group. As long as it lives it collects what
-/// `tell_light` is told on its thread; of several the one made last.
+/// `report_light` is told on its thread; of several the one made last.
 class LightParts {
  public:
   /// The groups must outlive it.
@@ -68,8 +68,8 @@ class LightParts {
 
 /// Light, a part of the sample's own value, that came by a path of so many segments from a luminaire (null: from none, such as
 /// that of a medium). In place of PathObserver::light, where that is known.
-[[gnu::always_inline]] inline void tell_light(PathObserver& observe, int length, const Spectrum& light,
-                                              const SceneObject* luminaire) {
+[[gnu::always_inline]] inline void report_light(PathObserver& observe, int length, const Spectrum& light,
+                                                const SceneObject* luminaire) {
   if (observe.lengths.empty()) [[likely]]
     return;
   observe.light(length, light);

@@ -26,12 +26,12 @@
 #include <vector>
 
 #include "etendue/core/arena.h"
-#include "etendue/transport/kept_walk.h"
 #include "etendue/transport/metropolis.h"
+#include "etendue/transport/subpath.h"
 
 namespace etendue {
 
-struct PathVertex : KeptVertex {
+struct PathVertex : SubpathVertex {
   double from_light = 0, from_camera = 0;  ///< L and E
   // Of a specular one:
   Lobe lobe = specular_reflection;  ///< by which light is sent on
@@ -108,7 +108,7 @@ class PathSpace {
   /// The density of x_l … x_{l+r-1}, when some number b of them, all alike likely, comes from a walk that goes on from x_{l-1},
   /// or begins at a luminaire if l = 0, when b > 0, and the others from one that goes on from x_{l+r}. Those two scatter
   /// smoothly.
-  static double density(const LightPath&, int l, int r);
+  static double pdf(const LightPath&, int l, int r);
   /// Such vertices between the last of y and the first of `rest`, and the rest. False: there are none, or f is 0.
   bool join(LightPath& y, const std::vector<PathVertex>& rest, int r, ChoiceNumbers&) const;
   /// A walk from a luminaire and one from the lens, both as long as they go, and the paths that they make in all ways, of

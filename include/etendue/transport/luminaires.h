@@ -29,9 +29,9 @@ struct EmittedLight {
 /// so about as many points fall in each pixel, up to the horizon. Of two points one lies within the disc then:
 ///     p(r) = 1 / (2 pi R^2) for r < R,   R / (4 pi r^3) for r > R   [1/m^2],   and 1 / (pi R^2) in scenes without such
 ///     surfaces.
-class LightFront {
+class EmissionPlane {
  public:
-  explicit LightFront(const Scene& scene)
+  explicit EmissionPlane(const Scene& scene)
       : centre_(scene.centre()), radius_(scene.radius()), endless_(scene.unbounded()), within_(1 / (pi * square(radius_))) {
     if (endless_) within_ /= 2;
   }
@@ -40,7 +40,7 @@ class LightFront {
   /// The distance from the axis through the scene's centre and the azimuth around it, as x and y [m].
   Point2 sample(Point2 u) const;
   /// [1/m^2] across the direction, of the light that passes a point. Its place along the direction does not matter.
-  float density(const Point3& p, const Vector3& direction) const {
+  float pdf(const Point3& p, const Vector3& direction) const {
     if (!endless_) return within_;
     const float r2 = length_squared(cross(p - centre_, direction));
     return r2 > square(radius_) ? radius_ / (4 * pi * r2 * std::sqrt(r2)) : within_;
@@ -57,12 +57,12 @@ class LightFront {
 /// Chooses a luminaire by power. False: there is none.
 bool choose_luminaire(const LightSampler&, float which, float time, EmittedLight&);
 /// Light of a sampled point at infinity that passes through a point of the scene. False: it never begins.
-bool begin_at_infinity(const Scene&, const Point3& through, const SurfaceSample&, const Wavelengths&, EmittedLight&);
+bool emit_from_infinity(const Scene&, const Point3& through, const SurfaceSample&, const Wavelengths&, EmittedLight&);
 /// Light of a sampled point that leaves in a direction.
-void begin_at_point(const Scene&, const SurfaceSample&, const Vector3& direction, const Wavelengths&, EmittedLight&);
+void emit_from_point(const Scene&, const SurfaceSample&, const Vector3& direction, const Wavelengths&, EmittedLight&);
 
 /// Chooses a luminaire by power, a point on it and a direction; for one at infinity a direction, and a place across it as
-/// LightFront has it. False: nothing leaves there.
+/// EmissionPlane has it. False: nothing leaves there.
 bool sample_emitted_light(const Scene&, const LightSampler&, const Wavelengths&, float time, NumberStream&, EmittedLight&);
 
 }  // namespace etendue

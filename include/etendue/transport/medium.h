@@ -45,8 +45,8 @@ class Medium {
   float phase(const Point3& p, float time, const Vector3& out, const Vector3& in) const {
     return volume->phase(counted(p, time), out, in);
   }
-  Vector3 sample_phase(const Point3& p, float time, const Vector3& out, Point2 u, float& density) const {
-    return volume->sample_phase(counted(p, time), out, u, density);
+  Vector3 sample_phase(const Point3& p, float time, const Vector3& out, Point2 u, float& pdf) const {
+    return volume->sample_phase(counted(p, time), out, u, pdf);
   }
 
  private:
@@ -70,7 +70,7 @@ Spectrum transmittance(const Medium&, const Ray&, float distance, const Waveleng
 
 /// A fixed value near that fraction, the same from both ends: for weights that compare strategies, which must not depend on
 /// which of them made a path. Exact in homogeneous media.
-Spectrum likely_transmittance(const Medium&, const Ray&, float distance, const Wavelengths&);
+Spectrum weighting_transmittance(const Medium&, const Ray&, float distance, const Wavelengths&);
 
 /// How a walk gets through a medium.
 struct FreeFlight {

@@ -9,8 +9,8 @@ namespace etendue {
 
 /// Whether light gets through a surface that stands for a sheet: a thin pane, thin paper.
 inline bool is_sheet(const Shader& shader) {
-  constexpr Lobes through_a_sheet = pass_through | diffuse_transmission;
-  return !shader.transmits() && !shader.moves_exit() && (shader.possible_lobes() & through_a_sheet);
+  constexpr Lobes through_a_sheet = null_scattering | diffuse_transmission;
+  return !shader.transmits() && !shader.has_subsurface_exit() && (shader.possible_lobes() & through_a_sheet);
 }
 
 /// Whether paths that go through the surface of an object enter or leave its inside: it has one, and its shader lets light in.
@@ -24,7 +24,7 @@ inline bool enterable(const SceneObject& object) {
 /// Whether the index of what is inside differs from that around: light that only goes straight on, or through a sheet, does
 /// not change its way, so what it comes to has the index of what it left.
 inline bool has_own_index(const SceneObject& object) {
-  constexpr Lobes turned = transmission_lobes & ~pass_through;
+  constexpr Lobes turned = transmission_lobes & ~null_scattering;
   return object.shader && object.shader->transmits() && (object.shader->possible_lobes() & turned);
 }
 

@@ -20,7 +20,7 @@ inline float heuristic_weight(Heuristic heuristic, float p, float q) {
 
 /// heuristic_weight(p, q) / p: what a sample of the strategy with density p is multiplied by. One division, in double so
 /// that squares of large densities stay finite.
-inline float weight_over_density(Heuristic heuristic, float p, float q) {
+inline float weight_over_pdf(Heuristic heuristic, float p, float q) {
   const double a = p, b = q;
   return float(heuristic == Heuristic::balance ? 1 / (a + b) : a / (a * a + b * b));
 }

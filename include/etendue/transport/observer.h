@@ -44,14 +44,14 @@ class PathObserver {
       scattered_slowly(sample);
   }
   /// Light of a luminaire met by a path of `length` segments, with its weight against having been sampled.
-  void met(const Spectrum& value, int length, float weight) {
+  void emitter_hit(const Spectrum& value, int length, float weight) {
     if (record && !value.black()) [[unlikely]]
-      met_slowly(value, length, weight);
+      emitter_hit_slowly(value, length, weight);
   }
   /// Light of a luminaire sampled from the path's last vertex, with its weight against being met.
-  void sampled(const Spectrum& value, int length, float weight) {
+  void next_event(const Spectrum& value, int length, float weight) {
     if (record) [[unlikely]]
-      sampled_slowly(value, length, weight);
+      next_event_slowly(value, length, weight);
   }
 
   /// The first surface of a camera path, of which features are wanted once. `scatter` may be null: black. `before`: the
@@ -67,8 +67,8 @@ class PathObserver {
   void medium_slowly(const Point3&, const Spectrum& throughput);
   void escape_slowly(const SceneObject&, const Ray&, const Spectrum& throughput);
   void scattered_slowly(const ScatterSample&);
-  void met_slowly(const Spectrum&, int length, float weight);
-  void sampled_slowly(const Spectrum&, int length, float weight);
+  void emitter_hit_slowly(const Spectrum&, int length, float weight);
+  void next_event_slowly(const Spectrum&, int length, float weight);
   void first_surface_slowly(const Scene&, const SurfacePoint&, const Hit&, const Scatter*, const Vector3& out,
                             const Wavelengths&, float before);
 };

@@ -24,7 +24,7 @@ enum PathClass : std::uint32_t {
   delta_caustics_in_mirrors = 1u << 9,  ///< those, seen in mirrors and through glass
   scattering_media = 1u << 10,          ///< absorption and scattering in media
   emitting_media = 1u << 11,            ///< light that media send out
-  uneven_media = 1u << 12,              ///< media that differ from place to place
+  heterogeneous_media = 1u << 12,       ///< media that differ from place to place
   subsurface_light = 1u << 13,          ///< light that leaves a body where it did not enter
   light_through_surfaces = 1u << 14,    ///< light that surfaces let pass straight on
 };

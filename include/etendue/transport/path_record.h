@@ -16,7 +16,7 @@ struct PathRecord {
     DoublePoint3 position;  ///< while it is filled as the renderer counts, then in the coordinates of the world
     Normal3 normal;
     std::string lobe;     ///< what was sampled there; empty: the path ended
-    float density = 0;    ///< [1/sr] of the sampled direction (a probability for specular lobes)
+    float pdf = 0;        ///< [1/sr] of the sampled direction (a probability for specular lobes)
     Spectrum throughput;  ///< of the path up to here, before scattering
     Spectrum emitted;     ///< weighted contribution of light emitted here towards the path
     Spectrum direct;      ///< weighted contribution of light sampled from here

@@ -14,8 +14,8 @@
 // Photons and what they light must be of one colour and one moment: all paths of a step share their wavelengths and their time.
 
 #include "etendue/transport/bidirectional_weight.h"
-#include "etendue/transport/emission_targets.h"
 #include "etendue/transport/point_tree.h"
+#include "etendue/transport/projection_map.h"
 
 namespace etendue {
 
@@ -61,13 +61,13 @@ inline Vector3 on_side(const Vector3& normal, const Vector3& direction) {
 /// Whether something stands between two near places, so that light of the one does not come to the other: a wall on a floor
 /// that two rooms share. Looked at from a tenth of `radius`, their distance at most, above both surfaces on the side of the
 /// normals, so that their own shape hides little; the smaller the radius, the less. In media normals are zero.
-bool parted(const Scene&, const Point3& a, const Vector3& normal_a, float time, const Point3& b, const Vector3& normal_b,
-            float radius);
+bool photon_occluded(const Scene&, const Point3& a, const Vector3& normal_a, float time, const Point3& b,
+                     const Vector3& normal_b, float radius);
 /// The same of a photon within `radius` of a vertex.
-inline bool parted(const Scene& scene, const Vertex& v, const Photon& p, float radius) {
-  if (p.in_medium) return parted(scene, v.point.position, {}, v.point.time, p.position, {}, radius);
-  return parted(scene, v.point.position, on_side(Vector3(v.point.normal), p.out), v.point.time, p.position,
-                on_side(p.surface_normal(), p.out), radius);
+inline bool photon_occluded(const Scene& scene, const Vertex& v, const Photon& p, float radius) {
+  if (p.in_medium) return photon_occluded(scene, v.point.position, {}, v.point.time, p.position, {}, radius);
+  return photon_occluded(scene, v.point.position, on_side(Vector3(v.point.normal), p.out), v.point.time, p.position,
+                         on_side(p.surface_normal(), p.out), radius);
 }
 
 /// Photons that can be asked for by their places.
@@ -105,12 +105,12 @@ struct PhotonWalks {
   Wavelengths wavelengths;
   float time = 0;           ///< [s]
   std::uint64_t walks = 0;  ///< n
-  WalkLimits limits;
+  SubpathLimits limits;
   PhotonKinds kinds = PhotonKinds::all;
-  const EmissionTargets* targets = nullptr;  ///< light goes towards these alone
+  const ProjectionMap* targets = nullptr;    ///< light goes towards these alone
   int fewest_vertices = 1;                   ///< before a photon: 2 leaves out those straight from luminaires
   int fewest_in_media = 1;                   ///< the same in media
-  bool in_even_media = true;                 ///< whether they are kept in media that are the same everywhere
+  bool in_homogeneous_media = true;          ///< whether they are kept in media that are the same everywhere
   const StrategyWeights* against = nullptr;  ///< photons have weights against these other strategies; null: none
   double kept = 1;  ///< the chance of a photon to be kept; with fewer photons n counts that part of the walks
   const std::atomic<bool>* abort = nullptr;

@@ -21,7 +21,7 @@ inline MediumStack* media_around(const Scene& scene, const Ray& ray, MediumStack
 inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& hit, SurfacePoint& point) {
   for (int crossings = 0; scene.nearest(ray, hit); ++crossings) {
     scene.locate(ray, hit, point);
-    if (media) settle_coincident(scene, ray, hit, point, *media);
+    if (media) resolve_coincident(scene, ray, hit, point, *media);
     point.media = media;
     if (!media || !hidden_by_priority(*media, *point.object) || crossings == most_crossings) return true;
     cross_boundary(*media, *point.object, point.normal, ray.direction);
@@ -37,10 +37,10 @@ inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& 
 inline void go_on(const SurfacePoint& point, const ScatterSample& next, Ray& ray, MediumStack* media) {
   if (media && next.transmitted()) cross_boundary(*media, *point.object, point.normal, next.direction);
   // What goes straight on ends where the ray did (Camera::Reach).
-  ray.maximum = next.lobe == pass_through ? ray.maximum - distance(ray.origin, point.position) : infinity;
+  ray.maximum = next.lobe == null_scattering ? ray.maximum - distance(ray.origin, point.position) : infinity;
   ray.origin = point.exit(next.direction);
   ray.direction = next.direction;
-  ray.of_camera &= next.lobe == pass_through;
+  ray.of_camera &= next.lobe == null_scattering;
   ray.width = point.footprint;
 }
 
@@ -48,7 +48,7 @@ inline void go_on(const SurfacePoint& point, const ScatterSample& next, Ray& ray
 struct LuminaireSample {
   Vector3 direction;  ///< unit, to the luminaire
   Spectrum radiance;  ///< [W m^-2 sr^-1 nm^-1]
-  float density = 0;  ///< [1/sr], without the probability of choosing this luminaire
+  float pdf = 0;      ///< [1/sr], without the probability of choosing this luminaire
   bool delta = false;
   Ray shadow;
 };
@@ -57,7 +57,7 @@ struct LuminaireSample {
 inline bool sample_luminaire(const Scene& scene, const SceneObject& luminaire, const SurfacePoint& point,
                              const Wavelengths& wavelengths, Point2 u, LuminaireSample& light) {
   SurfaceSample s = luminaire.sample_visible(point.position, u, point.time);
-  if (!(s.density > 0)) return false;
+  if (!(s.pdf > 0)) return false;
   light.radiance = luminaire.emission->radiance(s.point, -s.direction, wavelengths);
   if (light.radiance.black() || !scene.in_front(s.point, -s.direction)) return false;
   if (s.infinite)
@@ -65,7 +65,7 @@ inline bool sample_luminaire(const Scene& scene, const SceneObject& luminaire, c
   else
     point.towards(s.point, light.shadow);
   light.direction = s.direction;
-  light.density = s.density;
+  light.pdf = s.pdf;
   light.delta = s.delta;
   return true;
 }
@@ -82,7 +82,7 @@ struct RayBranch {
 
   /// Notes a step on; false: it must end (see most_crossings).
   bool may_go_on(Lobe lobe) {
-    crossings = lobe == pass_through ? crossings + 1 : 0;
+    crossings = lobe == null_scattering ? crossings + 1 : 0;
     return crossings <= most_crossings;
   }
 
@@ -100,7 +100,7 @@ struct RayTree {
 
   void add(int length, const Spectrum& light, const SceneObject* luminaire) {
     radiance += light;
-    tell_light(sample.observe, length, light, luminaire);
+    report_light(sample.observe, length, light, luminaire);
   }
 };
 

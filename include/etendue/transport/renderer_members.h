@@ -30,14 +30,15 @@ Description<R>& describe_heuristic(Description<R>& d, Conditions... when) {
                                    choices("balance", "power"), when...);
 }
 
-/// `int`s: see Division.
-template <auto both_ways, auto wavelengths, class R>
-Description<R>& describe_division(Description<R>& d) {
+/// `int`s: see Splitting.
+template <auto reflect_and_refract, auto wavelengths, class R>
+Description<R>& describe_splitting(Description<R>& d) {
   return d
-      .template member<both_ways>("split_depth", "1",
-                                  "how often a path from the camera that has met nothing else is both reflected and refracted; "
-                                  "then one of the two is chosen",
-                                  range(0, 8))
+      .template member<reflect_and_refract>(
+          "split_depth", "1",
+          "how often a path from the camera that has met nothing else is both reflected and refracted; "
+          "then one of the two is chosen",
+          range(0, 8))
       .template member<wavelengths>(
           "split_wavelengths", "1",
           "how many of a path's wavelengths are followed, each by itself, where refraction disperses them; 1: the hero alone",
@@ -46,8 +47,8 @@ Description<R>& describe_division(Description<R>& d) {
 
 /// What max_depth says of renderers that keep a walk as a whole, and how long such walks may be [segments]. A vertex takes
 /// about a kilobyte with what lies around it and how it scatters, so a walk as long as this takes 100 MB for each thread.
-inline constexpr int longest_kept_walk = 100000;
-inline const char* const kept_walk_depth =
+inline constexpr int longest_stored_subpath = 100000;
+inline const char* const stored_subpath_depth =
     ". Walks are kept as a whole, which takes up to 1 kB for each segment and thread, hence the limit";
 
 }  // namespace etendue

@@ -15,17 +15,17 @@ struct Roulette {
   /// False: the walk ends. Takes a number only where there is a choice. `left`: what counts as left of the walk.
   template <class Walk>
   bool survives(Walk& walk) const {
-    return survives(walk, walk.left());
+    return survives(walk, walk.roulette_weight());
   }
   template <class Walk>
-  bool survives(Walk& walk, float left) const {
+  bool survives(Walk& walk, float roulette_weight) const {
     if (walk.length >= depth) {
-      const float survival = std::min(1.0f, left);
+      const float survival = std::min(1.0f, roulette_weight);
       if (walk.numbers.next() >= survival) return false;
       walk.throughput /= survival;
     }
-    if (walk.due < 1) [[unlikely]] {
-      const float part = std::exchange(walk.due, 1.0f);
+    if (walk.pending_survival < 1) [[unlikely]] {
+      const float part = std::exchange(walk.pending_survival, 1.0f);
       if (walk.numbers.next() >= part) return false;
       walk.throughput /= part;
     }

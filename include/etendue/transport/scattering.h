@@ -8,7 +8,7 @@
 namespace etendue {
 
 /// The lobes that make a vertex of a path; what passes straight on makes none.
-inline constexpr Lobes vertex_lobes = Lobes(all_lobes & ~pass_through);
+inline constexpr Lobes vertex_lobes = Lobes(all_lobes & ~null_scattering);
 
 /// How a shader scatters at a point. What its bind throws is told with its class; that costs nothing while nothing is thrown.
 inline const Scatter* bound(const Shader& shader, const SurfacePoint& p, const Wavelengths& w, Arena& arena) {
@@ -22,14 +22,14 @@ inline const Scatter* bound(const Shader& shader, const SurfacePoint& p, const W
 /// What the black side of a surface leaves of its scattering: light that goes straight on, through holes and thin panes.
 class StraightScatter final : public ScatterCombination {
  public:
-  StraightScatter(const SurfacePoint& p, const Scatter& whole) : ScatterCombination(p, pass_through), whole_(whole) {
+  StraightScatter(const SurfacePoint& p, const Scatter& whole) : ScatterCombination(p, null_scattering), whole_(whole) {
     has_choice_ = false;
   }
-  ScatterValue world_value_and_density(const Vector3&, const Vector3&, Transport, Lobes) const override { return {}; }
+  ScatterValue world_value_and_pdf(const Vector3&, const Vector3&, Transport, Lobes) const override { return {}; }
   std::optional<ScatterSample> world_sample(const Vector3& out, float, Point2, Transport transport, Lobes) const override {
-    return whole_.sample(out, 0, {}, transport, pass_through);  // asked alone the lobe is certain
+    return whole_.sample(out, 0, {}, transport, null_scattering);  // asked alone the lobe is certain
   }
-  Spectrum world_albedo(const Vector3& out, Lobes) const override { return whole_.albedo(out, pass_through); }
+  Spectrum world_albedo(const Vector3& out, Lobes) const override { return whole_.albedo(out, null_scattering); }
 
  private:
   const Scatter& whole_;
@@ -42,15 +42,15 @@ inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& ou
   if (!object.shader) return nullptr;
   const bool black = object.sides != Sides::both && (dot(point.normal, out) > 0) != (object.sides == Sides::front);
   if (!black) return bound(*object.shader, point, wavelengths, arena);
-  if (!(object.shader->possible_lobes() & pass_through)) return nullptr;
+  if (!(object.shader->possible_lobes() & null_scattering)) return nullptr;
   const Scatter* whole = bound(*object.shader, point, wavelengths, arena);
-  if (!whole || !whole->has(pass_through)) return nullptr;
-  return whole->lobes() == pass_through ? whole : arena.make<StraightScatter>(point, *whole);
+  if (!whole || !whole->has(null_scattering)) return nullptr;
+  return whole->lobes() == null_scattering ? whole : arena.make<StraightScatter>(point, *whole);
 }
 
 /// Whether a sampled direction leads into a body that light leaves elsewhere: who does not ask where loses the path.
-inline bool enters_body(const SurfacePoint& point, const ScatterSample& next) {
-  return next.transmitted() && next.lobe != pass_through && point.object->shader->moves_exit();
+inline bool enters_subsurface(const SurfacePoint& point, const ScatterSample& next) {
+  return next.transmitted() && next.lobe != null_scattering && point.object->shader->has_subsurface_exit();
 }
 
 }  // namespace etendue

@@ -24,10 +24,10 @@ struct SceneTraits {
   std::vector<std::string> seen_areas, seen_environments;  ///< of both, those that the camera sees
   std::vector<std::string> media;                          ///< objects with a scattering or absorbing volume
   std::vector<std::string> emissive_media;                 ///< objects with a volume that emits
-  std::vector<std::string> uneven_media;                   ///< objects with a volume that differs from place to place
-  std::vector<std::string> moved_exits;   ///< surfaces that light which enters leaves elsewhere (subsurface scattering)
-  std::vector<std::string> pass_through;  ///< surfaces that let light pass straight on
-  bool pinhole = true;                    ///< the camera's lens is a point (or its rays parallel): no path meets it
+  std::vector<std::string> heterogeneous_media;            ///< objects with a volume that differs from place to place
+  std::vector<std::string> subsurface_exits;  ///< surfaces that light which enters leaves elsewhere (subsurface scattering)
+  std::vector<std::string> null_scattering;   ///< surfaces that let light pass straight on
+  bool pinhole = true;                        ///< the camera's lens is a point (or its rays parallel): no path meets it
 
   bool delta_luminaires() const { return !points.empty() || !distant.empty(); }
 };

@@ -16,7 +16,7 @@ struct Vertex {
 
   Kind kind = Kind::surface;
   /// Of a surface: light left a body here that it entered elsewhere (Shader::sample_exit); no ray came here.
-  bool moved = false;
+  bool subsurface_exit = false;
   SurfacePoint point;                  ///< in a medium only the position and time mean something; of an escape nothing
   const Scatter* scatter = nullptr;    ///< of a surface; null: black
   Lobes lobes = vertex_lobes;          ///< those of a surface among which a walk chooses
@@ -39,25 +39,25 @@ inline ScatterValue scattering(const Vertex& v, const Vector3& out, const Vector
     const float phase = v.medium.phase(v.point.position, v.point.time, out, in);
     return {Spectrum(phase), phase};
   }
-  return v.scatter ? v.scatter->value_and_density(out, in, transport, v.lobes) : ScatterValue{};
+  return v.scatter ? v.scatter->value_and_pdf(out, in, transport, v.lobes) : ScatterValue{};
 }
 /// The same density alone.
-inline float scattering_density(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
+inline float scattering_pdf(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
   if (v.in_medium()) return v.medium.phase(v.point.position, v.point.time, out, in);
-  return v.scatter ? v.scatter->density(out, in, transport, v.lobes) : 0;
+  return v.scatter ? v.scatter->pdf(out, in, transport, v.lobes) : 0;
 }
 
 /// A direction that somebody else chose, with this density [1/sr], as a walk goes on in it (Walk::leave): a guide's, a map's.
 /// Smooth lobes alone scatter there, so a guide must leave some chance to `sample_direction`, which knows of the others.
 /// `density` is that of the whole mixture; what `sample_direction` gives is to be weighted by (its density / the mixture's) if
 /// smooth, and over its share if specular. Empty: nothing is scattered that way.
-inline std::optional<ScatterSample> scattered_towards(const Vertex& v, const Vector3& in, float density, Transport transport) {
+inline std::optional<ScatterSample> scattered_towards(const Vertex& v, const Vector3& in, float pdf, Transport transport) {
   const ScatterValue f = scattering(v, v.out, in, transport);
-  if (!(density > 0) || f.value.black()) return {};
+  if (!(pdf > 0) || f.value.black()) return {};
   ScatterSample s;
   s.direction = in;
-  s.weight = f.value / density;
-  s.density = density;
+  s.weight = f.value / pdf;
+  s.pdf = pdf;
   if (v.on_surface() && (dot(v.point.normal, in) > 0) != (dot(v.point.normal, v.out) > 0)) s.lobe = diffuse_transmission;
   return s;
 }

@@ -38,15 +38,15 @@ class Walk {
  public:
   /// `longest`: the segments after which it ends. `throughput`: T_0.
   Walk(const Scene& scene_, SampleContext& sample_, const Ray& ray_, int longest_, Transport transport_ = Transport::radiance,
-       const Spectrum& begun_ = Spectrum(1.0f))
+       const Spectrum& initial_throughput_ = Spectrum(1.0f))
       : scene(scene_),
         sample(sample_),
         numbers(sample_.numbers),
         ray(ray_),
-        throughput(begun_),
+        throughput(initial_throughput_),
         longest(longest_),
         transport(transport_),
-        begun(begun_),
+        initial_throughput(initial_throughput_),
         tracks_(!clear && scene_.has_interiors()),
         null_surfaces_(!clear && scene_.has_null_surfaces()) {}
   Walk(const Walk&) = delete;  // its vertex points to its media
@@ -61,27 +61,28 @@ class Walk {
   const int longest;
   const Transport transport;
 
-  Vertex vertex;                ///< the last. Its `media` are the walk's own, unless it `keeps`: theirs until `leave`
-  int length = 0;               ///< segments so far
-  float direction_density = 0;  ///< [1/sr] of the last segment's direction, as scattering chose it
-  bool specular = true;         ///< whether a specular lobe chose it, or nobody: it is the first
-  Point3 from;                  ///< the vertex before, for densities as seen from there
+  Vertex vertex;            ///< the last. Its `media` are the walk's own, unless it `keeps`: theirs until `leave`
+  int length = 0;           ///< segments so far
+  float direction_pdf = 0;  ///< [1/sr] of the last segment's direction, as scattering chose it
+  bool specular = true;     ///< whether a specular lobe chose it, or nobody: it is the first
+  Point3 from;              ///< the vertex before, for densities as seen from there
   Normal3 from_normal;
-  Spectrum edge;      ///< what surfaces on the last segment let through, and if it `keeps`, media, likely: for densities
-  float crossed = 0;  ///< distance to the last boundary passed straight on [m], of the last segment
-  Hit hit;            ///< of the last surface
+  Spectrum segment_transmittance;   ///< what surfaces on the last segment let through, and if it `keeps`, media, likely: for
+                                    ///< densities
+  float null_crossed_distance = 0;  ///< distance to the last boundary passed straight on [m], of the last segment
+  Hit hit;                          ///< of the last surface
 
   /// A branch that follows one wavelength: among how many of them the walk was divided. Each carries so much less.
   float branches = 1;
   /// Of a branch (CameraWalk::divide): the probability by which Roulette has yet to let it go on; 1: none.
-  float due = 1;
+  float pending_survival = 1;
 
   /// What is left of what it began with, without the change of radiance by refraction, which comes back, and by division.
-  float left() const {
+  float roulette_weight() const {
     if (transport == Transport::radiance) return throughput.maximum() * eta_squared_ * branches;
     float most = 0;
     for (int i = 0; i < spectrum_size; ++i)
-      if (begun[i] > 0) most = std::max(most, throughput[i] / begun[i]);
+      if (initial_throughput[i] > 0) most = std::max(most, throughput[i] / initial_throughput[i]);
     return most;
   }
 
@@ -90,8 +91,8 @@ class Walk {
   [[gnu::always_inline]] bool come_to_vertex(bool found, const Listener& listener) {
     if (!passing_) {
       ++length;
-      edge = Spectrum(1.0f);
-      crossed = 0;
+      segment_transmittance = Spectrum(1.0f);
+      null_crossed_distance = 0;
       crossings_ = 0;
     }
     passing_ = false;
@@ -100,7 +101,7 @@ class Walk {
         if (const Medium medium = medium_in(media)) {
           const float reach = found ? hit.distance : std::min(ray.maximum, within_object(medium, ray));
           listener.through(medium, reach);
-          if (only_weakened) {
+          if (attenuates_only) {
             throughput *= transmittance(medium, ray, reach, sample.wavelengths, numbers);
             if (throughput.black()) return false;
           } else {
@@ -108,7 +109,8 @@ class Walk {
             if (!flight.emitted.black()) listener.emitted(throughput * flight.emitted);
             throughput *= flight.weight;
             if (throughput.black()) return false;
-            if (keeps) edge *= likely_transmittance(medium, ray, flight.distance, sample.wavelengths);
+            if (stores_subpath)
+              segment_transmittance *= weighting_transmittance(medium, ray, flight.distance, sample.wavelengths);
             if (flight.scattered) return scattered_in(medium, ray(flight.distance));
           }
         }
@@ -118,24 +120,24 @@ class Walk {
         return true;
       }
       // What the last segment meets matters only if it shines.
-      if (clear && length >= longest && !watched && hit.depth == 0 && !hit.object->luminaire()) return false;
+      if (clear && length >= longest && !observed && hit.depth == 0 && !hit.object->luminaire()) return false;
       vertex.kind = Vertex::Kind::surface;
-      vertex.moved = false;
+      vertex.subsurface_exit = false;
       vertex.scatter = nullptr;
       scene.locate(ray, hit, vertex.point);
       if (tracks_) {
-        settle_coincident(scene, ray, hit, vertex.point, media);
+        resolve_coincident(scene, ray, hit, vertex.point, media);
         if (hidden_by_priority(media, *vertex.point.object)) {
           cross();
           continue;
         }
-        vertex.point.media = vertex.media = keeps ? sample.arena.make<MediumStack>(media) : &media;
+        vertex.point.media = vertex.media = stores_subpath ? sample.arena.make<MediumStack>(media) : &media;
       }
-      if (length < longest || watched || null_surfaces_)
+      if (length < longest || observed || null_surfaces_)
         vertex.scatter = scattering_at(vertex.point, vertex.out, sample.wavelengths, sample.arena);
       vertex.lobes = vertex_lobes;
-      if (!null_surfaces_ || !vertex.scatter || !vertex.scatter->has(pass_through)) return true;
-      if (gathers && length < longest && vertex.scatter->has(smooth_lobes)) {
+      if (!null_surfaces_ || !vertex.scatter || !vertex.scatter->has(null_scattering)) return true;
+      if (collects_light && length < longest && vertex.scatter->has(smooth_lobes)) {
         vertex.lobes = all_lobes;
         return true;
       }
@@ -152,7 +154,7 @@ class Walk {
   [[gnu::always_inline]] std::optional<ScatterSample> sample_direction(float choice, Point2 u) const {
     if (vertex.in_medium()) {
       ScatterSample s;
-      s.direction = vertex.medium.sample_phase(vertex.point.position, vertex.point.time, vertex.out, u, s.density);
+      s.direction = vertex.medium.sample_phase(vertex.point.position, vertex.point.time, vertex.out, u, s.pdf);
       s.weight = Spectrum(1.0f);
       return s;
     }
@@ -165,7 +167,7 @@ class Walk {
     throughput *= next.weight;
     if (next.dispersive) throughput *= sample.wavelengths.drop_secondary();
     eta_squared_ *= next.eta * next.eta;
-    direction_density = next.density;
+    direction_pdf = next.pdf;
     from = vertex.point.position;
     from_normal = vertex.normal();
     // Member by member: copying a ray just written stalls for its parts to reach memory.
@@ -187,7 +189,7 @@ class Walk {
   /// chosen.
   void pass_on(const ScatterSample& next) {
     throughput *= next.weight;
-    edge *= next.weight;
+    segment_transmittance *= next.weight;
     cross();
     passing_ = true;
     ++crossings_;
@@ -195,7 +197,7 @@ class Walk {
 
   /// Of light that goes into a body which scatters it: comes to where it leaves again. The way inside is one segment. False: it
   /// does not.
-  bool leave_body(const ScatterSample& next) {
+  bool subsurface_exit_found(const ScatterSample& next) {
     throughput *= next.weight;
     if (next.dispersive) throughput *= sample.wavelengths.drop_secondary();
     const std::optional<SubsurfaceExit> exit =
@@ -208,18 +210,18 @@ class Walk {
     if (tracks_) vertex.point.media = vertex.media;
     vertex.scatter = exit->scatter;
     vertex.out = Vector3(front ? vertex.point.normal : -vertex.point.normal);
-    vertex.moved = true;
+    vertex.subsurface_exit = true;
     return true;
   }
 
   /// Whether vertices are kept, with densities: what lies around them is then, too, and what media let through is asked for.
-  bool keeps = false;
+  bool stores_subpath = false;
   /// Whether light is gathered at vertices.
-  bool gathers = false;
+  bool collects_light = false;
   /// Whether media only weaken it, and it scatters at surfaces alone: someone gathers along the way what media scatter.
-  bool only_weakened = false;
+  bool attenuates_only = false;
   /// Whether someone wants to know of the last segment's end although it does not shine.
-  bool watched = false;
+  bool observed = false;
 
  protected:
   /// A branch that begins at the last vertex of another walk.
@@ -235,34 +237,34 @@ class Walk {
         vertex(w.vertex),
         length(w.length),
         branches(w.branches),
-        keeps(w.keeps),
-        gathers(w.gathers),
-        only_weakened(w.only_weakened),
-        watched(w.watched),
-        begun(w.begun),
+        stores_subpath(w.stores_subpath),
+        collects_light(w.collects_light),
+        attenuates_only(w.attenuates_only),
+        observed(w.observed),
+        initial_throughput(w.initial_throughput),
         eta_squared_(w.eta_squared_),
         tracks_(w.tracks_),
         null_surfaces_(w.null_surfaces_) {}
 
   /// `left` in the mean over wavelengths.
-  float mean_left() const { return throughput.average() * eta_squared_ * branches; }
+  float mean_roulette_weight() const { return throughput.average() * eta_squared_ * branches; }
 
  private:
   bool scattered_in(const Medium& medium, const Point3& at) {
     vertex.kind = Vertex::Kind::medium;
-    vertex.moved = false;
+    vertex.subsurface_exit = false;
     vertex.out = -ray.direction;
     vertex.medium = medium;
     vertex.scatter = nullptr;
     vertex.point.position = at;
     vertex.point.time = ray.time;
-    vertex.point.media = vertex.media = keeps ? sample.arena.make<MediumStack>(media) : &media;
+    vertex.point.media = vertex.media = stores_subpath ? sample.arena.make<MediumStack>(media) : &media;
     return true;
   }
 
   void cross() {
     if (tracks_) cross_boundary(media, *vertex.point.object, vertex.point.normal, ray.direction);
-    crossed += hit.distance;
+    null_crossed_distance += hit.distance;
     ray.maximum -= hit.distance;  // that of a camera may end (Camera::Reach)
     ray.origin = vertex.point.exit(ray.direction);
     ray.width = vertex.point.footprint;
@@ -271,8 +273,8 @@ class Walk {
   template <class Listener>
   bool passes(const Listener& listener) {
     const Scatter& scatter = *vertex.scatter;
-    const auto straight = scatter.sample(vertex.out, 0, {}, transport, pass_through);
-    const bool alone = scatter.lobes() == pass_through;
+    const auto straight = scatter.sample(vertex.out, 0, {}, transport, null_scattering);
+    const bool alone = scatter.lobes() == null_scattering;
     const Spectrum fraction = straight ? straight->weight : Spectrum();
     const float through = fraction.average();
     const float q = alone         ? 1
@@ -284,12 +286,12 @@ class Walk {
     }
     if (alone && vertex.point.object->luminaire()) listener.crossed_luminaire();
     throughput *= fraction / q;
-    edge *= fraction;
+    segment_transmittance *= fraction;
     cross();
     return true;
   }
 
-  const Spectrum begun;
+  const Spectrum initial_throughput;
   float eta_squared_ = 1;
   int crossings_ = 0;  // of the last segment
   bool passing_ = false;

@@ -61,7 +61,7 @@ class CameraTrial {
                  "a ray's film point is where it came from",
                  [&] { return where() + (back ? fmt::format(", back at ({}, {})", back->x, back->y) : ", not on the film"); });
     const float importance = camera_.importance(ray);
-    const CameraDensity d = camera_.density(ray);
+    const CameraPdf d = camera_.pdf(ray);
     trial.expect(importance > 0 && importance < infinity && d.position > 0 && d.position < infinity && d.direction > 0 &&
                      d.direction < infinity,
                  "a camera's own rays have importance and densities", [&] {
@@ -81,7 +81,7 @@ class CameraTrial {
     if (!s) return;  // from another point of the lens it may be off the film
     const auto where = [&] { return fmt::format("seen from ({}, {}, {})", seen.x, seen.y, seen.z); };
     trial.expect(std::abs(s->distance - distance(seen, s->lens)) < 1e-3f * s->distance &&
-                     length(normalize(s->lens - seen) - s->direction) < 1e-3f && s->density > 0 && s->density < infinity &&
+                     length(normalize(s->lens - seen) - s->direction) < 1e-3f && s->pdf > 0 && s->pdf < infinity &&
                      s->importance > 0 && s->importance < infinity && on_film(s->film),
                  "lens samples are whole", where);
     Ray back = ray;
@@ -126,7 +126,7 @@ class CameraTrial {
     ray.direction = trial.direction();
     const auto f = camera_.film_point(ray);
     const float importance = camera_.importance(ray);
-    const CameraDensity d = camera_.density(ray);
+    const CameraPdf d = camera_.pdf(ray);
     trial.expect((!f || on_film(*f)) && (f || (importance == 0 && d.direction == 0)),
                  "what misses the film has neither importance nor density", [&] {
                    return fmt::format("towards ({}, {}, {}): importance {}, density {}", ray.direction.x, ray.direction.y,
@@ -160,8 +160,7 @@ class CameraTrial {
       const float r = radius * std::sqrt(trial.uniform()), phi = 2 * pi * trial.uniform();
       const auto s =
           camera_.sample_lens(centre + frame.to_world({r * std::cos(phi), r * std::sin(phi), 0}), time_, trial.pair());
-      by_lens.add(s ? double(pi * radius * radius * std::max(0.0f, dot(frame.n, s->direction)) * s->importance / s->density)
-                    : 0);
+      by_lens.add(s ? double(pi * radius * radius * std::max(0.0f, dot(frame.n, s->direction)) * s->importance / s->pdf) : 0);
     }
     const double margin = Trial::significant_errors * std::hypot(by_rays.error(), by_lens.error()) + 1e-3 * by_rays.mean() +
                           10 / double(by_rays.count());

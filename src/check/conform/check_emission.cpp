@@ -66,14 +66,14 @@ class EmissionTrial {
       const SurfacePoint p = host_->sample_area(trial.pair(), 0).point;
       const Vector3 v = trial.direction();
       const Spectrum light = emission_.radiance(p, v, wavelengths_);
-      const float density = emission_.density(p, v);
+      const float pdf = emission_.pdf(p, v);
       const auto where = [&] {
         return fmt::format("on a {}, normal {}, direction {}: radiance {}, density {}", name_, text_of(Vector3(p.normal)),
-                           text_of(v), light[0], density);
+                           text_of(v), light[0], pdf);
       };
-      trial.expect(light.finite() && light.minimum() >= 0 && density >= 0 && density < infinity,
+      trial.expect(light.finite() && light.minimum() >= 0 && pdf >= 0 && pdf < infinity,
                    "radiance and densities are finite and not negative", where);
-      trial.expect(emission_.emits(p, v) || (light.black() && density == 0), "sides that do not emit are dark", where);
+      trial.expect(emission_.emits(p, v) || (light.black() && pdf == 0), "sides that do not emit are dark", where);
     }
   }
 
@@ -81,26 +81,25 @@ class EmissionTrial {
     const Frame frame(p.normal == Normal3{} ? Normal3{0, 0, 1} : p.normal);
     long lost = 0;
     double covered = 0;
-    const auto density_at = [&](const Vector3& v) { return Spectrum(emission_.density(p, v)); };
+    const auto pdf_at = [&](const Vector3& v) { return Spectrum(emission_.pdf(p, v)); };
     const auto draw = [&](int count) {
       std::vector<Vector3> list;
       lost = 0;
       covered = 0;
       for (int i = 0; i < count; ++i) {
         const DirectionSample s = emission_.sample(p, trial.pair());
-        trial.expect(s.density >= 0 && s.density < infinity && (s.density == 0 || std::abs(length(s.direction) - 1) < 1e-4f),
+        trial.expect(s.pdf >= 0 && s.pdf < infinity && (s.pdf == 0 || std::abs(length(s.direction) - 1) < 1e-4f),
                      "sampled directions are unit vectors",
-                     [&] { return fmt::format("{}, density {}", text_of(s.direction), s.density); });
-        if (!(s.density > 0)) {
+                     [&] { return fmt::format("{}, density {}", text_of(s.direction), s.pdf); });
+        if (!(s.pdf > 0)) {
           ++lost;
           continue;
         }
-        covered += 1 / double(s.density) / count;
-        trial.expect(agree(Spectrum(s.density), density_at(s.direction), 2e-3f, true,
-                           [&] { return rounding_of(density_at, s.direction); }),
+        covered += 1 / double(s.pdf) / count;
+        trial.expect(agree(Spectrum(s.pdf), pdf_at(s.direction), 2e-3f, true, [&] { return rounding_of(pdf_at, s.direction); }),
                      "a sample's density is that of its direction", [&] {
-                       return fmt::format("on a {} towards {}: {} and {}", name_, text_of(s.direction), s.density,
-                                          emission_.density(p, s.direction));
+                       return fmt::format("on a {} towards {}: {} and {}", name_, text_of(s.direction), s.pdf,
+                                          emission_.pdf(p, s.direction));
                      });
         list.push_back(frame.to_local(s.direction));
       }
@@ -110,13 +109,13 @@ class EmissionTrial {
     if (first.size() < 200) return;
     compare(
         "sampled directions follow the density", first, covered,
-        [&](const Vector3& local) { return double(emission_.density(p, frame.to_world(local))); },
+        [&](const Vector3& local) { return double(emission_.pdf(p, frame.to_world(local))); },
         [&](int count) { return std::pair(draw(count), lost); });
   }
 
   /// Samples that were lost (sent to a side that does not emit) are what the density lacks to 1.
   template <class F, class D>
-  void compare(const std::string& check, const std::vector<Vector3>& first, double covered, const F& density, const D& draw) {
+  void compare(const std::string& check, const std::vector<Vector3>& first, double covered, const F& pdf, const D& draw) {
     if (covered < narrowest) {
       trial.not_tried(check, fmt::format("all within {:.2g} sr, which floats do not resolve", covered));
       return;
@@ -136,7 +135,7 @@ class EmissionTrial {
     for (double tolerance = 1e-3; tolerance > 1e-5 && !(p_value > Trial::significance && integrates()); tolerance /= 10) {
       std::vector<double> expected;
       sum = 0;
-      for (const auto& [share] : cells.integrate<1>([&](const Vector3& v) -> std::array<double, 1> { return {density(v)}; },
+      for (const auto& [share] : cells.integrate<1>([&](const Vector3& v) -> std::array<double, 1> { return {pdf(v)}; },
                                                     tolerance, long(1e3 / tolerance))) {
         sum += share;
         expected.push_back(share * n);
@@ -155,7 +154,7 @@ class EmissionTrial {
   void check_incident() {
     const auto up = [](const Vector3& v) { return Vector3{v.z, v.x, v.y}; };
     const auto down = [](const Vector3& v) { return Vector3{v.y, v.z, v.x}; };
-    const auto density_at = [&](const Vector3& v) { return Spectrum(emission_.incident_density(v)); };
+    const auto pdf_at = [&](const Vector3& v) { return Spectrum(emission_.incident_pdf(v)); };
     double covered = 0;
     long lost = 0;
     const auto draw = [&](int count) {
@@ -164,19 +163,18 @@ class EmissionTrial {
       lost = 0;
       for (int i = 0; i < count; ++i) {
         const DirectionSample s = emission_.sample_incident(trial.pair());
-        trial.expect(s.density >= 0 && s.density < infinity && (s.density == 0 || std::abs(length(s.direction) - 1) < 1e-4f),
+        trial.expect(s.pdf >= 0 && s.pdf < infinity && (s.pdf == 0 || std::abs(length(s.direction) - 1) < 1e-4f),
                      "sampled incident directions are unit vectors",
-                     [&] { return fmt::format("{}, density {}", text_of(s.direction), s.density); });
-        if (!(s.density > 0)) {
+                     [&] { return fmt::format("{}, density {}", text_of(s.direction), s.pdf); });
+        if (!(s.pdf > 0)) {
           ++lost;
           continue;
         }
-        covered += 1 / double(s.density) / count;
-        trial.expect(agree(Spectrum(s.density), density_at(s.direction), 2e-3f, true,
-                           [&] { return rounding_of(density_at, s.direction); }),
+        covered += 1 / double(s.pdf) / count;
+        trial.expect(agree(Spectrum(s.pdf), pdf_at(s.direction), 2e-3f, true, [&] { return rounding_of(pdf_at, s.direction); }),
                      "an incident sample's density is that of its direction", [&] {
-                       return fmt::format("from {}: {} and {}", text_of(s.direction), s.density,
-                                          emission_.incident_density(s.direction));
+                       return fmt::format("from {}: {} and {}", text_of(s.direction), s.pdf,
+                                          emission_.incident_pdf(s.direction));
                      });
         list.push_back(up(s.direction));
       }
@@ -186,7 +184,7 @@ class EmissionTrial {
     if (first.size() < 200) return;
     compare(
         "sampled incident directions follow the density", first, covered,
-        [&](const Vector3& local) { return double(emission_.incident_density(down(local))); },
+        [&](const Vector3& local) { return double(emission_.incident_pdf(down(local))); },
         [&](int count) { return std::pair(draw(count), lost); });
   }
 
@@ -201,27 +199,27 @@ class EmissionTrial {
       Vector3 towards = trial.direction();
       if (by_emission && knows) {
         const DirectionSample s = emission_.sample_incident(trial.pair());
-        if (!(s.density > 0)) return {};
+        if (!(s.pdf > 0)) return {};
         towards = normalize(turn(s.direction));
       }
       const float uniform = 1 / (4 * pi);
-      const float density = knows ? (emission_.incident_density(normalize(turn.back(towards))) + uniform) / 2 : uniform;
+      const float pdf = knows ? (emission_.incident_pdf(normalize(turn.back(towards))) + uniform) / 2 : uniform;
       SurfacePoint p;
       Ray ray;
       ray.direction = towards;
       host_->surface_point(ray, {}, p);
-      return note(emission_.radiance(p, -towards, wavelengths_)) * (host_->area() / (4 * density));
+      return note(emission_.radiance(p, -towards, wavelengths_)) * (host_->area() / (4 * pdf));
     }
     const SurfaceSample s = host_->sample_area(trial.pair(), 0);
     Vector3 v = trial.direction();
     if (by_emission) {
       const DirectionSample d = emission_.sample(s.point, trial.pair());
-      if (!(d.density > 0)) return {};
+      if (!(d.pdf > 0)) return {};
       v = d.direction;
     }
-    const float density = (emission_.density(s.point, v) + 1 / (4 * pi)) / 2;
+    const float pdf = (emission_.pdf(s.point, v) + 1 / (4 * pi)) / 2;
     const float cosine = host_->delta() ? 1 : std::abs(dot(s.point.normal, v));
-    return note(emission_.radiance(s.point, v, wavelengths_)) * (cosine / (s.density * density));
+    return note(emission_.radiance(s.point, v, wavelengths_)) * (cosine / (s.pdf * pdf));
   }
 
   /// Remembers how far colours are from one another: wavelengths may agree in pairs where others do not.

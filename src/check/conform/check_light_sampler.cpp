@@ -117,7 +117,7 @@ class LightTrial {
     const Wavelengths w = spread_wavelengths(500);
     for (int i = 0; i < 16; ++i) {
       const SurfaceSample s = l.sample_visible(from, trial.pair(), 0);
-      if (s.density > 0 && !l.emission->radiance(s.point, -s.direction, w).black()) return true;
+      if (s.pdf > 0 && !l.emission->radiance(s.point, -s.direction, w).black()) return true;
     }
     return false;
   }

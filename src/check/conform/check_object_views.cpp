@@ -45,17 +45,17 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
     const SurfaceSample s = o.object.sample_visible(from, o.trial.pair(), o.time);
     size_t seen = cells;
     double value = 0;
-    if (s.density > 0) {
+    if (s.pdf > 0) {
       const SurfacePoint& p = s.point;
       const auto where = [&] {
         return fmt::format("from {} to {}: direction {}, distance {}, density {}", text_of(from), text_of(p.position),
-                           text_of(s.direction), s.distance, s.density);
+                           text_of(s.direction), s.distance, s.pdf);
       };
-      o.trial.expect(s.density < infinity && std::abs(length(s.direction) - 1) < 1e-4f && !s.delta && !s.infinite &&
+      o.trial.expect(s.pdf < infinity && std::abs(length(s.direction) - 1) < 1e-4f && !s.delta && !s.infinite &&
                          distance(from + s.distance * s.direction, p.position) < o.slack(p.position) + 1e-4f * s.distance,
                      "points to be seen lie where their direction and distance say", where);
-      const float again = o.object.visible_density(from, s.direction, p);
-      disagree += !(std::abs(again - s.density) < 1e-2f * s.density) && std::abs(dot(p.normal, s.direction)) > 1e-2f;
+      const float again = o.object.visible_pdf(from, s.direction, p);
+      disagree += !(std::abs(again - s.pdf) < 1e-2f * s.pdf) && std::abs(dot(p.normal, s.direction)) > 1e-2f;
       Hit hit;
       const float off = 1e-4f * s.distance + 4 * p.error;
       if (!shines(p, s.direction)) {
@@ -64,7 +64,7 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
         // Another part of the object may lie just before it.
         if (hit.distance > s.distance - (hit.primitive == p.primitive ? off : 1e-6f * s.distance + p.error)) {
           seen = cell(s.direction);
-          value = 1 / double(s.density);
+          value = 1 / double(s.pdf);
         }
       } else if (std::abs(dot(p.normal, s.direction)) > 1e-2f) {  // of a sheet seen edge on, rounding decides
         ++behind;

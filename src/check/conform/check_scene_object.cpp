@@ -117,17 +117,17 @@ void check_points(const ObjectTrial& o) {
     const SurfaceSample s = o.sample_area();
     const SurfacePoint& p = s.point;
     const auto where = [&] {
-      return fmt::format("{}, normal {}, density {}", text_of(p.position), text_of(Vector3(p.normal)), s.density);
+      return fmt::format("{}, normal {}, density {}", text_of(p.position), text_of(Vector3(p.normal)), s.pdf);
     };
     if (!o.trial.expect(
-            s.density > 0 && s.density < infinity && !s.delta && !s.infinite && p.object == &o.object && is_finite(p.position),
+            s.pdf > 0 && s.pdf < infinity && !s.delta && !s.infinite && p.object == &o.object && is_finite(p.position),
             "points by area are finite and have a density", where))
       return;
-    o.trial.expect(std::abs(o.object.area_density(p) - s.density) < 1e-3f * s.density,
-                   "a sample's density by area is that of its point", where);
+    o.trial.expect(std::abs(o.object.area_pdf(p) - s.pdf) < 1e-3f * s.pdf, "a sample's density by area is that of its point",
+                   where);
     o.trial.expect(o.inside(o.bounds, p.position) && o.inside(lit, p.position), "bounds hold all points", where);
     o.trial.expect(dot(cone.axis, Vector3(p.normal)) >= cone.cosine - 1e-4f, "the cone of normals holds them", where);
-    area.add(1 / double(s.density));
+    area.add(1 / double(s.pdf));
     missed += !found_nearby(o, p);
   }
   const double said = double(o.object.area(o.time));
@@ -154,7 +154,7 @@ bool too_near(const ObjectTrial& o, const Point3& from) {
 void check_scene_object(Trial& trial) {
   const SceneObject& object = trial.part<SceneObject>();
   if (object.unbounded()) {  // it has no area, no size and no points to choose
-    trial.expect(!(object.sample_area(trial.pair(), 0).density > 0), "on what has no end no points are chosen");
+    trial.expect(!(object.sample_area(trial.pair(), 0).pdf > 0), "on what has no end no points are chosen");
     return;
   }
   if (object.infinite() || object.delta() || object.bounds().empty()) {
@@ -167,7 +167,7 @@ void check_scene_object(Trial& trial) {
   check_lines(o);
   if (scene_within(object)) return;  // a scene is no luminaire: no points are chosen on it
   if (!(object.area(o.time) > 0)) {  // a solid of which nothing is left: lines agreed
-    trial.expect(!(o.sample_area().density > 0), "on what has no area no points are chosen");
+    trial.expect(!(o.sample_area().pdf > 0), "on what has no area no points are chosen");
     return;
   }
   check_points(o);

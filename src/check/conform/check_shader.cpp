@@ -23,7 +23,7 @@ Wavelengths spread_wavelengths(float hero) {
 std::string lobe_names(Lobes lobes) {
   static constexpr const char* names[] = {"diffuse_reflection",  "diffuse_transmission", "glossy_reflection",
                                           "glossy_transmission", "specular_reflection",  "specular_transmission",
-                                          "pass_through"};
+                                          "null_scattering"};
   std::string all;
   for (int i = 0; i < 7; ++i)
     if (lobes & (1 << i)) all += (all.empty() ? "" : "|") + std::string(names[i]);
@@ -109,7 +109,7 @@ RelativeIndex::RelativeIndex(Trial& trial, const BoundShader& bound, Lobes which
     Wavelengths turned = bound.wavelengths();
     for (int i = 0; i < spectrum_size; ++i) {
       const int from = (hero + i) % spectrum_size;
-      turned.place(i, bound.wavelengths()[from], bound.wavelengths().density(from));
+      turned.place(i, bound.wavelengths()[from], bound.wavelengths().pdf(from));
     }
     Arena arena;
     const Scatter* scatter = trial.part<Shader>().bind(bound.point(), turned, arena);
@@ -150,10 +150,10 @@ void check_binding(Trial& trial, const Shader& shader, const BoundShader& bound)
     const Vector3 a = trial.direction(), b = trial.direction();
     const float choice = trial.uniform();
     const Point2 u = trial.pair();
-    const ScatterValue one = scatter.value_and_density(a, b), two = again->value_and_density(a, b);
+    const ScatterValue one = scatter.value_and_pdf(a, b), two = again->value_and_pdf(a, b);
     const auto s1 = scatter.sample(a, choice, u), s2 = again->sample(a, choice, u);
-    bool equal = (one.value - two.value).black() && one.density == two.density && s1.has_value() == s2.has_value();
-    if (equal && s1) equal = s1->direction == s2->direction && (s1->weight - s2->weight).black() && s1->density == s2->density;
+    bool equal = (one.value - two.value).black() && one.pdf == two.pdf && s1.has_value() == s2.has_value();
+    if (equal && s1) equal = s1->direction == s2->direction && (s1->weight - s2->weight).black() && s1->pdf == s2->pdf;
     trial.expect(equal, same, [&] { return fmt::format("out {}, in {}", bound.name(a), bound.name(b)); });
     if (scatter.has_choice()) continue;
     const auto other = scatter.sample(a, 1 - choice, u);

@@ -45,13 +45,13 @@ constexpr int pilots = 6000;
 constexpr size_t cell_count = 96;
 /// What quadrature says of the density and of f cos, and what samples say.
 struct Measured {
-  double density = 0, flux = 0;
+  double pdf = 0, flux = 0;
   Drawn drawn;
 };
 
 /// The chi-square test of samples against density, and the integrals for further ones.
-Measured check_density(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which, Transport transport,
-                       const std::string& check) {
+Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which, Transport transport,
+                   const std::string& check) {
   const Scatter& scatter = *bound.scatter();
   const SphereCells cells(draw(trial, scatter, out, which, transport, pilots).directions, cell_count);
   Measured m;
@@ -66,23 +66,23 @@ Measured check_density(Trial& trial, const BoundShader& bound, const Vector3& ou
     const auto integrals = cells.integrate<2>(
         [&](const Vector3& local) -> std::array<double, 2> {
           const Vector3 in = scatter.frame().to_world(local);
-          const ScatterValue v = scatter.value_and_density(out, in, transport, which);
-          return {double(v.density), double(v.value[0])};
+          const ScatterValue v = scatter.value_and_pdf(out, in, transport, which);
+          return {double(v.pdf), double(v.value[0])};
         },
         tolerance, long(1e3 / tolerance));
-    m.density = m.flux = 0;
+    m.pdf = m.flux = 0;
     expected.clear();
-    for (const auto& [density, flux] : integrals) {
-      m.density += density;
+    for (const auto& [pdf, flux] : integrals) {
+      m.pdf += pdf;
       m.flux += flux;
-      expected.push_back(density * n);
+      expected.push_back(pdf * n);
     }
-    const double absorbed = std::max(0.0, 1 - m.density) * n;  // known as well as the quadrature is exact
+    const double absorbed = std::max(0.0, 1 - m.pdf) * n;  // known as well as the quadrature is exact
     expected.push_back(std::abs(absorbed - counts.back()) < 2e-3 * n ? counts.back() : absorbed);
     p = statistics::chi_square(counts, expected, 10, 1e-3 * n);
   }
-  trial.expect(m.density <= 1.005, "the density integrates to at most 1",
-               [&] { return fmt::format("{}: {:.5f}", where(bound, out, which), m.density); });
+  trial.expect(m.pdf <= 1.005, "the density integrates to at most 1",
+               [&] { return fmt::format("{}: {:.5f}", where(bound, out, which), m.pdf); });
   trial.expect(p > Trial::significance, check, [&] {
     size_t worst = 0;
     const auto off = [&](size_t i) { return std::abs(counts[i] - expected[i]) / std::sqrt(std::max(expected[i], 1.0)); };
@@ -93,8 +93,7 @@ Measured check_density(Trial& trial, const BoundShader& bound, const Vector3& ou
     return fmt::format(
         "{}: p = {:.2g}; the density integrates to {:.4f}, {:.4f} of {} samples are smooth; worst: {} samples {}, "
         "expected {:.1f}",
-        where(bound, out, which), p, m.density, double(m.drawn.directions.size()) / n, n, counts[worst], place,
-        expected[worst]);
+        where(bound, out, which), p, m.pdf, double(m.drawn.directions.size()) / n, n, counts[worst], place, expected[worst]);
   });
   return m;
 }
@@ -145,8 +144,8 @@ void check_albedo(Trial& trial, const BoundShader& bound, const Vector3& out, Lo
 void check_direction(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which) {
   const Shader& shader = trial.part<Shader>();
   const Transport transport = conserved(trial, bound);
-  const Measured m = check_density(trial, bound, out, which, transport, "samples follow the density");
-  if (transport == Transport::radiance && (which & transmission_lobes & ~pass_through)) return;
+  const Measured m = check_pdf(trial, bound, out, which, transport, "samples follow the density");
+  if (transport == Transport::radiance && (which & transmission_lobes & ~null_scattering)) return;
   const double albedo = m.flux + bound.specular_fraction(out, which);
   const Mean& mean = m.drawn.all;
   const double margin = Trial::significant_errors * mean.error() + 10 * mean.largest() / m.drawn.count + 3e-3;
@@ -177,7 +176,7 @@ bool rests_on_estimates(const Component& shader) {
 /// Of shaders that are not reciprocal: directions are drawn as for radiance, and weighed with the adjoint.
 void check_adjoint_samples(Trial& trial, const BoundShader& bound, const Vector3& out) {
   const Lobes which = bound.scatter()->lobes() & smooth_lobes;
-  const Measured m = check_density(trial, bound, out, which, Transport::importance, "samples of importance follow the density");
+  const Measured m = check_pdf(trial, bound, out, which, Transport::importance, "samples of importance follow the density");
   const Mean& mean = m.drawn.all;
   const double margin = Trial::significant_errors * mean.error() + 10 * mean.largest() / m.drawn.count + 3e-3;
   trial.expect(std::abs(mean.mean() - m.flux) < margin, "samples of importance carry what evaluation says", [&] {
@@ -242,7 +241,7 @@ void check_shader_estimates(Trial& trial, const BoundShader& bound) {
                            w.error());
       });
     }
-    if (transport == Transport::radiance && (which & transmission_lobes & ~pass_through)) continue;
+    if (transport == Transport::radiance && (which & transmission_lobes & ~null_scattering)) continue;
     const double slack = Trial::significant_errors * drawn.all.error() + 5e-3;
     trial.expect(drawn.all.mean() < 1 + slack, "no more light leaves than arrives", [&] {
       return fmt::format("{}: {:.5f} ± {:.5f}", where(bound, out, which), drawn.all.mean(), drawn.all.error());

@@ -25,10 +25,10 @@ void check_finite(Trial& trial, const BoundShader& bound) {
   for (const Vector3& out : directions) {
     for (const Vector3& in : directions)
       for (const Transport transport : {Transport::radiance, Transport::importance}) {
-        const ScatterValue v = scatter.value_and_density(out, in, transport);
+        const ScatterValue v = scatter.value_and_pdf(out, in, transport);
         const Spectrum e = scatter.evaluate(out, in, transport);
-        const float d = scatter.density(out, in, transport);
-        trial.expect(sane(v.value) && sane(e) && v.density >= 0 && v.density < infinity && d >= 0 && d < infinity, finite, [&] {
+        const float d = scatter.pdf(out, in, transport);
+        trial.expect(sane(v.value) && sane(e) && v.pdf >= 0 && v.pdf < infinity && d >= 0 && d < infinity, finite, [&] {
           return fmt::format("out {}, in {}, {}: value {}, density {}", bound.name(out), bound.name(in), name(transport),
                              text(e), d);
         });
@@ -44,13 +44,13 @@ void check_finite(Trial& trial, const BoundShader& bound) {
           for (const Transport transport : {Transport::radiance, Transport::importance}) {
             const auto s = scatter.sample(out, choice, {x, y}, transport);
             if (!s) continue;
-            trial.expect(sane(s->weight) && s->density > 0 && s->density < infinity &&
-                             std::abs(length(s->direction) - 1) < 1e-4f && s->eta > 0 && s->eta < infinity,
+            trial.expect(sane(s->weight) && s->pdf > 0 && s->pdf < infinity && std::abs(length(s->direction) - 1) < 1e-4f &&
+                             s->eta > 0 && s->eta < infinity,
                          "samples are finite, for extreme random numbers too", [&] {
                            return fmt::format(
                                "out {}, choice {}, u ({}, {}), {}: direction ({}, {}, {}), weight {}, density {}",
                                bound.name(out), choice, x, y, name(transport), s->direction.x, s->direction.y, s->direction.z,
-                               text(s->weight), s->density);
+                               text(s->weight), s->pdf);
                          });
           }
 }
@@ -70,7 +70,7 @@ void check_masks(Trial& trial, const BoundShader& bound) {
     const float choice = trial.uniform();
     const Point2 u = trial.pair();
     trial.expect(scatter.evaluate(out, in, Transport::radiance, absent).black() &&
-                     scatter.density(out, in, Transport::radiance, absent) == 0 &&
+                     scatter.pdf(out, in, Transport::radiance, absent) == 0 &&
                      !scatter.sample(out, choice, u, Transport::radiance, absent) && scatter.albedo(out, absent).black(),
                  "lobes that are absent give nothing", [&] {
                    return fmt::format("asked for {}: out {}, in {}", lobe_names(absent), bound.name(out), bound.name(in));
@@ -87,7 +87,7 @@ void check_masks(Trial& trial, const BoundShader& bound) {
                    });
       const bool reflection = dot(bound.point().normal, out) * dot(bound.point().normal, in) > 0;
       if ((which & (reflection ? reflection_lobes : transmission_lobes)) == 0)
-        trial.expect(whole.black() && scatter.density(out, in, Transport::radiance, which) == 0,
+        trial.expect(whole.black() && scatter.pdf(out, in, Transport::radiance, which) == 0,
                      "reflection and transmission keep to their sides",
                      [&] { return fmt::format("{}: out {}, in {}", lobe_names(which), bound.name(out), bound.name(in)); });
     }
@@ -108,34 +108,33 @@ void check_sample(Trial& trial, const BoundShader& bound, const Vector3& out, co
   const bool crossed = dot(n, out) * dot(n, s.direction) < 0;
   trial.expect(crossed == s.transmitted(), "reflection and transmission keep to their sides", where);
   trial.expect(s.transmitted() || s.eta == 1, "reflection has a relative index of 1", where);
-  if (s.lobe == pass_through)
+  if (s.lobe == null_scattering)
     trial.expect(length(s.direction + out) < 1e-5f && s.eta == 1 && !s.dispersive, "what passes through goes straight on",
                  where);
   if (s.specular()) {
-    trial.expect(s.density <= 1.0001f, "a specular sample's density is a probability",
-                 [&] { return fmt::format("{}: {}", where(), s.density); });
+    trial.expect(s.pdf <= 1.0001f, "a specular sample's density is a probability",
+                 [&] { return fmt::format("{}: {}", where(), s.pdf); });
     return;
   }
   const auto value = [&](const Vector3& in) { return scatter.evaluate(out, in, transport, which); };
-  const auto density = [&](const Vector3& in) { return Spectrum(scatter.density(out, in, transport, which)); };
+  const auto pdf = [&](const Vector3& in) { return Spectrum(scatter.pdf(out, in, transport, which)); };
   const Spectrum f = value(s.direction);
-  const float p = density(s.direction)[0];
-  const ScatterValue both = scatter.value_and_density(out, s.direction, transport, which);
+  const float p = pdf(s.direction)[0];
+  const ScatterValue both = scatter.value_and_pdf(out, s.direction, transport, which);
   trial.expect(agree(both.value, f, 1e-3f, false, [&] { return rounding_of(value, s.direction); }) &&
-                   agree(both.density, p, 1e-3f, true, [&] { return rounding_of(density, s.direction); }),
+                   agree(both.pdf, p, 1e-3f, true, [&] { return rounding_of(pdf, s.direction); }),
                "value_and_density is evaluate and density", [&] {
-                 return fmt::format("{}: value {} and {}, density {} and {}", where(), text(both.value), text(f), both.density,
-                                    p);
+                 return fmt::format("{}: value {} and {}, density {} and {}", where(), text(both.value), text(f), both.pdf, p);
                });
-  trial.expect(agree(Spectrum(s.density), Spectrum(p), 2e-3f, true, [&] { return rounding_of(density, s.direction); }),
+  trial.expect(agree(Spectrum(s.pdf), Spectrum(p), 2e-3f, true, [&] { return rounding_of(pdf, s.direction); }),
                "a sample's density is that of its direction",
-               [&] { return fmt::format("{}: {} from sample, {} from density", where(), s.density, p); });
-  const Spectrum carried = s.weight * s.density, wanted = value(s.direction);
+               [&] { return fmt::format("{}: {} from sample, {} from density", where(), s.pdf, p); });
+  const Spectrum carried = s.weight * s.pdf, wanted = value(s.direction);
   trial.expect(agree(carried, wanted, 4e-3f, s.dispersive,
-                     [&] { return rounding_of(value, s.direction) + s.weight * rounding_of(density, s.direction); }),
+                     [&] { return rounding_of(value, s.direction) + s.weight * rounding_of(pdf, s.direction); }),
                "a sample's weight is value over density",
-               [&] { return fmt::format("{}: weight {} instead of {}", where(), text(s.weight), text(wanted / s.density)); });
-  const float reverse = scatter.density(s.direction, out, transport, which);
+               [&] { return fmt::format("{}: weight {} instead of {}", where(), text(s.weight), text(wanted / s.pdf)); });
+  const float reverse = scatter.pdf(s.direction, out, transport, which);
   trial.expect(reverse >= 0 && reverse < infinity, "the reverse density is finite",
                [&] { return fmt::format("{}: {}", where(), reverse); });
 }
@@ -152,7 +151,7 @@ void check_samples(Trial& trial, const BoundShader& bound, bool estimates) {
         const Point2 u = trial.pair();
         const auto s = scatter.sample(out, choice, u, transport, which);
         if (!s) continue;
-        if (!trial.expect(sane(s->weight) && s->density > 0, "samples are finite, for extreme random numbers too",
+        if (!trial.expect(sane(s->weight) && s->pdf > 0, "samples are finite, for extreme random numbers too",
                           [&] { return "out " + bound.name(out); }))
           continue;
         if (!estimates) check_sample(trial, bound, out, *s, transport, which);

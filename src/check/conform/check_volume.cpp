@@ -49,15 +49,14 @@ void check_phase(Trial& trial, const VolumeShader& volume) {
     const auto draw = [&](int count) {
       std::vector<Vector3> list;
       for (; count > 0; --count) {
-        float density = 0;
-        const Vector3 in = volume.sample_phase(p, out, trial.pair(), density);
-        trial.expect(std::abs(length(in) - 1) < 1e-4f && density > 0 && density < infinity,
-                     "sampled directions are unit vectors",
-                     [&] { return fmt::format("({}, {}, {}), density {}", in.x, in.y, in.z, density); });
+        float pdf = 0;
+        const Vector3 in = volume.sample_phase(p, out, trial.pair(), pdf);
+        trial.expect(std::abs(length(in) - 1) < 1e-4f && pdf > 0 && pdf < infinity, "sampled directions are unit vectors",
+                     [&] { return fmt::format("({}, {}, {}), density {}", in.x, in.y, in.z, pdf); });
         const auto phase = [&](const Vector3& v) { return Spectrum(volume.phase(p, out, v)); };
-        trial.expect(agree(Spectrum(density), phase(in), 2e-3f, true, [&] { return rounding_of(phase, in); }),
+        trial.expect(agree(Spectrum(pdf), phase(in), 2e-3f, true, [&] { return rounding_of(phase, in); }),
                      "a sample's density is the phase function",
-                     [&] { return fmt::format("density {}, phase function {}", density, phase(in)[0]); });
+                     [&] { return fmt::format("density {}, phase function {}", pdf, phase(in)[0]); });
         const float back = volume.phase(p, in, out);
         trial.expect(agree(Spectrum(back), phase(in), 2e-3f, true, [&] { return rounding_of(phase, in); }),
                      "the phase function is reciprocal",

@@ -47,11 +47,11 @@ class WavelengthTrial {
         const float u = s == 0 ? 0 : s == 1 ? one_minus_epsilon : trial.uniform();
         const Wavelengths w = sampler_.sample(key, u), again = sampler_.sample(key, u);
         for (int k = 0; k < spectrum_size; ++k) {
-          trial.expect(again[k] == w[k] && again.density(k) == w.density(k), "the same sample has the same wavelengths");
+          trial.expect(again[k] == w[k] && again.pdf(k) == w.pdf(k), "the same sample has the same wavelengths");
           usable_ &= trial.expect(w[k] >= wavelength_low && w[k] <= wavelength_high, "wavelengths lie in [360, 830] nm",
                                   [&] { return fmt::format("{} nm for u = {}", w[k], u); });
-          usable_ &= trial.expect(w.density(k) > 0 && std::isfinite(w.density(k)), "densities are finite and more than 0",
-                                  [&] { return fmt::format("{} at {} nm", w.density(k), w[k]); });
+          usable_ &= trial.expect(w.pdf(k) > 0 && std::isfinite(w.pdf(k)), "densities are finite and more than 0",
+                                  [&] { return fmt::format("{} at {} nm", w.pdf(k), w[k]); });
         }
         drawn_.push_back(w);
       }
@@ -84,7 +84,7 @@ class WavelengthTrial {
     std::vector<double> at;
     for (const auto& [lambda, count] : distinct) at.push_back(double(lambda));
     if (at.size() == 1) {  // of a width that only the density knows
-      const double half = 0.5 / double(drawn_.front().density(0));
+      const double half = 0.5 / double(drawn_.front().pdf(0));
       cells_.push_back({at[0] - half, at[0] + half});
       return;
     }
@@ -106,7 +106,7 @@ class WavelengthTrial {
     for (const Wavelengths& w : drawn_) {
       Cell& c = cells[cell_of(w[int(lane)])];
       c.count += 1;
-      c.inverse += 1 / double(w.density(int(lane)));
+      c.inverse += 1 / double(w.pdf(int(lane)));
     }
     double sum = 0;
     const double n = double(drawn_.size());

@@ -29,7 +29,7 @@ Json vertices_json(const std::vector<PathRecord::Vertex>& vertices) {
                     {"position", triple(v.position)},
                     {"normal", triple(v.normal)},
                     {"lobe", v.lobe},
-                    {"density", v.density},
+                    {"density", v.pdf},
                     {"throughput", array(v.throughput)},
                     {"emitted", array(v.emitted)},
                     {"direct", array(v.direct)},
@@ -60,16 +60,16 @@ std::string replay_json(const Job& job, const PixelReplay& replay, const std::st
   Json paths = Json::array();
   for (const ReplayedPath& path : replay.paths) {
     const PathRecord& record = path.record;
-    Json wavelengths = Json::array(), densities = Json::array();
+    Json wavelengths = Json::array(), pdfs = Json::array();
     for (int i = 0; i < spectrum_size; ++i) {
       wavelengths.push_back(record.wavelengths[i]);
-      densities.push_back(record.wavelengths.density(i));
+      pdfs.push_back(record.wavelengths.pdf(i));
     }
     paths.push_back({{"sample", path.sample},
                      {"command", replay_command(picture_command, replay.x, replay.y, path.sample)},
                      {"film", {path.film.x, path.film.y}},
                      {"wavelengths", wavelengths},
-                     {"densities", densities},
+                     {"densities", pdfs},
                      {"single", record.wavelengths.single()},
                      {"result", array(record.result)},
                      {"bad", path.bad},

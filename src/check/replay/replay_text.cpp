@@ -38,7 +38,7 @@ std::string vertex_text(const PathRecord::Vertex& v, const char* what, size_t pl
   add("throughput", numbers(v.throughput));
   if (!v.emitted.black()) add("emitted", numbers(v.emitted));
   if (!v.direct.black()) add("direct", numbers(v.direct));
-  if (!v.lobe.empty()) add("sampled", fmt::format("{}, density {:.6g}", v.lobe, v.density));
+  if (!v.lobe.empty()) add("sampled", fmt::format("{}, density {:.6g}", v.lobe, v.pdf));
   if (!v.note.empty()) add("note", v.note);
   return text;
 }
@@ -55,14 +55,14 @@ std::string percent(double fraction) { return fmt::format("{:.3g} %", 100 * frac
 }  // namespace
 
 std::string path_text(const PathRecord& record, Point2 film) {
-  Spectrum lambda, density;
+  Spectrum lambda, pdf;
   for (int i = 0; i < spectrum_size; ++i) {
     lambda.set(i, record.wavelengths[i]);
-    density.set(i, record.wavelengths.density(i));
+    pdf.set(i, record.wavelengths.pdf(i));
   }
   std::string text = fmt::format("film point      ({:.6f}, {:.6f}) pixels\n", film.x, film.y);
   text += "wavelength [nm] " + numbers(lambda) + "\n";
-  text += "density [1/nm]  " + numbers(density) + (record.wavelengths.single() ? "  (the hero alone is left)" : "") + "\n";
+  text += "density [1/nm]  " + numbers(pdf) + (record.wavelengths.single() ? "  (the hero alone is left)" : "") + "\n";
   for (size_t i = 0; i < record.vertices.size(); ++i) text += vertex_text(record.vertices[i], "vertex", i);
   for (size_t i = 0; i < record.light_vertices.size(); ++i) text += vertex_text(record.light_vertices[i], "light vertex", i);
   if (!record.contributions.empty()) text += "contributions\n";

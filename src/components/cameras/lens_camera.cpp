@@ -87,7 +87,7 @@ class LensCamera final : public Camera {
       const std::string reason = e.what(), path = file.empty() ? "" : file.resolved();
       fail(member, reason.find(path) == std::string::npos ? fmt::format("'{}': {}", path, reason) : reason);
     }
-    lens_density_ = float(1 / (exact_pi * squared(pupils_.disc_radius())));
+    lens_pdf_ = float(1 / (exact_pi * squared(pupils_.disc_radius())));
     update();
   }
   void set_film(int width, int height) override {
@@ -137,7 +137,7 @@ class LensCamera final : public Camera {
     const Seen seen = look(back);
     if (!seen.on_film) return std::nullopt;
     s.direction = -back.direction;
-    s.density = square(s.distance) * lens_density_ / cosine;
+    s.pdf = square(s.distance) * lens_pdf_ / cosine;
     s.importance = importance_;
     s.film = seen.film;
     s.nearest = nearest(cosine);
@@ -145,11 +145,11 @@ class LensCamera final : public Camera {
   }
 
   float importance(const Ray& r) const override { return look(r).on_film ? importance_ : 0; }
-  CameraDensity density(const Ray& r) const override {
+  CameraPdf pdf(const Ray& r) const override {
     const Seen seen = look(r);
     if (!seen.on_film) return {};
     const double per_extent = squared(lens_.rear()) / (double(area_) * seen.box * squared(squared(seen.film_cosine)));
-    return {lens_density_, float(per_extent * seen.cosine / double(lens_density_))};
+    return {lens_pdf_, float(per_extent * seen.cosine / double(lens_pdf_))};
   }
 
   DoublePoint3 from{0, 0, 0}, to{0, 0, 1};
@@ -254,7 +254,7 @@ class LensCamera final : public Camera {
   LensPupils pupils_;
   float columns_ = 1, rows_ = 1;             // of the picture, in pixels
   float width_ = 1, height_ = 1, area_ = 1;  // of the film
-  float lens_density_ = 1, importance_ = 1;  // over the disc [1/m^2]; W_e [1/(m^2 sr)]
+  float lens_pdf_ = 1, importance_ = 1;      // over the disc [1/m^2]; W_e [1/(m^2 sr)]
 };
 
 const Register<LensCamera> registered;

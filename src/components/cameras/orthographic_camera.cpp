@@ -70,15 +70,15 @@ class OrthographicCamera final : public Camera {
     s.lens = pose.position + pose.to_world({seen.x, seen.y, 0});
     s.direction = -pose.forward;
     s.distance = seen.z;
-    s.density = 1;
-    s.importance = density_;
+    s.pdf = 1;
+    s.importance = pdf_;
     s.film = *film;
     s.nearest = clip_.reach(1).nearest;
     return s;
   }
 
-  float importance(const Ray& r) const override { return film_point(r) ? density_ : 0; }
-  CameraDensity density(const Ray& r) const override { return film_point(r) ? CameraDensity{density_, 1} : CameraDensity{}; }
+  float importance(const Ray& r) const override { return film_point(r) ? pdf_ : 0; }
+  CameraPdf pdf(const Ray& r) const override { return film_point(r) ? CameraPdf{pdf_, 1} : CameraPdf{}; }
 
   DoublePoint3 from{0, 0, 0}, to{0, 0, 1};
   Vector3 up{0, 1, 0};
@@ -89,7 +89,7 @@ class OrthographicCamera final : public Camera {
  private:
   void update() {
     pixel_ = width / columns_;
-    density_ = 1 / (square(pixel_) * columns_ * rows_);
+    pdf_ = 1 / (square(pixel_) * columns_ * rows_);
   }
   std::optional<Point2> project(const Vector3& v) const {
     const Point2 film{v.x / pixel_ + columns_ / 2, rows_ / 2 - v.y / pixel_};
@@ -101,7 +101,7 @@ class OrthographicCamera final : public Camera {
   Clip clip_;
   float columns_ = 1, rows_ = 1;  // of the picture, in pixels
   float pixel_ = 1;               // width of one [m]
-  float density_ = 1;             // 1 / area of the film [1/m^2]
+  float pdf_ = 1;                 // 1 / area of the film [1/m^2]
 };
 
 const Register<OrthographicCamera> registered;

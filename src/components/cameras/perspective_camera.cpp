@@ -118,7 +118,7 @@ class PerspectiveCamera final : public Camera {
     s.distance = length(to_point);
     s.direction = pose.to_world(-1 / s.distance * to_point);
     const float cosine = to_point.z / s.distance;
-    s.density = square(s.distance) * lens_density_ / cosine;
+    s.pdf = square(s.distance) * lens_pdf_ / cosine;
     s.importance = importance_of(cosine);
     s.film = seen.film;
     s.nearest = clip_.reach(cosine).nearest;
@@ -129,10 +129,10 @@ class PerspectiveCamera final : public Camera {
     const Seen seen = look(r);
     return seen.on_film ? importance_of(seen.cosine) : 0;
   }
-  CameraDensity density(const Ray& r) const override {
+  CameraPdf pdf(const Ray& r) const override {
     const Seen seen = look(r);
     if (!seen.on_film) return {};
-    return {lens_density_, 1 / (area_ * seen.cosine * square(seen.cosine))};
+    return {lens_pdf_, 1 / (area_ * seen.cosine * square(seen.cosine))};
   }
 
   DoublePoint3 from{0, 0, 0}, to{0, 0, 1};
@@ -162,10 +162,10 @@ class PerspectiveCamera final : public Camera {
     half_height_ = across_width ? half * height_ / width_ : half;
     area_ = 4 * half_width_ * half_height_;
     pixel_ = 2 * half_width_ / width_;
-    lens_density_ = lens_radius > 0 ? 1 / (pi * square(lens_radius)) : 1;
+    lens_pdf_ = lens_radius > 0 ? 1 / (pi * square(lens_radius)) : 1;
   }
 
-  float importance_of(float cosine) const { return lens_density_ / (area_ * square(square(cosine))); }
+  float importance_of(float cosine) const { return lens_pdf_ / (area_ * square(square(cosine))); }
 
   /// The film point of a ray from a point of the lens, in camera coordinates.
   void project(const Vector3& lens, const Vector3& direction, Seen& seen) const {
@@ -199,7 +199,7 @@ class PerspectiveCamera final : public Camera {
   float half_width_ = 1, half_height_ = 1;  // of the film at distance 1
   float area_ = 4, pixel_ = 1;              // of the film, and width of a pixel, at distance 1
   float focus_ = 1;                         // [m]
-  float lens_density_ = 1;                  // [1/m^2]; 1 for a pinhole
+  float lens_pdf_ = 1;                      // [1/m^2]; 1 for a pinhole
 };
 
 const Register<PerspectiveCamera> registered;

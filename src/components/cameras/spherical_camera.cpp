@@ -63,7 +63,7 @@ class SphericalCamera final : public Camera {
     r.origin = pose.position;
     r.direction = pose.to_world(normalize(local));
     r.time = time;
-    r.spread = std::sqrt(1 / (density_of(local) * float(width_) * float(height_)));  // the side of a square pixel
+    r.spread = std::sqrt(1 / (pdf_of(local) * float(width_) * float(height_)));  // the side of a square pixel
     return r;
   }
 
@@ -79,16 +79,16 @@ class SphericalCamera final : public Camera {
     if (!(s.distance > 0)) return std::nullopt;
     s.lens = pose.position;
     s.direction = -1 / s.distance * to_point;
-    s.density = square(s.distance);
+    s.pdf = square(s.distance);
     const Vector3 local = pose.to_camera(-s.direction);
-    s.importance = density_of(local);
+    s.importance = pdf_of(local);
     s.film = film_of(local);
     return s;
   }
 
   // A ray of a pinhole is taken to pass through it.
-  float importance(const Ray& r) const override { return density_of(local_direction(r)); }
-  CameraDensity density(const Ray& r) const override { return {1, density_of(local_direction(r))}; }
+  float importance(const Ray& r) const override { return pdf_of(local_direction(r)); }
+  CameraPdf pdf(const Ray& r) const override { return {1, pdf_of(local_direction(r))}; }
 
   DoublePoint3 from{0, 0, 0}, to{0, 0, 1};
   Vector3 up{0, 1, 0};
@@ -100,7 +100,7 @@ class SphericalCamera final : public Camera {
   Vector3 local_direction(const Ray& r) const { return placement_.at(r.time).to_camera(normalize(r.direction)); }
 
   /// Of a unit direction in camera coordinates [1/sr].
-  float density_of(const Vector3& d) const {
+  float pdf_of(const Vector3& d) const {
     if (mapping == Mapping::equal_area) return 1 / (4 * pi);
     const float sine = std::hypot(d.x, d.z);
     return float(1 / (2 * exact_pi * exact_pi)) / std::max(sine, 1e-12f);

@@ -47,7 +47,7 @@ DirectionSample AxialEmission::sample(const SurfacePoint& p, Point2 u) const {
   return {side * Frame(p.normal).to_world(local(h, u.y)), probability * drawn(h, true)};
 }
 
-float AxialEmission::density(const SurfacePoint& p, const Vector3& direction) const {
+float AxialEmission::pdf(const SurfacePoint& p, const Vector3& direction) const {
   if (p.object && p.object->infinite()) return 1;
   if (!emits(p, direction)) return 0;
   const bool surface = about_normal(p);
@@ -58,9 +58,7 @@ DirectionSample AxialEmission::sample_incident(Point2 u) const {
   const float h = draw(u.x, false);
   return {-Frame(Normal3(axis_)).to_world(local(h, u.y)), drawn(h, false)};
 }
-float AxialEmission::incident_density(const Vector3& towards) const {
-  return drawn(length_squared(towards + axis_) / 2, false);
-}
+float AxialEmission::incident_pdf(const Vector3& towards) const { return drawn(length_squared(towards + axis_) / 2, false); }
 
 /// K of the front alone at n . axis = c: the integral over h of f times that around the axis of max(a + b cos(phi), 0), with
 /// a = c cos(theta) and b = sqrt(1 - c^2) sin(theta), which is 2 pi a, 0, or 2 (a phi_0 + b sin(phi_0)) with

@@ -15,11 +15,11 @@ class AxialEmission : public ShapedEmission {
   // profile about an axis may lie on a side that does not emit; what is drawn there has density 0, and the density over the
   // emitting sides adds up to the share of the profile that lies there.
   DirectionSample sample(const SurfacePoint&, Point2 u) const override;
-  float density(const SurfacePoint&, const Vector3& direction) const override;
+  float pdf(const SurfacePoint&, const Vector3& direction) const override;
 
   bool knows_incident() const override { return true; }
   DirectionSample sample_incident(Point2 u) const override;
-  float incident_density(const Vector3& towards) const override;
+  float incident_pdf(const Vector3& towards) const override;
 
   enum class About : std::uint8_t { normal, axis };
   Vector3 axis{0, 0, 1};

@@ -28,7 +28,7 @@ class DiffuseEmission final : public ShapedEmission {
   }
 
   DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
-    if (p.normal == Normal3{}) return {warp::sphere(u), warp::sphere_density};
+    if (p.normal == Normal3{}) return {warp::sphere(u), warp::sphere_pdf};
     float side = sides == Sides::back ? -1.0f : 1.0f, probability = 1;
     if (sides == Sides::both) {
       probability = 0.5f;
@@ -37,10 +37,10 @@ class DiffuseEmission final : public ShapedEmission {
     }
     const Vector3 local = warp::cosine_hemisphere(u);
     const Frame frame(p.normal);
-    return {side * frame.to_world(local), probability * warp::cosine_hemisphere_density(local.z)};
+    return {side * frame.to_world(local), probability * warp::cosine_hemisphere_pdf(local.z)};
   }
-  float density(const SurfacePoint& p, const Vector3& direction) const override {
-    if (p.normal == Normal3{}) return warp::sphere_density;
+  float pdf(const SurfacePoint& p, const Vector3& direction) const override {
+    if (p.normal == Normal3{}) return warp::sphere_pdf;
     if (!emits(p, direction)) return 0;
     return (sides == Sides::both ? 0.5f : 1.0f) * inverse_pi * std::abs(dot(p.normal, direction));
   }

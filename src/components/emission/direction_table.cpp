@@ -36,7 +36,7 @@ void DirectionTable::build(const std::vector<double>& polar, const std::vector<d
   azimuth_.clear();
   for (const double a : polar) height_.push_back(float(2 * std::pow(std::sin(a * degree / 2), 2)));
   for (const double a : azimuth) azimuth_.push_back(float((a - azimuth.front()) * degree));
-  densities_.assign(rows * count, 0);
+  pdfs_.assign(rows * count, 0);
   sums_.assign(rows * count, 1);
   row_sums_.assign(rows, 1);
 
@@ -48,7 +48,7 @@ void DirectionTable::build(const std::vector<double>& polar, const std::vector<d
     std::vector<double> running(count);
     for (size_t column = 0; column < count; ++column) {
       const double value = std::max(importance(row, column), 0.0);
-      densities_[row * count + column] = float(value);
+      pdfs_[row * count + column] = float(value);
       sum += value * band * (double(azimuth_[column + 1]) - double(azimuth_[column]));
       running[column] = sum;
     }
@@ -59,7 +59,7 @@ void DirectionTable::build(const std::vector<double>& polar, const std::vector<d
   if (!(total_ > 0)) return;
   double sum = 0;
   for (size_t row = 0; row < rows; ++row) row_sums_[row] = float((sum += row_totals[row]) / total_);
-  for (float& d : densities_) d = float(double(d) / total_);
+  for (float& d : pdfs_) d = float(double(d) / total_);
 }
 
 DirectionSample DirectionTable::sample(Point2 u) const {
@@ -69,10 +69,10 @@ DirectionSample DirectionTable::sample(Point2 u) const {
   const float h = lerp(u.x, height_[row], height_[row + 1]), phi = first_ + lerp(u.y, azimuth_[column], azimuth_[column + 1]);
   const float r = safe_sqrt(h * (2 - h));
   const Vector3 local{r * std::cos(phi), r * std::sin(phi), 1 - h};
-  return {local, density(local)};
+  return {local, pdf(local)};
 }
 
-float DirectionTable::density(const Vector3& local) const {
+float DirectionTable::pdf(const Vector3& local) const {
   if (empty()) return 0;
   const float h = polar_height(local);
   float phi = std::atan2(local.y, local.x) - first_;
@@ -82,7 +82,7 @@ float DirectionTable::density(const Vector3& local) const {
     const size_t i = size_t(std::upper_bound(borders.begin(), borders.end(), x) - borders.begin());
     return std::clamp<size_t>(i, 1, borders.size() - 1) - 1;
   };
-  return densities_[cell(height_, h) * columns() + cell(azimuth_, phi)];
+  return pdfs_[cell(height_, h) * columns() + cell(azimuth_, phi)];
 }
 
 }  // namespace etendue

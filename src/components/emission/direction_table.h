@@ -21,7 +21,7 @@ class DirectionTable {
 
   bool empty() const { return !(total_ > 0); }
   DirectionSample sample(Point2 u) const;
-  float density(const Vector3& local) const;
+  float pdf(const Vector3& local) const;
 
  private:
   size_t columns() const { return azimuth_.size() - 1; }
@@ -29,7 +29,7 @@ class DirectionTable {
   double total_ = 0;
   float first_ = 0;                      // longitude of the first border [rad]
   std::vector<float> height_, azimuth_;  // borders of h, and of phi from the first [rad]
-  std::vector<float> densities_;         // of each cell [1/sr]
+  std::vector<float> pdfs_;              // of each cell [1/sr]
   std::vector<float> row_sums_, sums_;   // cumulative probabilities: of rows, and in each row of its cells
 };
 

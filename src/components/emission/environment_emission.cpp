@@ -96,7 +96,7 @@ class EnvironmentEmission final : public EmissionShader {
     const Vector3 towards = p.object_position - Point3{};
     if (!image_.rgb.empty()) {
       const Point2 at = place(towards);
-      prefetch_density(at);  // a path that came here by itself asks for it next
+      prefetch_pdf(at);  // a path that came here by itself asks for it next
       const std::array<float, 3> rgb = look_up(at);
       return rgb_spectrum(*space_, factor_ * rgb[0], factor_ * rgb[1], factor_ * rgb[2], image_use(), w);
     }
@@ -110,7 +110,7 @@ class EnvironmentEmission final : public EmissionShader {
     if (p.object) away = normalize(p.object->transform.at(p.time)(away));
     return {away, 1};
   }
-  float density(const SurfacePoint&, const Vector3&) const override { return 1; }
+  float pdf(const SurfacePoint&, const Vector3&) const override { return 1; }
 
   /// Of all the light that enters through the object's area [W/nm]: pi * area * mean radiance. For an image, of its mean
   /// colour.
@@ -137,17 +137,17 @@ class EnvironmentEmission final : public EmissionShader {
 
   DirectionSample sample_incident(Point2 u) const override {
     if (!(texels_.total() > 0)) return {};
-    const auto [x, y, within, density] = texels_.choose(u);
+    const auto [x, y, within, pdf] = texels_.choose(u);
     prefetch_texels(int(x), int(y), within);
     const float phi = 2 * pi * (float(x) + within.x) / float(image_.width);
     const float cosine = float(lerp(double(within.y), row_cosines_[y], row_cosines_[y + 1]));
     const float sine = safe_sqrt((1 - cosine) * (1 + cosine));
-    return {{sine * std::sin(phi), cosine, -sine * std::cos(phi)}, density};
+    return {{sine * std::sin(phi), cosine, -sine * std::cos(phi)}, pdf};
   }
-  float incident_density(const Vector3& towards) const override {
+  float incident_pdf(const Vector3& towards) const override {
     if (!(texels_.total() > 0)) return 0;
     const auto [x, y] = texel_at(place(towards));
-    return texels_.density(x, y);
+    return texels_.pdf(x, y);
   }
 
   FilePath file;
@@ -217,7 +217,7 @@ class EnvironmentEmission final : public EmissionShader {
 
   // The image lies in memory that is not near, and what is looked up in it is known well before it is needed: of a sampled
   // direction the surface answers first.
-  void prefetch_density(Point2 at) const {
+  void prefetch_pdf(Point2 at) const {
     const auto [x, y] = texel_at(at);
     texels_.prefetch(x, y);
   }

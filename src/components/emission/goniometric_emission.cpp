@@ -85,12 +85,12 @@ class GoniometricEmission final : public ShapedEmission {
       local = {float(sine * std::sin(phi)), float(cosine), float(-sine * std::cos(phi))};
     }
     const Vector3 direction = frame(p).to_world(normalize(local));
-    return {direction, density(p, direction)};  // at a texel's border rounding may put it into the next
+    return {direction, pdf(p, direction)};  // at a texel's border rounding may put it into the next
   }
-  float density(const SurfacePoint& p, const Vector3& direction) const override {
+  float pdf(const SurfacePoint& p, const Vector3& direction) const override {
     if (!(texels_.total() > 0) || !emits(p, direction)) return 0;
     const SquarePlace at = place(frame(p).to_local(direction));
-    return texels_.density(column(at.x), row(at.y));
+    return texels_.pdf(column(at.x), row(at.y));
   }
 
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {

@@ -105,10 +105,10 @@ class IesEmission final : public ShapedEmission {
   DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
     const DirectionSample s = table_.sample(u);
     const Vector3 direction = frame(p).to_world(s.direction);
-    return {direction, emits(p, direction) ? s.density : 0};
+    return {direction, emits(p, direction) ? s.pdf : 0};
   }
-  float density(const SurfacePoint& p, const Vector3& direction) const override {
-    return emits(p, direction) ? table_.density(frame(p).to_local(direction)) : 0;
+  float pdf(const SurfacePoint& p, const Vector3& direction) const override {
+    return emits(p, direction) ? table_.pdf(frame(p).to_local(direction)) : 0;
   }
 
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {

@@ -90,15 +90,15 @@ class ProjectorEmission final : public ShapedEmission {
     const Point2 at{(float(x) + u.x) / float(width), (float(y) + u.y) / float(height)};
     const Vector3 local = normalize(Vector3{(2 * at.x - 1) * half_width_, (1 - 2 * at.y) * half_height_, 1});
     const Vector3 direction = picture_frame(p).to_world(local);
-    return {direction, density(p, direction)};
+    return {direction, pdf(p, direction)};
   }
-  float density(const SurfacePoint& p, const Vector3& direction) const override {
+  float pdf(const SurfacePoint& p, const Vector3& direction) const override {
     Point2 at;
     float cosine = 0;
     if (empty_ || !find(p, direction, at, cosine) || !emits(p, direction)) return 0;
     const size_t x = size_t(std::min(int(at.x * float(image_.width)), image_.width - 1));
     const size_t y = size_t(std::min(int(at.y * float(image_.height)), image_.height - 1));
-    return densities_[y * size_t(image_.width) + x] / (cosine * square(cosine));
+    return pdfs_[y * size_t(image_.width) + x] / (cosine * square(cosine));
   }
 
   /// Of the image's mean colour: on a Point exactly its mean, on others as if it were the same all over the image [W/nm].
@@ -251,7 +251,7 @@ class ProjectorEmission final : public ShapedEmission {
     }
     for (size_t c = 0; c < 3; ++c) mean_[c] = float(sums[c] / weights);
 
-    densities_.resize(raw.size());
+    pdfs_.resize(raw.size());
     columns_.resize(raw.size());
     rows_.resize(height);
     double total = 0;
@@ -265,7 +265,7 @@ class ProjectorEmission final : public ShapedEmission {
       double row = 0;
       for (size_t x = 0; x < width; ++x) {
         const float value = 0.75f * column(x) + 0.125f * (column(x > 0 ? x - 1 : 0) + column(std::min(x + 1, width - 1)));
-        densities_[y * width + x] = value;
+        pdfs_[y * width + x] = value;
         running[x] = row += double(value);
       }
       for (size_t x = 0; x < width; ++x) columns_[y * width + x] = row > 0 ? float(running[x] / row) : 1;
@@ -275,7 +275,7 @@ class ProjectorEmission final : public ShapedEmission {
     if (empty_) return;
     for (size_t y = 0; y < height; ++y) rows_[y] = float(row_sums[y] / total);
     const double pixel_area = area() / double(raw.size());
-    for (float& d : densities_) d = float(double(d) / (total * pixel_area));
+    for (float& d : pdfs_) d = float(double(d) / (total * pixel_area));
   }
 
   const RgbSpace* space_ = nullptr;
@@ -284,7 +284,7 @@ class ProjectorEmission final : public ShapedEmission {
   float half_width_ = 1, half_height_ = 1;  // of the image at distance 1
   std::array<float, 3> mean_{};
   bool empty_ = true;
-  std::vector<float> densities_;       // of each pixel, per area at distance 1
+  std::vector<float> pdfs_;            // of each pixel, per area at distance 1
   std::vector<float> rows_, columns_;  // cumulative probabilities: of rows, and in each row of its pixels
 };
 

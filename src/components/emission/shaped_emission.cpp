@@ -164,14 +164,14 @@ void ShapedEmission::for_infinity(const SceneObject& object, Quantity quantity, 
   for (int i = 0; i < count; ++i) {
     const Vector3 v = warp::sphere(midpoint(i));  // exact midpoints along its z, which becomes y
     const DirectionSample d =
-        knows_incident() ? sample_incident(midpoint(i)) : DirectionSample{{v.y, v.z, v.x}, warp::sphere_density};
-    if (!(d.density > 0)) continue;
+        knows_incident() ? sample_incident(midpoint(i)) : DirectionSample{{v.y, v.z, v.x}, warp::sphere_pdf};
+    if (!(d.pdf > 0)) continue;
     Ray ray;
     ray.direction = normalize(object.transform.still()(d.direction));
     SurfacePoint p;
     object.surface_point(ray, {}, p);
     if (!emits(p, -ray.direction)) continue;
-    double weight = double(profile(p, -ray.direction) / d.density) / count;
+    double weight = double(profile(p, -ray.direction) / d.pdf) / count;
     if (quantity == Quantity::illuminance) {
       const Vector3 own = own_axis(p);
       weight *= double(std::max(own == Vector3{} ? d.direction.y : -dot(own, ray.direction), 0.0f));
@@ -189,8 +189,8 @@ void ShapedEmission::for_surface(const SceneObject& object, Quantity quantity, c
   Vector3 axis{};
   for (int i = 0; i < count; ++i) {
     const SurfaceSample s = object.sample_area(constant_ ? midpoint(i) : place(i), 0);
-    if (!(s.density > 0)) continue;
-    const double weight = double(1 / s.density);
+    if (!(s.pdf > 0)) continue;
+    const double weight = double(1 / s.pdf);
     weights += weight;
     for (int k = 0; k < 3; ++k) {
       middle[k] += weight * double(s.point.position[k]);
@@ -211,8 +211,8 @@ void ShapedEmission::for_surface(const SceneObject& object, Quantity quantity, c
   double share = 0;
   for (int i = 0; i < count; ++i) {
     const SurfaceSample s = object.sample_area(constant_ ? midpoint(i) : place(i), 0);
-    if (!(s.density > 0)) continue;
-    const double part = 1 / (double(s.density) * weights);
+    if (!(s.pdf > 0)) continue;
+    const double part = 1 / (double(s.pdf) * weights);
     const SurfacePoint& p = s.point;
     if (on_axis && axis != Vector3{}) {
       Vector3 to = axis;

@@ -81,7 +81,7 @@ class SkyEmission final : public EmissionShader {
     if (p.object) away = normalize(p.object->transform.at(p.time)(away));
     return {away, 1};
   }
-  float density(const SurfacePoint&, const Vector3&) const override { return 1; }
+  float pdf(const SurfacePoint&, const Vector3&) const override { return 1; }
 
   /// Of all the light that enters through the object's area [W/nm]: pi * area * mean radiance.
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
@@ -102,11 +102,11 @@ class SkyEmission final : public EmissionShader {
       const Vector3 local = table_.sample(u).direction;
       d = {local.y, local.z, local.x};
     }
-    return {d, incident_density(d)};
+    return {d, incident_pdf(d)};
   }
-  float incident_density(const Vector3& towards) const override {
+  float incident_pdf(const Vector3& towards) const override {
     const float disc = in_disc(towards) ? sun_share_ / sun_angle_ : 0;
-    return disc + (1 - sun_share_) * table_.density({towards.z, towards.x, towards.y});
+    return disc + (1 - sun_share_) * table_.pdf({towards.z, towards.x, towards.y});
   }
 
   static constexpr double true_diameter = 0.53313;  // [deg]: 959.63 arc seconds of radius, at the mean distance

@@ -76,7 +76,7 @@ void TexelDistribution::build(const std::vector<float>& weights, size_t width, c
 
 TexelDistribution::Choice TexelDistribution::choose(Point2 u) const {
   const size_t y = rows_.find(0, u.y), x = columns_.find(y, u.x);
-  return {x, y, u, density(x, y)};
+  return {x, y, u, pdf(x, y)};
 }
 
 }  // namespace etendue

@@ -19,14 +19,14 @@ class TexelDistribution {
   /// The sum of weights times measures; 0: there is nothing to choose.
   double total() const { return total_; }
   /// Probability over measure, per texel: that with which `choose` gives it, rounding included.
-  float density(size_t x, size_t y) const { return rows_.share(0, y) * columns_.share(y, x) / measures_[y]; }
+  float pdf(size_t x, size_t y) const { return rows_.share(0, y) * columns_.share(y, x) / measures_[y]; }
   /// Asks the processor to fetch what `density` will look at.
   void prefetch(size_t x, size_t y) const { columns_.prefetch(y, x); }
 
   struct Choice {
     size_t x, y;
     Point2 within;  ///< uniform in the texel
-    float density;  ///< the texel's
+    float pdf;      ///< the texel's
   };
   Choice choose(Point2 u) const;
 

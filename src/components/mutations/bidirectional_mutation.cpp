@@ -36,7 +36,7 @@ class BidirectionalMutation final : public Mutation {
     const std::vector<PathVertex> rest(x.x.begin() + l + r, x.x.end());
     if (!space.join(y, rest, r + more, choices)) return {};
     const double back = likely(y, l, r + more) / sum(y, k + more, [](int, int) { return false; });
-    return back * PathSpace::density(x, l, r) / (likely(x, l, r) / all * PathSpace::density(y, l, r + more));
+    return back * PathSpace::pdf(x, l, r) / (likely(x, l, r) / all * PathSpace::pdf(y, l, r + more));
   }
 
  private:

@@ -71,10 +71,10 @@ class AmbientOcclusionRenderer final : public Renderer {
       if (!(dot(point.normal, direction) * side > 0)) continue;
       point.leave(direction, shadow);
       if (distance > 0) shadow.maximum = distance;
-      seen += visible_fraction(scene, shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena).average();
+      seen += shadow_transmittance(scene, shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena).average();
     }
     const Spectrum value = grey(open * seen / float(rays), 2, sample);
-    sample.observe.sampled(value, 2, 1);
+    sample.observe.next_event(value, 2, 1);
     return value;
   }
 

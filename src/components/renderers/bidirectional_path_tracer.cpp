@@ -17,8 +17,8 @@
 #include "etendue/guiding/guided_directions.h"
 #include "etendue/render/learned_guide.h"
 #include "etendue/render/renderer.h"
+#include "etendue/transport/bidirectional_subpaths.h"
 #include "etendue/transport/renderer_members.h"
-#include "etendue/transport/walk_pair.h"
 
 namespace etendue {
 
@@ -36,7 +36,7 @@ class BidirectionalPathTracer final : public Renderer {
     d.summary("Paths from the luminaires and from the camera, connected in all ways and weighted by how well each does.",
               "Lafortune & Willems 1993; Veach & Guibas 1994; Veach 1997, chapter 10");
     d.group("Paths");
-    describe_max_depth<&BidirectionalPathTracer::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    describe_max_depth<&BidirectionalPathTracer::max_depth>(d, stored_subpath_depth, range(1, longest_stored_subpath));
     describe_roulette_depth<&BidirectionalPathTracer::roulette_depth>(d);
     describe_heuristic<&BidirectionalPathTracer::heuristic>(d, when("weighted"));
     d.group("Strategies")
@@ -77,7 +77,7 @@ class BidirectionalPathTracer final : public Renderer {
     const bool teaches = guide && guide->teaches(sample);
     std::optional<GuidedDirections> directions;
     if (guide) directions.emplace(guide->guide(), teaches);
-    WalkPair walks(context, *light_sampler, sample, {heuristic, weighted});
+    BidirectionalSubpaths walks(context, *light_sampler, sample, {heuristic, weighted});
     Found found{*this, sample, walks.light_wavelengths()};
     found.teaches = teaches;
     walks.from_camera(camera_ray, {max_depth, roulette_depth, directions ? &*directions : nullptr}, found);
@@ -93,7 +93,7 @@ class BidirectionalPathTracer final : public Renderer {
     for (int s = 2; s <= walks.light_vertices() && s <= max_depth && !sample.aborted(); ++s)
       if (shows(s, 1) && walks.light_vertex(s).connectable()) found.add(walks.connect_to_lens(s));
     if (teaches)
-      for (const GuideSample& each : directions->learned(walks.camera_walk(), found.arrived)) sample.record(each);
+      for (const GuideSample& each : directions->learned(walks.camera_subpath(), found.arrived)) sample.record(each);
     walks.record();
     return found.radiance;
   }
@@ -109,14 +109,14 @@ class BidirectionalPathTracer final : public Renderer {
 
     Found(const BidirectionalPathTracer& renderer, SampleContext& at, const Wavelengths& w)
         : self(renderer), sample(at), light_wavelengths(w) {}
-    void found(const FoundLight& light) override {
+    void found(const PathContribution& light) override {
       if (!self.shows(light.s, light.t)) return;
-      add_found(sample, light_wavelengths, light, radiance);
+      add_contribution(sample, light_wavelengths, light, radiance);
       if (!teaches || light.t < 2) return;
       if (arrived.size() <= size_t(light.t)) arrived.resize(size_t(light.t) + 1);
       arrived[size_t(light.t)] += light.light * light.weight;
     }
-    void add(const std::optional<FoundLight>& light) {
+    void add(const std::optional<PathContribution>& light) {
       if (light) found(*light);
     }
   };

@@ -61,7 +61,7 @@ class DirectRenderer final : public Renderer {
 
   PathClasses finds() const override {
     PathClasses lost = diffuse_light | glossy_light | area_caustics | delta_caustics | delta_caustics_in_mirrors |
-                       scattering_media | emitting_media | uneven_media | subsurface_light;
+                       scattering_media | emitting_media | heterogeneous_media | subsurface_light;
     if (strategy == Strategy::shader) lost |= delta_light;
     if (mirrors == Shown::luminaires) lost |= specular_views;
     return all_paths & ~lost;
@@ -77,7 +77,7 @@ class DirectRenderer final : public Renderer {
  private:
   /// Of which lobes light is direct. What passes straight on is followed apart, and is no scattering; so is what is mirrored
   /// and refracted where surfaces are shown there.
-  Lobes direct_lobes() const { return mirrors == Shown::surfaces ? smooth_lobes : Lobes(all_lobes & ~pass_through); }
+  Lobes direct_lobes() const { return mirrors == Shown::surfaces ? smooth_lobes : Lobes(all_lobes & ~null_scattering); }
 
   /// What passes straight on goes on as the branch itself.
   void follow(RayTree& tree, RayBranch& branch) const {
@@ -116,19 +116,19 @@ class DirectRenderer final : public Renderer {
     };
     if (strategy != Strategy::shader && scatter->has(smooth_lobes)) by_luminaires(tree, branch, point, *scatter, add_direct);
     if (strategy != Strategy::light && scatter->has(direct_lobes())) by_shader(tree, branch, point, *scatter, add_direct);
-    sample.observe.sampled(direct, branch.depth + 1, 1);
+    sample.observe.next_event(direct, branch.depth + 1, 1);
     if (mirrors == Shown::surfaces && branch.depth < view_depth) follow_mirrors(tree, branch, point, *scatter);
 
     const auto straight = pass_straight(point, *scatter, branch.ray, branch.around());
     if (!straight) return false;
     branch.throughput *= *straight;
-    return branch.may_go_on(pass_through);
+    return branch.may_go_on(null_scattering);
   }
 
   static void add_emission(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const SceneObject* luminaire) {
     const Spectrum light = branch.throughput * luminaire->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
     tree.add(branch.depth, light, luminaire);
-    tree.sample.observe.met(light, branch.depth, 1);
+    tree.sample.observe.emitter_hit(light, branch.depth, 1);
   }
 
   /// One branch goes on for each perfect mirror and refraction.
@@ -139,7 +139,7 @@ class DirectRenderer final : public Renderer {
       if (!scatter.has(lobe)) continue;
       const float choice = sample.numbers.next();  // a surface may have several mirrors
       const auto next = scatter.sample(-branch.ray.direction, choice, sample.numbers.next_pair(), Transport::radiance, lobe);
-      if (!next || enters_body(point, *next)) continue;
+      if (!next || enters_subsurface(point, *next)) continue;
       RayBranch child = branch;
       child.throughput *= next->weight;
       if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();
@@ -156,8 +156,8 @@ class DirectRenderer final : public Renderer {
   /// Lets a ray go straight on through a surface. Returns the fraction that does; none when all is scattered or absorbed.
   static std::optional<Spectrum> pass_straight(const SurfacePoint& point, const Scatter& scatter, Ray& ray,
                                                MediumStack* media) {
-    if (!scatter.has(pass_through)) return std::nullopt;
-    const auto straight = scatter.sample(-ray.direction, 0, {}, Transport::radiance, pass_through);
+    if (!scatter.has(null_scattering)) return std::nullopt;
+    const auto straight = scatter.sample(-ray.direction, 0, {}, Transport::radiance, null_scattering);
     if (!straight || straight->weight.black()) return std::nullopt;
     go_on(point, *straight, ray, media);
     return straight->weight;
@@ -177,13 +177,13 @@ class DirectRenderer final : public Renderer {
       const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(point.position, point.normal, choice);
       if (!chosen.luminaire || !sample_luminaire(tree.scene, *chosen.luminaire, point, branch.wavelengths, u, light)) continue;
-      const ScatterValue f = scatter.value_and_density(out, light.direction, Transport::radiance, direct_lobes());
+      const ScatterValue f = scatter.value_and_pdf(out, light.direction, Transport::radiance, direct_lobes());
       if (f.value.black()) continue;
       const bool rivalled = strategy == Strategy::both && !light.delta;
-      const float weight = weight_over_density(heuristic, n * chosen.probability * light.density,
-                                               rivalled ? float(shader_samples) * f.density : 0);
+      const float weight =
+          weight_over_pdf(heuristic, n * chosen.probability * light.pdf, rivalled ? float(shader_samples) * f.pdf : 0);
       add(f.value * light.radiance * weight *
-              visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.numbers, sample.arena),
+              shadow_transmittance(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.numbers, sample.arena),
           chosen.luminaire);
     }
   }
@@ -200,7 +200,7 @@ class DirectRenderer final : public Renderer {
     for (int i = 0; i < shader_samples && !sample.aborted(); ++i) {
       const float choice = std::min((float(i) + sample.numbers.next()) / n, one_minus_epsilon);
       const auto next = scatter.sample(out, choice, sample.numbers.next_pair(), Transport::radiance, direct_lobes());
-      if (!next || enters_body(point, *next)) continue;
+      if (!next || enters_subsurface(point, *next)) continue;
       Wavelengths wavelengths = branch.wavelengths;
       Spectrum throughput = next->weight / n;
       if (next->dispersive) throughput *= wavelengths.drop_secondary();
@@ -212,8 +212,8 @@ class DirectRenderer final : public Renderer {
 
       const auto weight = [&](const SurfacePoint& on_luminaire) {
         if (strategy == Strategy::shader || next->specular()) return 1.0f;
-        const float density = direct_light_density(*light_sampler, point.position, point.normal, next->direction, on_luminaire);
-        return heuristic_weight(heuristic, n * next->density, float(light_samples) * density);
+        const float pdf = next_event_pdf(*light_sampler, point.position, point.normal, next->direction, on_luminaire);
+        return heuristic_weight(heuristic, n * next->pdf, float(light_samples) * pdf);
       };
       for (int crossings = 0; crossings <= most_crossings; ++crossings) {
         const ArenaScope memory(sample.arena);
@@ -226,7 +226,7 @@ class DirectRenderer final : public Renderer {
         }
         if (met.object->luminaire())
           add(throughput * met.object->emission->radiance(met, -ray.direction, wavelengths) * weight(met), met.object);
-        if (!met.object->shader || !(met.object->shader->possible_lobes() & pass_through)) break;
+        if (!met.object->shader || !(met.object->shader->possible_lobes() & null_scattering)) break;
         const Scatter* there = scattering_at(met, -ray.direction, wavelengths, sample.arena);
         const auto straight = there ? pass_straight(met, *there, ray, around) : std::nullopt;
         if (!straight) break;

@@ -59,7 +59,7 @@ class DistributionRenderer final : public Renderer {
 
   PathClasses finds() const override {
     PathClasses lost =
-        delta_caustics | delta_caustics_in_mirrors | scattering_media | emitting_media | uneven_media | subsurface_light;
+        delta_caustics | delta_caustics_in_mirrors | scattering_media | emitting_media | heterogeneous_media | subsurface_light;
     if (diffuse_samples == 0) lost |= diffuse_light | area_caustics;
     if (glossy_samples == 0) lost |= glossy_light | area_caustics;
     return all_paths & ~lost;
@@ -81,7 +81,7 @@ class DistributionRenderer final : public Renderer {
     // luminaire rays.
     Point3 from = {};
     Normal3 from_normal = {};
-    float density = 0, luminaire_rays = 0;
+    float pdf = 0, luminaire_rays = 0;
   };
 
   /// What is known of a surface at which branches go on.
@@ -102,13 +102,13 @@ class DistributionRenderer final : public Renderer {
     Spectrum light = branch.throughput * point.object->emission->radiance(point, -direction, branch.wavelengths);
     if (light.black()) return;
     float weight = 1;
-    if (branch.density > 0) {
-      const float density = direct_light_density(*light_sampler, branch.from, branch.from_normal, direction, point);
-      weight = heuristic_weight(Heuristic::power, branch.density, branch.luminaire_rays * density);
+    if (branch.pdf > 0) {
+      const float pdf = next_event_pdf(*light_sampler, branch.from, branch.from_normal, direction, point);
+      weight = heuristic_weight(Heuristic::power, branch.pdf, branch.luminaire_rays * pdf);
     }
     light *= weight;
     tree.add(branch.depth, light, point.object);
-    tree.sample.observe.met(light, branch.depth, weight);
+    tree.sample.observe.emitter_hit(light, branch.depth, weight);
   }
 
   void follow(RayTree& tree, Branch& branch) const {
@@ -138,19 +138,19 @@ class DistributionRenderer final : public Renderer {
       const bool last = branch.depth >= max_depth;
       if (!last && scatter->has(smooth_lobes)) {
         const Spectrum direct = direct_light(tree, branch, place);
-        sample.observe.sampled(direct, branch.depth + 1, 1);
+        sample.observe.next_event(direct, branch.depth + 1, 1);
       }
       // What goes straight on is no longer for it, so the last segment may do that.
-      const Lobes lobes = last ? Lobes(pass_through) : followed();
+      const Lobes lobes = last ? Lobes(null_scattering) : followed();
       if (place.splits) {
         if (!split(tree, branch, place, lobes)) return;
         continue;
       }
       const float choice = sample.numbers.next();
       const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), Transport::radiance, lobes);
-      if (!next || enters_body(place.point, *next)) return;
+      if (!next || enters_subsurface(place.point, *next)) return;
       branch.throughput *= next->weight;
-      step(sample, branch, place, *next, next->density, 1);
+      step(sample, branch, place, *next, next->pdf, 1);
       // Radiance that refraction changed comes back when the path leaves the medium: that decides as little as splitting.
       if (branch.depth > roulette_depth) {
         const float survival = std::min(0.95f, branch.throughput.maximum() * branch.eta_squared / branch.share);
@@ -172,7 +172,7 @@ class DistributionRenderer final : public Renderer {
                           {glossy_lobes, diffuse_lobes, glossy_samples, diffuse_samples},
                           {specular_reflection, no_lobes, specular_samples, 0},
                           {specular_transmission, no_lobes, specular_samples, 0},
-                          {pass_through, no_lobes, 1, 0}};
+                          {null_scattering, no_lobes, 1, 0}};
     SampleContext& sample = tree.sample;
     bool first = true, goes_on = false;
     for (const Kind& kind : kinds) {
@@ -182,24 +182,23 @@ class DistributionRenderer final : public Renderer {
         const float choice = (float(i) + sample.numbers.next()) / float(kind.count);
         const auto next = place.scatter.sample(place.out, std::min(choice, one_minus_epsilon), sample.numbers.next_pair(),
                                                Transport::radiance, kind.lobes);
-        if (!next || enters_body(place.point, *next)) continue;
+        if (!next || enters_subsurface(place.point, *next)) continue;
         Branch child = branch;
-        float density = float(kind.count) * next->density;  // N of a smooth lobe
+        float pdf = float(kind.count) * next->pdf;  // N of a smooth lobe
         if (rivals == 0) {
           child.throughput *= next->weight / float(kind.count);
         } else {
-          const ScatterValue other =
-              place.scatter.value_and_density(place.out, next->direction, Transport::radiance, kind.rivals);
-          const Spectrum value = next->weight * next->density + other.value;
-          density += float(rivals) * other.density;
-          child.throughput *= value / density;
+          const ScatterValue other = place.scatter.value_and_pdf(place.out, next->direction, Transport::radiance, kind.rivals);
+          const Spectrum value = next->weight * next->pdf + other.value;
+          pdf += float(rivals) * other.pdf;
+          child.throughput *= value / pdf;
         }
-        step(sample, child, place, *next, density, kind.count + rivals);
+        step(sample, child, place, *next, pdf, kind.count + rivals);
         if (child.throughput.black() || !child.may_go_on(next->lobe)) continue;
         if (!first) sample.observe.surface(place.point, branch.throughput);  // each branch from its surface on
         first = false;
         sample.observe.scattered(*next);
-        if (kind.lobes == pass_through) {
+        if (kind.lobes == null_scattering) {
           branch = child;
           goes_on = true;
         } else {
@@ -211,16 +210,15 @@ class DistributionRenderer final : public Renderer {
   }
 
   /// Sends a branch on in a sampled direction; its throughput holds the sample's weight already.
-  void step(SampleContext& sample, Branch& branch, const Place& place, const ScatterSample& next, float density,
-            int rays) const {
+  void step(SampleContext& sample, Branch& branch, const Place& place, const ScatterSample& next, float pdf, int rays) const {
     if (next.dispersive) branch.throughput *= branch.wavelengths.drop_secondary();
     branch.eta_squared *= next.eta * next.eta;
     go_on(place.point, next, branch.ray, branch.around());
     if (!place.splits) sample.observe.scattered(next);
-    if (next.lobe == pass_through) return;  // as if nothing had been there
+    if (next.lobe == null_scattering) return;  // as if nothing had been there
     ++branch.depth;
     branch.share /= float(rays);
-    branch.density = next.specular() ? 0 : density;
+    branch.pdf = next.specular() ? 0 : pdf;
     branch.luminaire_rays = place.splits ? float(light_samples) : 1;
     branch.from = place.point.position;
     branch.from_normal = place.point.normal;
@@ -228,13 +226,13 @@ class DistributionRenderer final : public Renderer {
 
   /// f of the lobes that are followed, and N.
   ScatterValue lobe_rays(const Place& place, const Vector3& in) const {
-    if (!place.splits) return place.scatter.value_and_density(place.out, in, Transport::radiance, followed());
+    if (!place.splits) return place.scatter.value_and_pdf(place.out, in, Transport::radiance, followed());
     ScatterValue sum;
     for (const auto& [lobes, count] : {std::pair(diffuse_lobes, diffuse_samples), std::pair(glossy_lobes, glossy_samples)}) {
       if (count == 0 || !place.scatter.has(lobes)) continue;
-      const ScatterValue kind = place.scatter.value_and_density(place.out, in, Transport::radiance, lobes);
+      const ScatterValue kind = place.scatter.value_and_pdf(place.out, in, Transport::radiance, lobes);
       sum.value += kind.value;
-      sum.density += float(count) * kind.density;
+      sum.pdf += float(count) * kind.pdf;
     }
     return sum;
   }
@@ -253,15 +251,14 @@ class DistributionRenderer final : public Renderer {
       const LightChoice chosen = light_sampler->choose(place.point.position, place.point.normal, choice);
       if (!chosen.luminaire || !sample_luminaire(tree.scene, *chosen.luminaire, place.point, branch.wavelengths, u, light))
         continue;
-      const float density = float(count) * chosen.probability * light.density;
+      const float pdf = float(count) * chosen.probability * light.pdf;
       const ScatterValue rivals = lobe_rays(place, light.direction);
-      Spectrum f = rivals.value * weight_over_density(Heuristic::power, density, light.delta ? 0 : rivals.density);
-      if (place.scatter.has(alone))
-        f += place.scatter.evaluate(place.out, light.direction, Transport::radiance, alone) / density;
+      Spectrum f = rivals.value * weight_over_pdf(Heuristic::power, pdf, light.delta ? 0 : rivals.pdf);
+      if (place.scatter.has(alone)) f += place.scatter.evaluate(place.out, light.direction, Transport::radiance, alone) / pdf;
       if (f.black()) continue;
       const Spectrum direct = branch.throughput * (f * light.radiance *
-                                                   visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths,
-                                                                    sample.numbers, sample.arena));
+                                                   shadow_transmittance(tree.scene, light.shadow, nullptr, branch.wavelengths,
+                                                                        sample.numbers, sample.arena));
       tree.add(branch.depth + 1, direct, chosen.luminaire);
       sum += direct;
     }

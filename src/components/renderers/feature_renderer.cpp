@@ -74,7 +74,7 @@ class FeatureProcess final : public RenderProcess {
       sample.wavelengths = display_colors().wavelengths;
     }
     sample.observe.light(1, value);
-    sample.observe.met(value, 1, 1);
+    sample.observe.emitter_hit(value, 1, 1);
     return value;
   }
 

@@ -173,7 +173,7 @@ class GuidedProcess final : public RenderProcess, public ShownInSpace {
     const Roulette roulette{settings_.roulette_depth};
     float more = 1;  // the product of p / p_scatter: by so much more would be left without a guide
     const auto met = [&](const SurfacePoint& luminaire) {
-      return settings_.next_event ? walk.weight_of_met(lights, settings_.heuristic, luminaire) : 1.0f;
+      return settings_.next_event ? walk.emitter_hit_weight(lights, settings_.heuristic, luminaire) : 1.0f;
     };
     const auto next_vertex = [&] {
       const bool goes_on = walk.next_vertex(met);

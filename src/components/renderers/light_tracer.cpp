@@ -6,9 +6,9 @@
 // estimate beta f |cos| V W_e / p_l falls on the film where the camera images that direction.
 
 #include "etendue/render/renderer.h"
-#include "etendue/transport/kept_walk.h"
 #include "etendue/transport/light_groups.h"
 #include "etendue/transport/renderer_members.h"
+#include "etendue/transport/subpath.h"
 #include "etendue/transport/visibility.h"
 
 namespace etendue {
@@ -23,7 +23,7 @@ class LightTracer final : public Renderer {
               "Arvo 1986, Backward ray tracing; Dutré, Lafortune & Willems 1993; Veach 1997, section 10.1");
     d.without("map_filter", "its paths come from luminaires, and what they meet is not averaged");
     d.group("Paths");
-    describe_max_depth<&LightTracer::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    describe_max_depth<&LightTracer::max_depth>(d, stored_subpath_depth, range(1, longest_stored_subpath));
     describe_roulette_depth<&LightTracer::roulette_depth>(d);
   }
 
@@ -35,24 +35,25 @@ class LightTracer final : public Renderer {
   Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
     if (sample.observe.features) note_first_surface(context.scene, camera_ray, sample);
     EmittedLight light;
-    static thread_local std::vector<KeptVertex> path;
-    walk_from_luminaire(context.scene, *light_sampler, camera_ray.time, {max_depth - 1, roulette_depth}, sample, path, light);
+    static thread_local std::vector<SubpathVertex> path;
+    generate_light_subpath(context.scene, *light_sampler, camera_ray.time, {max_depth - 1, roulette_depth}, sample, path,
+                           light);
     for (size_t i = 0; i < path.size() && !sample.aborted(); ++i)
       if (path[i].connectable()) connect(context, path, i, light, sample);
-    if (sample.observe.record) record_walk(sample.observe.record->light_vertices, path);
+    if (sample.observe.record) record_subpath(sample.observe.record->light_vertices, path);
     return {};
   }
 
  private:
-  void connect(const RenderContext& context, std::vector<KeptVertex>& path, size_t i, const EmittedLight& light,
+  void connect(const RenderContext& context, std::vector<SubpathVertex>& path, size_t i, const EmittedLight& light,
                SampleContext& sample) const {
-    KeptVertex& v = path[i];
+    SubpathVertex& v = path[i];
     const bool luminaire = i == 0;
     if (unseen(v)) return;
     if (luminaire && (light.infinite || v.point.normal == Normal3{})) return;  // of these the film holds no image
     NumberStream numbers = sample.numbers.fork("lens", std::uint32_t(i));
     const auto lens = context.camera.sample_lens(v.point.position, v.point.time, numbers.next_pair());
-    if (!lens || !(lens->density > 0)) return;
+    if (!lens || !(lens->pdf > 0)) return;
 
     Spectrum value;
     if (luminaire) {
@@ -63,7 +64,7 @@ class LightTracer final : public Renderer {
     } else {
       value = v.throughput * scattering(v, v.out, lens->direction, Transport::importance).value;
     }
-    value *= lens->importance / lens->density * context.camera.lens_weight(*lens, sample.wavelengths);
+    value *= lens->importance / lens->pdf * context.camera.lens_weight(*lens, sample.wavelengths);
     if (value.black()) return;
 
     const Ray ray = lens_ray(v, *lens);
@@ -73,7 +74,7 @@ class LightTracer final : public Renderer {
       media_at(context.scene, ray.origin, ray.time, scratch);
       media = &scratch;
     }
-    value *= visible_fraction(context.scene, ray, media, sample.wavelengths, numbers, sample.arena, Transport::importance);
+    value *= shadow_transmittance(context.scene, ray, media, sample.wavelengths, numbers, sample.arena, Transport::importance);
     if (value.black()) return;
     const int length = int(i) + 1;
     splat_light(sample, lens->film, value, sample.wavelengths, length, path[0].point.object);

@@ -4,18 +4,18 @@
 // how many segments k the path has, with probability P(k), and which of its strategies makes it, s of its k + 1 vertices being
 // taken from the luminaire. The walks are then as long as they must be, and no longer, and
 //     F = (number of strategies / P(k)) w_s C_s,
-// with C_s what the strategy brings and w_s its multiple-importance weight (transport/walk_pair.h). The mean of F over the
-// numbers is all light of all lengths. Chains mutate the numbers (render/number_chains.h), the choices among them: they come
-// most often to strategies that bring most of a path's light, in proportion to w_s.
+// with C_s what the strategy brings and w_s its multiple-importance weight (transport/bidirectional_subpaths.h). The mean of F
+// over the numbers is all light of all lengths. Chains mutate the numbers (render/primary_sample_chains.h), the choices among
+// them: they come most often to strategies that bring most of a path's light, in proportion to w_s.
 //
 // P is any distribution that gives each length a chance. Each step of the render takes it from a few paths of its own: a part
 // of the light that was found with k segments and a part that falls as 1 / k.
 
 #include <numeric>
 
-#include "etendue/render/number_chains.h"
+#include "etendue/render/primary_sample_chains.h"
+#include "etendue/transport/bidirectional_subpaths.h"
 #include "etendue/transport/renderer_members.h"
-#include "etendue/transport/walk_pair.h"
 
 namespace etendue {
 
@@ -32,7 +32,7 @@ class MultiplexedMetropolis final : public Renderer {
     d.summary("Metropolis light transport that mutates one bidirectional path at a time, and the strategy that makes it.",
               "Hachisuka, Kaplanyan & Dachsbacher 2014; Kelemen et al. 2002");
     d.group("Paths");
-    describe_max_depth<&MultiplexedMetropolis::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    describe_max_depth<&MultiplexedMetropolis::max_depth>(d, stored_subpath_depth, range(1, longest_stored_subpath));
     describe_heuristic<&MultiplexedMetropolis::heuristic>(d);
     d.member<&MultiplexedMetropolis::direct>(
         "direct", "", "whether paths of one or two segments are found sample by sample, by all strategies, and not by chains");
@@ -52,24 +52,25 @@ class MultiplexedMetropolis final : public Renderer {
 namespace {
 
 /// No roulette: how long walks are is chosen.
-WalkLimits exactly(int segments) { return {segments, segments + 1}; }
+SubpathLimits exactly(int segments) { return {segments, segments + 1}; }
 
 /// Takes what strategies find, if it is of the wanted one.
 struct Found final : LightListener {
   SampleContext& sample;
-  const WalkPair& walks;
+  const BidirectionalSubpaths& walks;
   const int s, t;      ///< the strategy; -1: any
   const float factor;  ///< number of strategies / P(k)
   Spectrum radiance;
 
-  Found(SampleContext& at, const WalkPair& w, int s_, int t_, float f) : sample(at), walks(w), s(s_), t(t_), factor(f) {}
-  void found(const FoundLight& light) override {
+  Found(SampleContext& at, const BidirectionalSubpaths& w, int s_, int t_, float f)
+      : sample(at), walks(w), s(s_), t(t_), factor(f) {}
+  void found(const PathContribution& light) override {
     if (t >= 0 && (light.s != s || light.t != t)) return;
-    FoundLight one = light;
+    PathContribution one = light;
     one.light *= factor;
-    add_found(sample, walks.light_wavelengths(), one, radiance);
+    add_contribution(sample, walks.light_wavelengths(), one, radiance);
   }
-  void add(const std::optional<FoundLight>& light) {
+  void add(const std::optional<PathContribution>& light) {
     if (light) found(*light);
   }
 };
@@ -103,7 +104,7 @@ class StrategyProcess final : public RenderProcess {
     const int strategies = k == 1 ? 1 : k + 1;
     const int s = std::min(int(sample.numbers.fork("strategy").next() * float(strategies)), strategies - 1), t = k + 1 - s;
 
-    WalkPair walks(context, *settings_.light_sampler, sample, {settings_.heuristic});
+    BidirectionalSubpaths walks(context, *settings_.light_sampler, sample, {settings_.heuristic});
     Found found(sample, walks, s, t, float(strategies / P));
     if (t > 1) {
       walks.from_camera(ray, exactly(t - 1), found);
@@ -176,7 +177,7 @@ class DirectProcess final : public RenderProcess {
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     if (sample.observe.features) note_first_surface(context.scene, ray, sample);
     const int longest = std::min(settings_.max_depth, MutatedPaths::direct_length);
-    WalkPair walks(context, *settings_.light_sampler, sample, {settings_.heuristic});
+    BidirectionalSubpaths walks(context, *settings_.light_sampler, sample, {settings_.heuristic});
     Found found(sample, walks, 0, -1, 1);
     walks.from_camera(ray, exactly(longest), found);
     for (int t = 2; t <= walks.camera_vertices(); ++t) walks.meet(t, found);

@@ -16,7 +16,7 @@
 //
 // What paths of one or two segments bring is found sample by sample, by a bidirectional path tracer.
 
-#include "etendue/render/number_chains.h"
+#include "etendue/render/primary_sample_chains.h"
 #include "etendue/transport/mutation.h"
 #include "etendue/transport/renderer_members.h"
 
@@ -46,7 +46,7 @@ class PathSpaceMetropolis final : public Renderer {
               "Veach & Guibas 1997, Metropolis light transport; Veach 1997, chapter 11");
     d.without("map_filter", "its chains know places on surfaces, and not how wide a pixel is there");
     d.group("Paths");
-    describe_max_depth<&PathSpaceMetropolis::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    describe_max_depth<&PathSpaceMetropolis::max_depth>(d, stored_subpath_depth, range(1, longest_stored_subpath));
     d.member<&PathSpaceMetropolis::mutations>("mutations", "", "ways in which paths are changed");
     describe_chain_starts<&PathSpaceMetropolis::mutations_per_sample, &PathSpaceMetropolis::chains,
                           &PathSpaceMetropolis::bootstrap, &PathSpaceMetropolis::large_steps,
@@ -111,13 +111,13 @@ class PathSpaceProcess final : public RenderProcess, Chains {
   /// P(k)
   double length_share(int k) const { return 1.0 / k / lengths_.back(); }
   /// T of an independent path.
-  double density(const LightPath& y) const { return length_share(y.length()) * PathSpace::density(y, 0, y.length()); }
+  double pdf(const LightPath& y) const { return length_share(y.length()) * PathSpace::pdf(y, 0, y.length()); }
   /// F
   void contribution(const LightPath& y, bool found, Contribution& F) const {
     F.clear();
     if (!found) return;
     // Both are far out of the range of floats where vertices lie near one another, and their quotient is not.
-    const double of_f = y.scale / density(y);
+    const double of_f = y.scale / pdf(y);
     const Spectrum light = map(y.f, [of_f](float f) { return float(double(f) * of_f); });
     F.add({y.film, light, y.seen, y.length()}, {0, 0, context.image.width, context.image.height});
   }
@@ -186,7 +186,7 @@ class PathSpaceProcess final : public RenderProcess, Chains {
         const Mutation& mutation = *settings_.mutations[chosen(shares_, choices.next())];
         const std::optional<double> back = mutation.propose(space, *x, *y, choices);
         found = back && *back > 0 && y->length() > direct_length && y->length() <= settings_.max_depth;
-        if (found) ratio = *back * density(*y) / density(*x);
+        if (found) ratio = *back * pdf(*y) / pdf(*x);
       }
       contribution(*y, found, proposed);
       proposed.report_bad(tile);

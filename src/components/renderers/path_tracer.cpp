@@ -8,7 +8,7 @@
 // Russian roulette ends walks with a probability that keeps their expectation.
 //
 // At perfectly smooth glass the integral over directions is a sum of two, and with dispersion one for each wavelength: there a
-// walk is divided, and its branches are walks of their own (transport/camera_walk.h, Division).
+// walk is divided, and its branches are walks of their own (transport/camera_walk.h, Splitting).
 //
 // In a medium the phase function takes the place of f |cos|. Weights compare the densities of directions alone, which is the
 // same comparison whichever strategy made the path, so they add up to one.
@@ -38,7 +38,7 @@ class PathTracer final : public Renderer {
     d.member<&PathTracer::next_event>("next_event", "",
                                       "whether luminaires are sampled; without, paths must meet them by chance");
     d.group("Smooth glass");
-    describe_division<&PathTracer::split_depth, &PathTracer::split_wavelengths>(d);
+    describe_splitting<&PathTracer::split_depth, &PathTracer::split_wavelengths>(d);
   }
 
   PathClasses finds() const override {
@@ -61,16 +61,16 @@ class PathTracer final : public Renderer {
   template <class Walk>
   [[gnu::always_inline]] Spectrum follow(Walk&& walk) const {
     const Roulette roulette{roulette_depth};
-    const Division division{split_depth, split_wavelengths};
+    const Splitting splitting{split_depth, split_wavelengths};
     // Of light that the walk meets, against having sampled it.
     const auto met = [&](const SurfacePoint& luminaire) {
-      return next_event ? walk.weight_of_met(*light_sampler, heuristic, luminaire) : 1.0f;
+      return next_event ? walk.emitter_hit_weight(*light_sampler, heuristic, luminaire) : 1.0f;
     };
     while (walk.next_vertex(met) && !walk.at_end()) {
       const NumberStream::Bounce u = walk.next_bounce();
       if (next_event) walk.add_direct(*light_sampler, u, heuristic);
-      if (walk.divides(division))
-        walk.divide(division, u, [&](auto& branch) { return follow_branch(branch); });
+      if (walk.splits(splitting))
+        walk.split(splitting, u, [&](auto& branch) { return follow_branch(branch); });
       else if (walk.scatter(u) && !roulette.survives(walk))
         walk.end();
     }

@@ -39,7 +39,7 @@ class PhotonMapper final : public Renderer {
         "smooth, and blurred a little.",
         "Jensen 1996; Jensen 2001");
     d.group("Paths");
-    describe_max_depth<&PhotonMapper::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    describe_max_depth<&PhotonMapper::max_depth>(d, stored_subpath_depth, range(1, longest_stored_subpath));
     describe_roulette_depth<&PhotonMapper::roulette_depth>(d);
     describe_heuristic<&PhotonMapper::heuristic>(d);
     d.group("Photons");
@@ -116,7 +116,7 @@ class PhotonMapperProcess final : public PhotonProcess {
     } seeks = Seeks::all;
     const auto met = [&](const SurfacePoint& luminaire) {
       if (walk.specular && seeks != Seeks::all) return 0.0f;
-      return walk.weight_of_met(*settings_.light_sampler, settings_.heuristic, luminaire);
+      return walk.emitter_hit_weight(*settings_.light_sampler, settings_.heuristic, luminaire);
     };
     while (walk.next_vertex(met) && seeks != Seeks::luminaires && !walk.at_end()) {
       const Vertex& v = walk.vertex;
@@ -158,7 +158,7 @@ class PhotonMapperProcess final : public PhotonProcess {
       const Photon& p = photons.map[each.index];
       const bool wanted = kinds == PhotonKinds::all || (p.vertices > 1 && p.caustic == (kinds == PhotonKinds::caustics));
       if (!wanted || each.squared == infinity || walk.length + int(p.vertices) > settings_.max_depth) continue;
-      if (p.in_medium != v.in_medium() || parted(context.scene, v, p, radius)) continue;
+      if (p.in_medium != v.in_medium() || photon_occluded(context.scene, v, p, radius)) continue;
       walk.add_light(int(p.vertices), scattered_from_photon(v, p, {w, w.single()}) / (float(photons.walks) * place),
                      p.from(context.scene));
     }
@@ -190,14 +190,14 @@ class PhotonMapperProcess final : public PhotonProcess {
     }
     const auto mixture = [&](const Vector3& in) {
       ScatterValue f = ScatteringOf{v}(in);
-      f.density = (1 - q) * f.density + q * photons->density(in);
+      f.pdf = (1 - q) * f.pdf + q * photons->pdf(in);
       return f;
     };
     walk.add_direct(lights, u, settings_.heuristic, mixture);
     NumberStream guide = walk.numbers.fork("photon", std::uint32_t(walk.length));
     if (guide.next() < q) {
       const Vector3 to = photons->sample(guide.next(), u.direction);
-      const auto next = scattered_towards(v, to, mixture(to).density, Transport::radiance);
+      const auto next = scattered_towards(v, to, mixture(to).pdf, Transport::radiance);
       return next && walk.go_on(*next);
     }
     std::optional<ScatterSample> next = walk.sample_direction(u.lobe_choice, u.direction);
@@ -205,16 +205,16 @@ class PhotonMapperProcess final : public PhotonProcess {
     if (next->specular()) {
       next->weight /= 1 - q;
     } else {
-      const float density = mixture(next->direction).density;
-      next->weight *= next->density / density;
-      next->density = density;
+      const float pdf = mixture(next->direction).pdf;
+      next->weight *= next->pdf / pdf;
+      next->pdf = pdf;
     }
     return walk.go_on(*next);
   }
 
   const PhotonMapper& settings_;
   const float pixel_;  // [m]
-  const EmissionTargets targets_;
+  const ProjectionMap targets_;
   Photons global_, caustics_;
   IrradiancePoints irradiance_;
 };

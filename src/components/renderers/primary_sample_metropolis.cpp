@@ -3,12 +3,12 @@
 //
 // A path is a function of numbers u in [0, 1): those of its place on the film, its lens point, time and wavelengths, and all
 // that the algorithm inside draws (RenderProcess::path). F(u) is what it brings to the film. Chains of vectors u find it where
-// there is much of it (render/number_chains.h), with the mean that the renderer inside has.
+// there is much of it (render/primary_sample_chains.h), with the mean that the renderer inside has.
 //
 // What paths of one and two segments bring (luminaires seen, and light straight from them) is better found by samples that are
 // well spread over the film: `direct` has the renderer inside find it that way, and the chains carry the rest.
 
-#include "etendue/render/number_chains.h"
+#include "etendue/render/primary_sample_chains.h"
 
 namespace etendue {
 

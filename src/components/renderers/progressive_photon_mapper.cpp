@@ -20,7 +20,7 @@
 //                  it is only in media that are the same everywhere; in others light is gathered along rays.
 //
 // Photons of caustics, light that mirrors and glass alone threw on, come from walks of their own that begin towards such
-// objects (transport/emission_targets.h); the others leave those out.
+// objects (transport/projection_map.h); the others leave those out.
 //
 // direct(x) is light straight from luminaires, found by sampling them and by going on from x to see whether one is met,
 // weighted as in path tracing; photons then are those that were scattered before. A walk that has gone on for that sees
@@ -30,7 +30,7 @@
 #include "etendue/render/shrinking_bias.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
-#include "transport/stretch.h"
+#include "transport/medium_interval.h"
 
 namespace etendue {
 
@@ -52,7 +52,7 @@ class ProgressivePhotonMapper final : public Renderer, public ShrinkingBias {
     d.summary("Photons shared by all pixels within a radius that shrinks: for caustics, also in mirrors and under water.",
               "Hachisuka & Jensen 2009; Knaus & Zwicker 2011");
     d.group("Paths");
-    describe_max_depth<&ProgressivePhotonMapper::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    describe_max_depth<&ProgressivePhotonMapper::max_depth>(d, stored_subpath_depth, range(1, longest_stored_subpath));
     describe_roulette_depth<&ProgressivePhotonMapper::roulette_depth>(d);
     d.member<&ProgressivePhotonMapper::next_event>(
         "next_event", "", "whether light straight from luminaires is sampled; without, it comes by photons as all other does");
@@ -76,7 +76,7 @@ class ProgressivePhotonMapper final : public Renderer, public ShrinkingBias {
                                                       "is kept with a chance",
                                                       range(1, 4e8), soft(1e4, 1e7), logarithmic);
     d.group("Smooth glass");
-    describe_division<&ProgressivePhotonMapper::split_depth, &ProgressivePhotonMapper::split_wavelengths>(d);
+    describe_splitting<&ProgressivePhotonMapper::split_depth, &ProgressivePhotonMapper::split_wavelengths>(d);
   }
 
   PathClasses finds() const override { return all_paths & ~(subsurface_light | emitting_media); }
@@ -101,7 +101,7 @@ class ProgressivePhotonProcess final : public PhotonProcess {
                     .limits = {settings_.max_depth - 1, settings_.roulette_depth},
                     .fewest_vertices = settings_.next_event ? 2 : 1,
                     .fewest_in_media = settings_.next_event && settings_.media == InMedia::points ? 2 : 1,
-                    .in_even_media = settings_.media != InMedia::beams,
+                    .in_homogeneous_media = settings_.media != InMedia::beams,
                     .radius = first_radius_,
                     .shrinking = double(settings_.alpha)};
     photons_ = caustics_ = {};
@@ -120,7 +120,7 @@ class ProgressivePhotonProcess final : public PhotonProcess {
 
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     CameraWalk walk(context.scene, sample, ray, settings_.max_depth);
-    walk.only_weakened = settings_.media != InMedia::points;
+    walk.attenuates_only = settings_.media != InMedia::points;
     return follow(walk);
   }
 
@@ -137,14 +137,14 @@ class ProgressivePhotonProcess final : public PhotonProcess {
 
   template <class Walk>
   Spectrum follow(Walk& walk) const {
-    const Division division{settings_.split_depth, settings_.split_wavelengths};
+    const Splitting splitting{settings_.split_depth, settings_.split_wavelengths};
     const Met<Walk> met{*this, walk};
     while (walk.next_vertex(met) && walk.specular && !walk.at_end()) {
       if (walk.vertex.scatters_smoothly()) gather(walk);
       const NumberStream::Bounce u = walk.next_bounce();
       if (settings_.next_event) walk.add_direct(*settings_.light_sampler, u, settings_.heuristic);
-      if (walk.divides(division))
-        walk.divide(division, u, [&](auto& branch) { return follow(branch); });
+      if (walk.splits(splitting))
+        walk.split(splitting, u, [&](auto& branch) { return follow(branch); });
       else if (walk.scatter(u) && !settings_.next_event && !walk.specular)
         walk.end();
     }
@@ -159,11 +159,11 @@ class ProgressivePhotonProcess final : public PhotonProcess {
 
     /// The weight of a luminaire, against having sampled it.
     float operator()(const SurfacePoint& luminaire) const {
-      return walk.weight_of_met(*self.settings_.light_sampler, self.settings_.heuristic, luminaire);
+      return walk.emitter_hit_weight(*self.settings_.light_sampler, self.settings_.heuristic, luminaire);
     }
     /// A medium, for so far. What it sends to a smooth vertex photons have brought there.
     void through(const Medium& medium, float reach) const {
-      if (walk.only_weakened && walk.specular) self.gather_along(walk, medium, reach);
+      if (walk.attenuates_only && walk.specular) self.gather_along(walk, medium, reach);
     }
   };
 
@@ -176,9 +176,9 @@ class ProgressivePhotonProcess final : public PhotonProcess {
   template <class Walk>
   void gather(Walk& walk) const {
     const Carrying to = carrying(walk);
-    const auto add = [&](const Photon& p, float density) {
+    const auto add = [&](const Photon& p, float pdf) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
-      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, to) / density, p.from(context.scene));
+      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, to) / pdf, p.from(context.scene));
     };
     photons_.near(context.scene, walk.vertex, add);
     caustics_.near(context.scene, walk.vertex, add);
@@ -189,24 +189,23 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     const Carrying to = carrying(walk);
     NumberStream numbers = walk.numbers.fork("beam", std::uint32_t(walk.length));
     const Ray ray = walk.ray;
-    const auto add = [&](const Photon& p, float t, float density) {
+    const auto add = [&](const Photon& p, float t, float pdf) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(ray(t), ray.time, -ray.direction, p.out);
-      walk.add_light(int(p.vertices),
-                     transmittance(medium, ray, t, to.wavelengths, numbers) * carried(p, to) * (phase / density),
+      walk.add_light(int(p.vertices), transmittance(medium, ray, t, to.wavelengths, numbers) * carried(p, to) * (phase / pdf),
                      p.from(context.scene));
     };
     photons_.along(context.scene, ray, reach, add);
     caustics_.along(context.scene, ray, reach, add);
     if (settings_.media != InMedia::beams || !medium.volume->homogeneous()) return;
-    const Stretch there = stretch_of(medium, ray, reach);
+    const MediumInterval there = medium_interval(medium, ray, reach);
     const Ray within = there.within(ray);
     // Of the step's wavelengths, as the beams': a walk may have dropped some.
     const VolumeCoefficients c = medium.coefficients(ray.origin, ray.time, wavelengths({}, 0));
-    const auto add_beam = [&](const PhotonBeam& b, float s, float t, float density) {
+    const auto add_beam = [&](const PhotonBeam& b, float s, float t, float pdf) {
       if (walk.length + int(b.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(within(t), ray.time, -ray.direction, -b.direction);
-      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.single, to) * (phase / density), b.from(context.scene));
+      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.single, to) * (phase / pdf), b.from(context.scene));
     };
     beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);
     caustic_beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);
@@ -214,7 +213,7 @@ class ProgressivePhotonProcess final : public PhotonProcess {
 
   const ProgressivePhotonMapper& settings_;
   const double first_radius_;  // [m]
-  const EmissionTargets targets_;
+  const ProjectionMap targets_;
   Photons photons_, caustics_;
   Beams beams_, caustic_beams_;
 };

@@ -19,8 +19,8 @@
 #include "etendue/render/learned_guide.h"
 #include "etendue/render/photon_process.h"
 #include "etendue/render/shrinking_bias.h"
+#include "etendue/transport/bidirectional_subpaths.h"
 #include "etendue/transport/renderer_members.h"
-#include "etendue/transport/walk_pair.h"
 
 namespace etendue {
 
@@ -41,7 +41,7 @@ class VertexConnectionMerging final : public Renderer, public ShrinkingBias {
         "mirrors and under water, together with all other light.",
         "Georgiev et al. 2012; Hachisuka et al. 2012");
     d.group("Paths");
-    describe_max_depth<&VertexConnectionMerging::max_depth>(d, kept_walk_depth, range(1, longest_kept_walk));
+    describe_max_depth<&VertexConnectionMerging::max_depth>(d, stored_subpath_depth, range(1, longest_stored_subpath));
     describe_roulette_depth<&VertexConnectionMerging::roulette_depth>(d);
     describe_heuristic<&VertexConnectionMerging::heuristic>(d, when("connecting"));
     d.group("Strategies")
@@ -122,8 +122,8 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
     const int max_depth = settings_.max_depth, roulette_depth = settings_.roulette_depth;
     const bool connecting = settings_.connecting, merges = settings_.merging;
     if (sample.observe.features) note_first_surface(context.scene, camera_ray, sample);
-    WalkPair walks(context, *settings_.light_sampler, sample,
-                   {settings_.heuristic, connecting, merges ? photons_.merging : Merging{}});
+    BidirectionalSubpaths walks(context, *settings_.light_sampler, sample,
+                                {settings_.heuristic, connecting, merges ? photons_.merging : Merging{}});
     Found found{walks, sample, connecting};
     const bool teaches = guide_ && guide_->teaches(sample);
     std::optional<GuidedDirections> directions;
@@ -133,9 +133,9 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
     if (connecting) walks.from_luminaire(camera_ray.time, {max_depth - 1, roulette_depth});
 
     for (int t = 2; t <= walks.camera_vertices() && !sample.aborted(); ++t) {
-      if (!connecting && !walks.by_mirrors(t)) break;
+      if (!connecting && !walks.has_specular_prefix(t)) break;
       walks.meet(t, found);
-      const KeptVertex& z = walks.camera_vertex(t);
+      const SubpathVertex& z = walks.camera_vertex(t);
       if (!z.connectable()) continue;
       if (merges)
         photons_.near(context.scene, z, [&](const Photon& photon, float) {
@@ -149,7 +149,7 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
     for (int s = 2; s <= walks.light_vertices() && s <= max_depth && !sample.aborted(); ++s)
       if (walks.light_vertex(s).connectable()) found.add(walks.connect_to_lens(s));
     if (teaches)
-      for (const GuideSample& each : directions->learned(walks.camera_walk(), found.arrived)) sample.record(each);
+      for (const GuideSample& each : directions->learned(walks.camera_subpath(), found.arrived)) sample.record(each);
     walks.record();
     return found.radiance;
   }
@@ -157,22 +157,22 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
  private:
   /// What one sample found.
   struct Found final : LightListener {
-    const WalkPair& walks;
+    const BidirectionalSubpaths& walks;
     SampleContext& sample;
     const bool connecting;
     bool teaches = false;
     Spectrum radiance;
     std::vector<Spectrum> arrived;  // by strategies of t vertices from the camera, if that teaches a guide
 
-    Found(const WalkPair& w, SampleContext& at, bool connects) : walks(w), sample(at), connecting(connects) {}
-    void found(const FoundLight& light) override {
-      if (!connecting && !walks.by_mirrors(light.t)) return;
-      add_found(sample, walks.light_wavelengths(), light, radiance);
+    Found(const BidirectionalSubpaths& w, SampleContext& at, bool connects) : walks(w), sample(at), connecting(connects) {}
+    void found(const PathContribution& light) override {
+      if (!connecting && !walks.has_specular_prefix(light.t)) return;
+      add_contribution(sample, walks.light_wavelengths(), light, radiance);
       if (!teaches || light.t < 2) return;
       if (arrived.size() <= size_t(light.t)) arrived.resize(size_t(light.t) + 1);
       arrived[size_t(light.t)] += light.light * light.weight;
     }
-    void add(const std::optional<FoundLight>& light) {
+    void add(const std::optional<PathContribution>& light) {
       if (light) found(*light);
     }
   };

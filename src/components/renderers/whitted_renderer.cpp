@@ -30,8 +30,9 @@ class WhittedRenderer final : public Renderer {
   }
 
   PathClasses finds() const override {
-    return all_paths & ~(area_light | diffuse_light | glossy_light | area_caustics | delta_caustics |
-                         delta_caustics_in_mirrors | scattering_media | emitting_media | uneven_media | subsurface_light);
+    return all_paths &
+           ~(area_light | diffuse_light | glossy_light | area_caustics | delta_caustics | delta_caustics_in_mirrors |
+             scattering_media | emitting_media | heterogeneous_media | subsurface_light);
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
@@ -62,7 +63,7 @@ class WhittedRenderer final : public Renderer {
         const Spectrum light = branch.throughput * far->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
         tree.add(branch.depth, light, far);
         sample.observe.escape(*far, branch.ray, branch.throughput);
-        sample.observe.met(light, branch.depth, 1);
+        sample.observe.emitter_hit(light, branch.depth, 1);
       }
       return false;
     }
@@ -71,7 +72,7 @@ class WhittedRenderer final : public Renderer {
     if (point.object->luminaire()) {
       const Spectrum light = branch.throughput * point.object->emission->radiance(point, out, branch.wavelengths);
       tree.add(branch.depth, light, point.object);
-      sample.observe.met(light, branch.depth, 1);
+      sample.observe.emitter_hit(light, branch.depth, 1);
     }
     const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
     sample.observe.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
@@ -79,26 +80,26 @@ class WhittedRenderer final : public Renderer {
     const bool last = branch.depth >= max_depth;
     if (!last && scatter->has(smooth_lobes)) {
       const Spectrum direct = direct_light(tree, branch, point, *scatter);
-      sample.observe.sampled(direct, branch.depth + 1, 1);
+      sample.observe.next_event(direct, branch.depth + 1, 1);
     }
 
     bool first = true, goes_on = false;
-    for (const Lobe lobe : {specular_reflection, specular_transmission, pass_through}) {
+    for (const Lobe lobe : {specular_reflection, specular_transmission, null_scattering}) {
       // What goes straight on is no longer for it, so the last segment may do that.
-      if (!scatter->has(lobe) || (last && lobe != pass_through)) continue;
+      if (!scatter->has(lobe) || (last && lobe != null_scattering)) continue;
       const float choice = sample.numbers.next();  // a surface may have several mirrors
       const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), Transport::radiance, lobe);
-      if (!next || enters_body(point, *next)) continue;
+      if (!next || enters_subsurface(point, *next)) continue;
       RayBranch child = branch;
       child.throughput *= next->weight;
       if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();
       if (child.throughput.black() || !child.may_go_on(lobe)) continue;
-      if (lobe != pass_through) ++child.depth;
+      if (lobe != null_scattering) ++child.depth;
       go_on(point, *next, child.ray, child.around());
       if (!first) sample.observe.surface(point, branch.throughput);  // each branch is told from its surface on
       first = false;
       sample.observe.scattered(*next);
-      if (lobe == pass_through) {
+      if (lobe == null_scattering) {
         branch = child;
         goes_on = true;
       } else {
@@ -119,9 +120,9 @@ class WhittedRenderer final : public Renderer {
         continue;
       const Spectrum f = scatter.evaluate(out, light.direction, Transport::radiance, smooth_lobes);
       if (f.black()) continue;
-      const Spectrum direct = branch.throughput * (f * light.radiance / light.density *
-                                                   visible_fraction(tree.scene, light.shadow, nullptr, branch.wavelengths,
-                                                                    sample.numbers, sample.arena));
+      const Spectrum direct = branch.throughput * (f * light.radiance / light.pdf *
+                                                   shadow_transmittance(tree.scene, light.shadow, nullptr, branch.wavelengths,
+                                                                        sample.numbers, sample.arena));
       tree.add(branch.depth + 1, direct, luminaire);
       sum += direct;
     }

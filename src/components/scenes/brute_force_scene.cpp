@@ -3,7 +3,7 @@
 #include "etendue/scene.h"
 #include "etendue/shader.h"
 
-#include "geometry/sound_ray.h"
+#include "geometry/finite_ray.h"
 #include "triangle_pairs.h"
 
 namespace etendue {
@@ -46,7 +46,7 @@ class BruteForceScene final : public Scene {
  private:
   // Apart from the above, so that what the case without others needs is a jump.
   [[gnu::noinline]] bool nearest_of_all(const Ray& ray, Hit& hit) const {
-    if (!squares_are_floats(ray)) return false;
+    if (!has_finite_squares(ray)) return false;
     bool found = triangles_.nearest(ray, hit);
     Ray rest = ray;
     if (found) rest.maximum = hit.distance;
@@ -60,7 +60,7 @@ class BruteForceScene final : public Scene {
   }
 
   [[gnu::noinline]] bool any_of_all(const Ray& ray) const {
-    if (!squares_are_floats(ray)) return false;
+    if (!has_finite_squares(ray)) return false;
     if (triangles_.any(ray)) return true;
     const Inverse inverse(ray);
     for (const Other& other : others_)

@@ -5,7 +5,7 @@
 
 #include "etendue/scene.h"
 #include "etendue/shader.h"  // objects own shaders
-#include "geometry/sound_ray.h"
+#include "geometry/finite_ray.h"
 #include "primitives.h"
 
 namespace etendue {
@@ -32,7 +32,7 @@ class Mailbox {
 struct CellRay {
   double origin[3], direction[3], inverse[3];
   bool sound;  ///< others are in no cell
-  explicit CellRay(const Ray& ray) : sound(squares_are_floats(ray)) {
+  explicit CellRay(const Ray& ray) : sound(has_finite_squares(ray)) {
     for (int k = 0; k < 3; ++k) {
       origin[k] = double(ray.origin[k]);
       direction[k] = double(ray.direction[k]);

@@ -138,7 +138,7 @@ void CoincidentLuminaires::look_at(const Scene& scene, const SceneObject& lumina
     const Point2 u{std::min(float(x - std::floor(x)), one_minus_epsilon),
                    std::min(float(y - std::floor(y)), one_minus_epsilon)};
     const SurfaceSample s = luminaire.sample_area(u, time_of(luminaire, (float(i) + 0.5f) / float(count)));
-    if (!(s.density > 0)) continue;
+    if (!(s.pdf > 0)) continue;
     const SceneObject* own = nullptr;  // by the name that hits give it
     bool shared = false;
     for_coincident(scene, s.point, [&](const Coincident& c) {

@@ -13,7 +13,7 @@ namespace etendue {
 /// matter of rounding, another one for each ray; and to light that begins on one of them, or is looked for there, the others
 /// are not in the way, as rays begin and end beyond the errors of places. So that all ways to make paths find the same light,
 /// one of the surfaces alone is there, seen from either side:
-///   1. one that lets no light through, before one that does, as everywhere (settle_coincident);
+///   1. one that lets no light through, before one that does, as everywhere (resolve_coincident);
 ///   2. one that sends light to that side: a lamp in the plane of the ceiling shines;
 ///   3. of those that send none there, one that scatters light, before one that is black;
 ///   4. the luminaire that stands first in the scene.

@@ -49,12 +49,12 @@ class Reshaded final : public SceneObject {
   float area(float time) const override { return object->area(time); }
   float area_error(float time) const override { return object->area_error(time); }
   SurfaceSample sample_area(Point2 u, float time) const override { return own(object->sample_area(u, time)); }
-  float area_density(const SurfacePoint& p) const override { return object->area_density(p); }
+  float area_pdf(const SurfacePoint& p) const override { return object->area_pdf(p); }
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
     return own(object->sample_visible(from, u, time));
   }
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
-    return object->visible_density(from, direction, p);
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+    return object->visible_pdf(from, direction, p);
   }
   Bounds3 luminaire_bounds() const override { return object->luminaire_bounds(); }
   NormalCone normals() const override { return object->normals(); }

@@ -110,14 +110,14 @@ NormalSpread::NormalSpread(const SceneObject& object, float time) {
     for (int i = 0; i < count; ++i) {
       const double y = (double(std::int64_t(i) * generator % count) + 0.5) / count;
       const SurfaceSample s = object.sample_area({float((i + 0.5) / count), float(y)}, time);
-      if (s.density > 0) parts.push_back({s.point.normal, 1 / s.density});
+      if (s.pdf > 0) parts.push_back({s.point.normal, 1 / s.pdf});
     }
   };
   fill(fine_, 10946, 6765);
   fill(coarse_, 2584, 1597);
 }
 
-NormalSpread::Stretch NormalSpread::stretch(const WayOut& way) const {
+NormalSpread::MediumInterval NormalSpread::stretch(const WayOut& way) const {
   const auto mean = [&](const std::vector<Part>& parts) {
     double sum = 0, weights = 0;
     for (const Part& p : parts) {
@@ -197,7 +197,7 @@ void PlacedLuminaire::find_stretch(const NormalSpread* still) {
   if (delta() || infinite() || transform.animated()) return;
   const WayOut way(&place_, 0);
   const double scale = double(way.similarity());
-  const NormalSpread::Stretch stretch = still ? still->stretch(way) : NormalSpread::Stretch{scale * scale, 0};
+  const NormalSpread::MediumInterval stretch = still ? still->stretch(way) : NormalSpread::MediumInterval{scale * scale, 0};
   stretch_ = float(stretch.value);
   stretch_error_ = float(stretch.error);
 }
@@ -210,18 +210,18 @@ float PlacedLuminaire::area(float time) const {
 
 SurfaceSample PlacedLuminaire::sample_area(Point2 u, float time) const {
   SurfaceSample s = inner_->sample_area(u, time);
-  if (!(s.density > 0)) return s;
+  if (!(s.pdf > 0)) return s;
   const WayOut way(&place_, time);
-  if (!s.delta) s.density = float(double(s.density) / way.area_stretch(s.point.normal));
+  if (!s.delta) s.pdf = float(double(s.pdf) / way.area_stretch(s.point.normal));
   own(way, s);
   return s;
 }
 
-float PlacedLuminaire::area_density(const SurfacePoint& p) const {
+float PlacedLuminaire::area_pdf(const SurfacePoint& p) const {
   const WayOut way(&place_, p.time);
   const SurfacePoint there = inside(way, p);
-  const float density = inner_->area_density(there);
-  return delta() ? density : float(double(density) / way.area_stretch(there.normal));
+  const float pdf = inner_->area_pdf(there);
+  return delta() ? pdf : float(double(pdf) / way.area_stretch(there.normal));
 }
 
 // ---- solid angles ----------------------------------------------------------------------------------------------------------
@@ -229,7 +229,7 @@ float PlacedLuminaire::area_density(const SurfacePoint& p) const {
 SurfaceSample PlacedLuminaire::sample_visible(const Point3& from, Point2 u, float time) const {
   const WayOut way(&place_, time);
   SurfaceSample s = inner_->sample_visible(way.back(from), u, time);
-  if (!(s.density > 0)) return s;
+  if (!(s.pdf > 0)) return s;
   if (s.infinite) {  // a single direction
     s.direction = normalize(way(s.direction));
     s.point.position = from + (2 * all_.radius() + distance(from, all_.centre())) * s.direction;
@@ -237,22 +237,22 @@ SurfaceSample PlacedLuminaire::sample_visible(const Point3& from, Point2 u, floa
     return s;
   }
   const double jacobian = s.delta ? 0 : std::pow(double(length(way(s.direction))), 3) / way.volume();
-  const float per_area = s.delta ? inner_->area_density(s.point) : 0;
+  const float per_area = s.delta ? inner_->area_pdf(s.point) : 0;
   own(way, s);
   if (s.delta)
     complete_by_angle(s, from, per_area * distance_squared(from, s.point.position));
   else
-    complete_by_angle(s, from, float(double(s.density) * jacobian));
+    complete_by_angle(s, from, float(double(s.pdf) * jacobian));
   return s;
 }
 
-float PlacedLuminaire::visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
+float PlacedLuminaire::visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
   if (delta()) return 0;  // no direction is its own but by intention
   const WayOut way(&place_, p.time);
   const Vector3 w = way.back(direction);
   const double stretch = double(length(w));  // |M^-1 w| with w outside is 1 / |M w| with w inside
-  const float density = inner_->visible_density(way.back(from), w / float(stretch), inside(way, p));
-  return float(double(density) / (stretch * stretch * stretch * way.volume()));
+  const float pdf = inner_->visible_pdf(way.back(from), w / float(stretch), inside(way, p));
+  return float(double(pdf) / (stretch * stretch * stretch * way.volume()));
 }
 
 // ---- bounds ----------------------------------------------------------------------------------------------------------------

@@ -53,11 +53,11 @@ class WayOut {
 class NormalSpread {
  public:
   NormalSpread(const SceneObject&, float time);
-  struct Stretch {
+  struct MediumInterval {
     double value = 0, error = 0;  ///< the latter relative
   };
   /// By how much the way out enlarges the object's area.
-  Stretch stretch(const WayOut&) const;
+  MediumInterval stretch(const WayOut&) const;
 
  private:
   struct Part {
@@ -99,9 +99,9 @@ class PlacedLuminaire final : public SceneObject {
   float area(float time) const override;
   float area_error(float time) const override { return inner_->area_error(time) + stretch_error_; }
   SurfaceSample sample_area(Point2 u, float time) const override;
-  float area_density(const SurfacePoint&) const override;
+  float area_pdf(const SurfacePoint&) const override;
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
   Bounds3 luminaire_bounds() const override { return swept_out(inner_->luminaire_bounds()); }
   NormalCone normals() const override;
   bool closed() const override { return inner_->closed(); }

@@ -172,7 +172,7 @@ void Scene::require_good_objects() {
 
 /// Notes whether paths can enter an object, and whether light passes straight through its surface.
 void Scene::note_interior(const SceneObject& object) {
-  const bool null_surfaces = object.shader && object.shader->possible_lobes() & pass_through;
+  const bool null_surfaces = object.shader && object.shader->possible_lobes() & null_scattering;
   // A sheet may bound a medium (see enterable); an instance does not know whether what it gives a sheet's shader to has one.
   const bool may_enter =
       object.shader && (object.shader->transmits() || (is_sheet(*object.shader) && (object.interior || scene_within(object))));

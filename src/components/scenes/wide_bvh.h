@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "etendue/core/ray.h"
+#include "geometry/finite_ray.h"
 #include "geometry/lanes.h"
-#include "geometry/sound_ray.h"
 
 namespace etendue {
 
@@ -80,7 +80,7 @@ class BoxTest {
 /// out what begins beyond `limit`, which the calls may lower.
 template <class Leaf>
 inline void traverse(const WideBvh& bvh, const Ray& ray, const float& limit, const Leaf& leaf) {
-  if (bvh.nodes.empty() || !squares_are_floats(ray)) return;
+  if (bvh.nodes.empty() || !has_finite_squares(ray)) return;
   struct Waiting {
     float entry;
     std::uint32_t child, count;

@@ -8,12 +8,12 @@ namespace etendue {
 template <class Model>
 class JointScatter : public ScatterModel<Model> {
  public:
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override = 0;
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override = 0;
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const final {
-    return local_value_and_density(out, in, which).value;
+    return local_value_and_pdf(out, in, which).value;
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const final {
-    return local_value_and_density(out, in, which).density;
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const final {
+    return local_value_and_pdf(out, in, which).pdf;
   }
 
  protected:

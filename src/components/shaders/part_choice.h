@@ -22,13 +22,13 @@ inline float left_of_choice(float choice, float split) {
 
 /// A sample that goes on as if nothing were there.
 inline ScatterSample straight_on(const Vector3& out, const Spectrum& weight, float probability) {
-  return {-out, weight, probability, pass_through, 1, false};
+  return {-out, weight, probability, null_scattering, 1, false};
 }
 
 /// The fraction of light a part lets pass straight on.
 inline Spectrum straight_fraction(const Scatter* part, const Vector3& out, Transport transport) {
-  if (!part || !part->has(pass_through)) return {};
-  const auto straight = part->sample(out, 0, {}, transport, pass_through);
+  if (!part || !part->has(null_scattering)) return {};
+  const auto straight = part->sample(out, 0, {}, transport, null_scattering);
   return straight ? straight->weight : Spectrum();
 }
 

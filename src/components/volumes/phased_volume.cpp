@@ -13,14 +13,14 @@ float PhasedVolume::phase(const Point3&, const Vector3& out, const Vector3& in) 
   return henyey_greenstein::value(std::abs(anisotropy), length_squared(in - peak(out)) / 2);
 }
 
-Vector3 PhasedVolume::sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const {
+Vector3 PhasedVolume::sample_phase(const Point3&, const Vector3& out, Point2 u, float& pdf) const {
   float h = 0;
   if (phase_function) {
     h = phase_function->sample(u.x);
-    density = phase_function->value(h);
+    pdf = phase_function->value(h);
   } else {
     h = henyey_greenstein::sample(std::abs(anisotropy), u.x);
-    density = henyey_greenstein::value(std::abs(anisotropy), h);
+    pdf = henyey_greenstein::value(std::abs(anisotropy), h);
   }
   const float r = safe_sqrt(h * (2 - h));
   float sine = 0, cosine = 0;

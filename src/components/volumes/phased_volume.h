@@ -13,7 +13,7 @@ inline constexpr char too_dense[] = "the extinction may become {:g} per metre, w
 class PhasedVolume : public VolumeShader {
  public:
   float phase(const Point3&, const Vector3& out, const Vector3& in) const final;
-  Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& density) const final;
+  Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& pdf) const final;
 
   Ref<PhaseFunction> phase_function;
   float anisotropy = 0;

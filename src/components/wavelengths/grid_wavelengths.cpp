@@ -32,7 +32,7 @@ class GridWavelengths final : public WavelengthSampler {
 
   void prepare() override {
     if (!(low < high)) fail("high", "must exceed low");
-    density_ = 1 / (high - low);
+    pdf_ = 1 / (high - low);
     centres_.resize(size_t(count));
     for (int i = 0; i < count; ++i) centres_[size_t(i)] = float(double(low) + (i + 0.5) * (double(high) - double(low)) / count);
     for (int i = 0; i < spectrum_size; ++i) shift_[i] = std::uint32_t(i * count / spectrum_size);
@@ -49,7 +49,7 @@ class GridWavelengths final : public WavelengthSampler {
     Wavelengths result;
     for (int i = 0; i < spectrum_size; ++i) {
       const std::uint32_t point = hero + shift_[i];
-      result.place(i, centres_[point < n ? point : point - n], density_);
+      result.place(i, centres_[point < n ? point : point - n], pdf_);
     }
     return result;
   }
@@ -58,7 +58,7 @@ class GridWavelengths final : public WavelengthSampler {
   std::vector<float> centres_;  // nm
   std::uint32_t shift_[spectrum_size] = {};
   std::uint32_t stride_ = 1;
-  float density_ = 0;  // 1/nm
+  float pdf_ = 0;  // 1/nm
 };
 
 static const Register<GridWavelengths> registered;

@@ -48,7 +48,7 @@ class HeroWavelengths final : public WavelengthSampler {
       for (const int k : {i / distance, i / distance + spectrum_size}) {
         column.low[k] = float(begin);
         column.width[k] = float(end - begin);
-        column.density[k] = float(1 / (cells * (end - begin)));
+        column.pdf[k] = float(1 / (cells * (end - begin)));
       }
     }
   }
@@ -63,7 +63,7 @@ class HeroWavelengths final : public WavelengthSampler {
     const int first = cell / distance;
     const detail::Lanes lambda = from(column.low, first) + fraction * from(column.width, first);
     const detail::Lanes longest = high - detail::Lanes{};
-    return {lambda < longest ? lambda : longest, from(column.density, first)};
+    return {lambda < longest ? lambda : longest, from(column.pdf, first)};
   }
 
  private:
@@ -71,7 +71,7 @@ class HeroWavelengths final : public WavelengthSampler {
   /// The cells whose wavelengths go together, in order and once more: from any of them on, the others follow in turn.
   struct Column {
     float low[2 * spectrum_size], width[2 * spectrum_size];  // nm
-    float density[2 * spectrum_size];                        // 1/nm
+    float pdf[2 * spectrum_size];                            // 1/nm
   };
   static detail::Lanes from(const float* values, int first) {
     detail::Lanes lanes;

@@ -25,9 +25,9 @@ class Csg : public SceneObject {
   float area(float time) const override;
   float area_error(float time) const override;
   SurfaceSample sample_area(Point2 u, float time) const override;
-  float area_density(const SurfacePoint&) const override;
+  float area_pdf(const SurfacePoint&) const override;
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
   bool closed() const override { return true; }
   int attribute(int number, const SurfacePoint&, float* values) const override;
   std::vector<SceneObject*> placed_within() const override;
@@ -69,7 +69,7 @@ class Csg : public SceneObject {
   Place place_of(const Point3&, int axis) const;
   int crossings(const Ray&) const;
   double chord_area(const Transform&, float time, int chords, int step) const;
-  double own_density(const Point3&, const Normal3&, float time) const;
+  double own_pdf(const Point3&, const Normal3&, float time) const;
   double side_area(int axis) const;
 
   const int weight_of_others_, given_least_weight_;

@@ -66,8 +66,8 @@ float OperandShader::albedo_error() const {
     if (shader) largest = std::max(largest, shader->albedo_error());
   return largest;
 }
-bool OperandShader::moves_exit() const {
-  return any([](const Shader& s) { return s.moves_exit(); });
+bool OperandShader::has_subsurface_exit() const {
+  return any([](const Shader& s) { return s.has_subsurface_exit(); });
 }
 
 std::optional<SubsurfaceExit> OperandShader::sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
@@ -76,7 +76,7 @@ std::optional<SubsurfaceExit> OperandShader::sample_exit(const SurfacePoint& p, 
   if (!solid) return std::nullopt;
   SurfacePoint there = p;
   const Shader* const shader = solid->operand_at(p, there).shader.get();
-  return shader && shader->moves_exit() ? shader->sample_exit(p, scene, w, random, arena) : std::nullopt;
+  return shader && shader->has_subsurface_exit() ? shader->sample_exit(p, scene, w, random, arena) : std::nullopt;
 }
 
 namespace {

@@ -26,7 +26,7 @@ class OperandShader final : public Shader {
   bool reciprocal() const override;
   bool stochastic() const override;
   float albedo_error() const override;
-  bool moves_exit() const override;
+  bool has_subsurface_exit() const override;
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint&, const Scene&, const Wavelengths&, NumberStream&,
                                             Arena&) const override;
 

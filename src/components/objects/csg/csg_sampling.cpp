@@ -89,7 +89,7 @@ int Csg::crossings(const Ray& ray) const {
   return n;
 }
 
-double Csg::own_density(const Point3& p, const Normal3& normal, float time) const {
+double Csg::own_pdf(const Point3& p, const Normal3& normal, float time) const {
   double sum = 0, all_sides = 0;
   for (int axis = 0; axis < 3; ++axis) {
     all_sides += side_area(axis);
@@ -136,14 +136,14 @@ SurfaceSample Csg::sample_area(Point2 u, float time) const {
   Transform scratch;
   const Transform& t = placed(transform, time, scratch);
   if (!t.identity()) carry_out(t, s.point);
-  s.density = area_density(s.point);
+  s.pdf = area_pdf(s.point);
   return s;
 }
 
-float Csg::area_density(const SurfacePoint& p) const {
+float Csg::area_pdf(const SurfacePoint& p) const {
   Transform scratch;
   const Transform& t = placed(transform, p.time, scratch);
-  return float(own_density(t.back(p.position), p.object_normal, p.time)) / stretch_of_area(t, p.object_normal);
+  return float(own_pdf(t.back(p.position), p.object_normal, p.time)) / stretch_of_area(t, p.object_normal);
 }
 
 double Csg::chord_area(const Transform& t, float time, int chords, int step) const {

@@ -24,7 +24,7 @@ struct View {
   }
   /// Too small for directions of floats to tell one place from another.
   bool remote() const { return one_minus_cosine < 1e-9f; }
-  float density() const { return warp::cone_density(one_minus_cosine); }
+  float pdf() const { return warp::cone_pdf(one_minus_cosine); }
   Vector3 direction(Point2 u) const {
     const float h = u.x * one_minus_cosine, sine = safe_sqrt(h * (2 - h)), phi = 2 * pi * u.y;
     return frame.to_world({sine * std::cos(phi), sine * std::sin(phi), 1 - h});
@@ -54,17 +54,17 @@ SurfaceSample Csg::sample_visible(const Point3& from, Point2 u, float time) cons
   const View view(bounds_, from);
   if (view.remote()) return SceneObject::sample_visible(from, u, time);
   SurfaceSample s;
-  if (first_seen(from, view.direction(u), time, s.point)) complete_by_angle(s, from, view.density());
+  if (first_seen(from, view.direction(u), time, s.point)) complete_by_angle(s, from, view.pdf());
   return s;
 }
 
-float Csg::visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
+float Csg::visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
   const View view(bounds_, from);
-  if (view.remote()) return SceneObject::visible_density(from, direction, p);
+  if (view.remote()) return SceneObject::visible_pdf(from, direction, p);
   SurfacePoint seen;
   if (!first_seen(from, direction, p.time, seen)) return 0;
   const float near = 1e-4f * distance(from, p.position) + 4 * (p.error + seen.error);
-  return distance(p.position, seen.position) < near ? view.density() : 0;
+  return distance(p.position, seen.position) < near ? view.pdf() : 0;
 }
 
 }  // namespace etendue

@@ -132,10 +132,10 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
       const Point2 at = piece.sample(face, {fraction(rest, size), u.y});
       point_at(number + face, at.x, at.y, p);
     }
-    return density(p.primitive, p.u, p.v);
+    return pdf(p.primitive, p.u, p.v);
   }
 
-  float own_density(const SurfacePoint& p) const override { return density(p.primitive, p.u, p.v); }
+  float own_pdf(const SurfacePoint& p) const override { return pdf(p.primitive, p.u, p.v); }
 
  private:
   void check() {
@@ -262,16 +262,16 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
   }
 
   /// The density [1/m^2] of own_sample: a piece or its face is chosen in proportion to its area.
-  float density(std::uint32_t primitive, float u, float v) const {
+  float pdf(std::uint32_t primitive, float u, float v) const {
     const size_t i = primitive / 4;
     double area = area_until_[i] - (i > 0 ? area_until_[i - 1] : 0), there = 0;
     if (form == Form::ribbon) {
-      there = ribbon(i).density(u, v);
+      there = ribbon(i).pdf(u, v);
     } else {
       const TubePiece piece = tube(i);
       const auto face = TubePiece::Face(primitive % 4);
       area = piece.area(face);
-      there = piece.density(face, u, v);
+      there = piece.pdf(face, u, v);
     }
     return float(area / area_until_.back() * there);
   }

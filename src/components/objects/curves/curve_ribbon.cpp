@@ -79,7 +79,7 @@ Point2 RibbonPiece::sample(Point2 u) const {
   return {float(std::clamp(along, 0.0, 1.0)), u.y};
 }
 
-double RibbonPiece::density(float u, float v) const {
+double RibbonPiece::pdf(float u, float v) const {
   const double x = double(u), r0 = double(from_.radius), r1 = double(to_.radius);
   const double width = 2 * ((1 - x) * r0 + x * r1) / (r0 + r1), s = stretch(x, double(v));
   return s > 0 ? width / s : 0;

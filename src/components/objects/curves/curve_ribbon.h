@@ -25,7 +25,7 @@ class RibbonPiece {
   double area(int points) const;
   /// u and v of a point, and the density [1/m^2] of a point at them: u in proportion to the width.
   Point2 sample(Point2) const;
-  double density(float u, float v) const;
+  double pdf(float u, float v) const;
 
  private:
   Double3 along(double v) const { return axis_ + (2 * v - 1) * (side1_ - side0_); }

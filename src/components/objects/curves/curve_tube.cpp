@@ -192,7 +192,7 @@ Point2 TubePiece::sample(Face face, Point2 u) const {
   return {float(std::clamp(along, 0.0, 1.0)), u.y};
 }
 
-double TubePiece::density(Face face, float, float v) const {
+double TubePiece::pdf(Face face, float, float v) const {
   if (face != round) return 1 / area(face);
   return 1 / (2 * M_PI * c2_ * integral(line(2 * M_PI * double(v))));
 }

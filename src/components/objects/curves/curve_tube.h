@@ -67,7 +67,7 @@ class TubePiece {
   bool has(Face f) const { return f == round || (f == begin ? from_.flat && r_ > 0 : to_.flat && to_.radius > 0); }
   /// u and v of a point by area, and the density [1/m^2] of a point at them.
   Point2 sample(Face, Point2) const;
-  double density(Face, float u, float v) const;
+  double pdf(Face, float u, float v) const;
 
   /// Whether the planes at both ends meet outside of the tube only.
   bool proper() const;

@@ -49,14 +49,14 @@ class Distant final : public SceneObject {
   float area(float) const override { return radius_ * radius_; }
   /// There are no points with an area at infinity.
   SurfaceSample sample_area(Point2, float) const override { return {}; }
-  float area_density(const SurfacePoint&) const override { return 0; }
+  float area_pdf(const SurfacePoint&) const override { return 0; }
 
   SurfaceSample sample_visible(const Point3& from, Point2, float time) const override {
     SurfaceSample s;
     Transform scratch;
     const Transform& t = placed(transform, time, scratch);
     s.direction = -(t.identity() ? travel_ : normalize(t(travel_)));
-    s.density = 1;
+    s.pdf = 1;
     s.delta = true;
     s.infinite = true;
     s.distance = infinity;
@@ -64,7 +64,7 @@ class Distant final : public SceneObject {
     return s;
   }
   /// No direction is that of its light but by intention.
-  float visible_density(const Point3&, const Vector3&, const SurfacePoint&) const override { return 0; }
+  float visible_pdf(const Point3&, const Vector3&, const SurfacePoint&) const override { return 0; }
 
   Vector3 direction{0, -1, 0};
 

@@ -47,20 +47,20 @@ class Environment final : public SceneObject {
   float area(float) const override { return 4 * pi * radius_ * radius_; }
   /// There are no points with an area at infinity.
   SurfaceSample sample_area(Point2, float) const override { return {}; }
-  float area_density(const SurfacePoint&) const override { return 0; }
+  float area_pdf(const SurfacePoint&) const override { return 0; }
 
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
     SurfaceSample s;
     if (emission && emission->knows_incident()) {
       const DirectionSample d = emission->sample_incident(u);
-      if (!(d.density > 0)) return s;
+      if (!(d.pdf > 0)) return s;
       Transform scratch;
       const Transform& t = placed(transform, time, scratch);
       s.direction = t.identity() ? d.direction : normalize(t(d.direction));
-      s.density = d.density;
+      s.pdf = d.pdf;
     } else {
       s.direction = warp::sphere(u);
-      s.density = warp::sphere_density;
+      s.pdf = warp::sphere_pdf;
     }
     s.infinite = true;
     s.distance = infinity;
@@ -68,9 +68,9 @@ class Environment final : public SceneObject {
     return s;
   }
 
-  float visible_density(const Point3&, const Vector3& direction, const SurfacePoint& p) const override {
-    if (!emission || !emission->knows_incident()) return warp::sphere_density;
-    return emission->incident_density(inside(direction, p.time));
+  float visible_pdf(const Point3&, const Vector3& direction, const SurfacePoint& p) const override {
+    if (!emission || !emission->knows_incident()) return warp::sphere_pdf;
+    return emission->incident_pdf(inside(direction, p.time));
   }
 
  private:

@@ -68,7 +68,7 @@ class InfinitePlane final : public PlacedObject {
 
   double own_area() const override { return double(infinity); }
   float own_sample(Point2, OwnPoint&) const override { return 0; }
-  float own_density(const SurfacePoint&) const override { return 0; }
+  float own_pdf(const SurfacePoint&) const override { return 0; }
 
  private:
   double limit_ = 0;  // [m]

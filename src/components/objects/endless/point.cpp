@@ -48,24 +48,24 @@ class Point final : public SceneObject {
   SurfaceSample sample_area(Point2, float time) const override {
     SurfaceSample s;
     fill(time, s.point);
-    s.density = 1;
+    s.pdf = 1;
     s.delta = true;
     return s;
   }
-  float area_density(const SurfacePoint&) const override { return 1; }
+  float area_pdf(const SurfacePoint&) const override { return 1; }
 
   SurfaceSample sample_visible(const Point3& from, Point2, float time) const override {
     SurfaceSample s;
     fill(time, s.point);
     s.delta = true;
     const Vector3 to = s.point.position - from;
-    s.density = length_squared(to);  // 0 at the point itself: from there it has no direction
-    s.distance = std::sqrt(s.density);
+    s.pdf = length_squared(to);  // 0 at the point itself: from there it has no direction
+    s.distance = std::sqrt(s.pdf);
     s.direction = s.distance > 0 ? to / s.distance : Vector3{0, 0, 1};
     return s;
   }
   /// No direction is the point's but by intention.
-  float visible_density(const Point3&, const Vector3&, const SurfacePoint&) const override { return 0; }
+  float visible_pdf(const Point3&, const Vector3&, const SurfacePoint&) const override { return 0; }
 
   DoublePoint3 position{0, 0, 0};
 

@@ -9,7 +9,7 @@ namespace {
 
 // Its inside is all of space. Paths begin in it and never cross its surface, as there is none: MediumStack keeps it below all
 // objects that paths enter. A medium without end lets nothing come from infinity; one that has an end does, and is there within
-// a sphere around the scene alone, wherever a ray begins (transport/stretch.h).
+// a sphere around the scene alone, wherever a ray begins (transport/medium_interval.h).
 class Surroundings final : public SceneObject {
  public:
   static void describe(Description<Surroundings>& d) {
@@ -65,7 +65,7 @@ class Surroundings final : public SceneObject {
   void tangents(SurfacePoint&) const override {}
   float area(float) const override { return 0; }
   SurfaceSample sample_area(Point2, float) const override { return {}; }
-  float area_density(const SurfacePoint&) const override { return 0; }
+  float area_pdf(const SurfacePoint&) const override { return 0; }
 
   float reach = 0;
 

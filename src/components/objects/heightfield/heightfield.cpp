@@ -79,11 +79,11 @@ class Heightfield final : public PlacedObject {
       return true;
     };
     return sample_by_both(*this, direction_share(from, time), from, u, time, sample,
-                          [this](const SurfacePoint& p) { return area_density(p); });
+                          [this](const SurfacePoint& p) { return area_pdf(p); });
   }
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
-    return density_by_both(direction_share(from, p.time), from, direction, p,
-                           [this](const SurfacePoint& q) { return area_density(q); });
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+    return pdf_by_both(direction_share(from, p.time), from, direction, p,
+                       [this](const SurfacePoint& q) { return area_pdf(q); });
   }
 
   FilePath image;
@@ -138,11 +138,11 @@ class Heightfield final : public PlacedObject {
     const size_t j = choose(table.rows.data(), table.rows.size(), u.y);
     const size_t i = choose(table.cells.data() + j * wide, wide, u.x);
     point_at(int(i), int(j), u.x, u.y, p);
-    return density(i, j, u.x, u.y);
+    return pdf(i, j, u.x, u.y);
   }
 
-  float own_density(const SurfacePoint& p) const override {
-    return density(p.primitive % std::uint32_t(grid_.cells_x()), p.primitive / std::uint32_t(grid_.cells_x()), p.u, p.v);
+  float own_pdf(const SurfacePoint& p) const override {
+    return pdf(p.primitive % std::uint32_t(grid_.cells_x()), p.primitive / std::uint32_t(grid_.cells_x()), p.u, p.v);
   }
 
  private:
@@ -269,7 +269,7 @@ class Heightfield final : public PlacedObject {
   }
 
   /// The density [1/m^2] of own_sample, with the shares as they were rounded.
-  float density(size_t i, size_t j, float u, float v) const {
+  float pdf(size_t i, size_t j, float u, float v) const {
     const Table& t = table();
     const float* row = t.cells.data() + j * size_t(grid_.cells_x());
     const double in_row = double(row[i]) - double(i > 0 ? row[i - 1] : 0),

@@ -148,7 +148,7 @@ double ImplicitObject::face_area(const Cell& cell, int face, double& off) const 
 
 double ImplicitObject::own_area() const { return lazy_ ? table().area : 0; }
 
-float ImplicitObject::own_density(const SurfacePoint&) const { return float(1 / table().area); }
+float ImplicitObject::own_pdf(const SurfacePoint&) const { return float(1 / table().area); }
 
 // The base's quadrature goes over own_sample, which leaps about.
 float ImplicitObject::area(float time) const {

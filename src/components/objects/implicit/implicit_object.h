@@ -48,7 +48,7 @@ class ImplicitObject : public PlacedObject {
   void own_point(const Ray&, const Hit&, OwnPoint&) const override;
   double own_area() const override;
   float own_sample(Point2 u, OwnPoint&) const override;
-  float own_density(const SurfacePoint&) const override;
+  float own_pdf(const SurfacePoint&) const override;
 
  private:
   static constexpr int cells = 32;  // along the longest edge of the box

@@ -43,9 +43,9 @@ class TriangleObject : public SceneObject, public NumberedParts {
   void tangents(SurfacePoint&) const override;
   float area(float time) const override;
   SurfaceSample sample_area(Point2 u, float time) const override;
-  float area_density(const SurfacePoint&) const override;
+  float area_pdf(const SurfacePoint&) const override;
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
   NormalCone normals() const override;
   bool closed() const override;
   ObjectNotes notes() const override;

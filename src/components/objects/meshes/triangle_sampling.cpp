@@ -71,12 +71,12 @@ SurfaceSample TriangleObject::sample_area(Point2 u, float time) const {
   const std::uint32_t primitive = choose(u.x, u.y);
   const Point2 b = warp::triangle(u);
   fill(primitive, b.x, b.y, time, s.point);
-  s.density = area_density(s.point);
-  if (!(s.density < infinity)) s.density = 0;  // a triangle that has no area at this time
+  s.pdf = area_pdf(s.point);
+  if (!(s.pdf < infinity)) s.pdf = 0;  // a triangle that has no area at this time
   return s;
 }
 
-float TriangleObject::area_density(const SurfacePoint& p) const {
+float TriangleObject::area_pdf(const SurfacePoint& p) const {
   if (!moves()) return float(1 / area_);
   const Corners c = corners(p.primitive, p.time);
   return float(stored_area(p.primitive) / area_) / (0.5f * length(area_vector(c.p[0], c.p[1], c.p[2])));
@@ -175,7 +175,7 @@ SurfaceSample TriangleObject::sample_visible(const Point3& from, Point2 u, float
   return s;
 }
 
-float TriangleObject::visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
+float TriangleObject::visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
   const Corners c = corners(p.primitive, p.time);
   const float area = 0.5f * length(area_vector(c.p[0], c.p[1], c.p[2]));
   if (near(from, c.p, area)) {

@@ -165,12 +165,12 @@ double BezierObject::point_at(std::uint32_t number, float s, float t, OwnPoint& 
 
 float BezierObject::own_sample(Point2 u, OwnPoint& p) const {
   const bezier::AreaTable::Choice c = table_.choose(u, region_);
-  return float(table_.density(c.patch, c.s, c.t) / point_at(c.patch, c.s, c.t, p));
+  return float(table_.pdf(c.patch, c.s, c.t) / point_at(c.patch, c.s, c.t, p));
 }
 
-float BezierObject::own_density(const SurfacePoint& p) const {
+float BezierObject::own_pdf(const SurfacePoint& p) const {
   const bezier::Derivatives d = evaluate(patches_[p.primitive], double(p.u), double(p.v));
-  return float(table_.density(p.primitive, p.u, p.v) / length(cross(d.ds, d.dt)));
+  return float(table_.pdf(p.primitive, p.u, p.v) / length(cross(d.ds, d.dt)));
 }
 
 }  // namespace etendue

@@ -35,7 +35,7 @@ class BezierObject : public PlacedObject, public NumberedParts {
   double own_area() const override { return table_.area(); }
   float own_area_error() const override { return float(table_.area_error()); }
   float own_sample(Point2 u, OwnPoint&) const override;
-  float own_density(const SurfacePoint&) const override;
+  float own_pdf(const SurfacePoint&) const override;
 
  private:
   struct Accelerator;

@@ -34,7 +34,7 @@ AreaTable::AreaTable(const std::vector<Patch>& patches, const Region& region) : 
   patches_.reserve(patches.size());
   rows_.reserve(patches.size() * n);
   squares_.reserve(patches.size() * n * n);
-  densities_.reserve(patches.size() * n * n);
+  pdfs_.reserve(patches.size() * n * n);
   double off = 0;
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
     double patch_sum = 0;
@@ -51,7 +51,7 @@ AreaTable::AreaTable(const std::vector<Patch>& patches, const Region& region) : 
         }
         row_sum += area;
         squares_.push_back(row_sum);
-        densities_.push_back(plane > 0 ? area / plane : 0);
+        pdfs_.push_back(plane > 0 ? area / plane : 0);
       }
       patch_sum += row_sum;
       rows_.push_back(patch_sum);
@@ -61,7 +61,7 @@ AreaTable::AreaTable(const std::vector<Patch>& patches, const Region& region) : 
   }
   if (!(area_ > 0)) return;
   error_ = off / area_;
-  for (double& d : densities_) d /= area_;
+  for (double& d : pdfs_) d /= area_;
 }
 
 std::size_t AreaTable::find(const double* sums, std::size_t count, double& x) {
@@ -98,10 +98,10 @@ AreaTable::Choice AreaTable::choose(Point2 u, const Region& region) const {
   return {std::uint32_t(patch), float(s), float(t)};
 }
 
-double AreaTable::density(std::uint32_t patch, float s, float t) const {
+double AreaTable::pdf(std::uint32_t patch, float s, float t) const {
   const auto index = [&](float x) { return std::size_t(std::clamp(int(double(x) * grid_), 0, grid_ - 1)); };
   const std::size_t n = std::size_t(grid_);
-  return densities_[(patch * n + index(t)) * n + index(s)];
+  return pdfs_[(patch * n + index(t)) * n + index(s)];
 }
 
 }  // namespace etendue::bezier

@@ -24,7 +24,7 @@ class AreaTable {
   };
   Choice choose(Point2 u, const Region&) const;
   /// The density of a choice per unit of s and t.
-  double density(std::uint32_t patch, float s, float t) const;
+  double pdf(std::uint32_t patch, float s, float t) const;
 
  private:
   /// Finds the interval of x * (the last sum) among growing sums; x becomes the place within it, from 0 to 1.
@@ -32,10 +32,10 @@ class AreaTable {
 
   int grid_ = 1;
   double area_ = 0, error_ = 0;
-  std::vector<double> patches_;    // sums of areas up to each patch
-  std::vector<double> rows_;       // within a patch, up to each row
-  std::vector<double> squares_;    // within a row, up to each square
-  std::vector<double> densities_;  // of each square
+  std::vector<double> patches_;  // sums of areas up to each patch
+  std::vector<double> rows_;     // within a patch, up to each row
+  std::vector<double> squares_;  // within a row, up to each square
+  std::vector<double> pdfs_;     // of each square
 };
 
 }  // namespace etendue::bezier

@@ -59,7 +59,7 @@ class Box final : public PlacedObject {
     return s;
   }
 
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
     Transform scratch;
     const Transform& t = placed(transform, p.time, scratch);
     const Seen seen = faces_seen(t.back(from), t);

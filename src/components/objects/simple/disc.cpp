@@ -99,7 +99,7 @@ class Disc final : public SceneObject {
     const World& w = world(time, scratch);
     SurfaceSample s;
     fill(w, warp::disc(u), time, s.point);  // a linear map keeps uniform densities uniform
-    s.density = 1 / w.area;
+    s.pdf = 1 / w.area;
     return s;
   }
 

@@ -53,7 +53,7 @@ class Ellipsoid final : public PlacedObject {
     Transform scratch;
     const Transform& t = placed(transform, time, scratch);
     const Cone cone = seen(t.back(from));
-    if (!cone.usable) return sample_by_both(*this, cone.directions(), from, u, time, none, no_density);
+    if (!cone.usable) return sample_by_both(*this, cone.directions(), from, u, time, none, no_pdf);
     // As for Sphere: alpha is the angle, at the centre, from the axis back to the asking point to the point seen.
     const double h = double(u.x) * cone.one_minus_cosine, sin2 = h * (2 - h);
     const double cos_alpha =
@@ -67,16 +67,16 @@ class Ellipsoid final : public PlacedObject {
     SurfaceSample s;
     carry(own, time, s.point);
     complete_by_angle(s, from, 1);
-    s.density *= cone_density(cone, t, s.distance, s.direction, s.point);
+    s.pdf *= cone_pdf(cone, t, s.distance, s.direction, s.point);
     return s;
   }
 
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
     Transform scratch;
     const Transform& t = placed(transform, p.time, scratch);
     const Cone cone = seen(t.back(from));
-    if (!cone.usable) return density_by_both(cone.directions(), from, direction, p, no_density);
-    return cone_density(cone, t, distance(p.position, from), direction, p);
+    if (!cone.usable) return pdf_by_both(cone.directions(), from, direction, p, no_pdf);
+    return cone_pdf(cone, t, distance(p.position, from), direction, p);
   }
 
   DoublePoint3 centre{0, 0, 0};
@@ -141,9 +141,9 @@ class Ellipsoid final : public PlacedObject {
       s[(k + 2) % 3] = lobe.y;
     }
     point_at(double(s.x), double(s.y), double(s.z), p);
-    return density_at(p.normal);
+    return pdf_at(p.normal);
   }
-  float own_density(const SurfacePoint& p) const override { return density_at(p.object_normal); }
+  float own_pdf(const SurfacePoint& p) const override { return pdf_at(p.object_normal); }
 
  private:
   /// The unit sphere as seen from a point, which is (x, y, z) where the sphere is.
@@ -154,7 +154,7 @@ class Ellipsoid final : public PlacedObject {
   };
   /// What sample_by_both asks for points by area, of which there are none.
   static bool none(Point2, SurfaceSample&) { return false; }
-  static float no_density(const SurfacePoint&) { return 0; }
+  static float no_pdf(const SurfacePoint&) { return 0; }
 
   Cone seen(const Point3& own) const {
     Cone c;
@@ -169,8 +169,7 @@ class Ellipsoid final : public PlacedObject {
   }
 
   /// [1/sr], of a point at a distance [m] outside.
-  float cone_density(const Cone& cone, const Transform& t, float distance, const Vector3& direction,
-                     const SurfacePoint& p) const {
+  float cone_pdf(const Cone& cone, const Transform& t, float distance, const Vector3& direction, const SurfacePoint& p) const {
     if (!(dot(p.normal, direction) < 0)) return 0;  // its far side
     const Vector3 s = t.back(p.position) - Point3{};
     const double x = double(s.x) / double(radii.x) - cone.x, y = double(s.y) / double(radii.y) - cone.y,
@@ -182,7 +181,7 @@ class Ellipsoid final : public PlacedObject {
 
   /// The density of own_sample at a unit normal n here. On the unit sphere area is |radii * n| / (abc) as large, and the
   /// normal along radii * n.
-  float density_at(const Normal3& n) const {
+  float pdf_at(const Normal3& n) const {
     const double x = double(n.x) * double(radii.x), y = double(n.y) * double(radii.y), z = double(n.z) * double(radii.z);
     const double volume = double(radii.x) * double(radii.y) * double(radii.z);
     const double cosines = share_[0] * std::abs(x) + share_[1] * std::abs(y) + share_[2] * std::abs(z);

@@ -86,14 +86,14 @@ class Rectangle final : public SceneObject {
     std::optional<World> scratch;
     return world(time, scratch).area;
   }
-  float area_density(const SurfacePoint& p) const override { return 1 / area(p.time); }
+  float area_pdf(const SurfacePoint& p) const override { return 1 / area(p.time); }
 
   SurfaceSample sample_area(Point2 u, float time) const override {
     std::optional<World> scratch;
     const World& w = world(time, scratch);
     SurfaceSample s;
     fill_part(w, u, time, s.point);
-    s.density = 1 / w.area;
+    s.pdf = 1 / w.area;
     return s;
   }
 
@@ -122,7 +122,7 @@ class Rectangle final : public SceneObject {
     return s;
   }
 
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
     std::optional<World> scratch;
     const World& w = world(p.time, scratch);
     Vector3 seen_corner;

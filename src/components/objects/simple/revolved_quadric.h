@@ -14,7 +14,7 @@ class RevolvedQuadric : public PlacedObject {
     return sector_.full() && (profile_.low_cap || profile_.low_radius == 0) && (profile_.high_cap || profile_.high_radius == 0);
   }
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
 
   float sweep = 360;  ///< how much of a turn there is [deg]
 

@@ -128,17 +128,16 @@ SurfaceSample RevolvedQuadric::sample_visible(const Point3& from, Point2 u, floa
     return true;
   };
   return sample_by_both(*this, direction_share(own_from), from, u, time, sample,
-                        [this](const SurfacePoint& p) { return area_density(p); });
+                        [this](const SurfacePoint& p) { return area_pdf(p); });
 }
 
-float RevolvedQuadric::visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
+float RevolvedQuadric::visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
   Transform scratch;
   const Transform& t = placed(transform, p.time, scratch);
   const Point3 own_from = t.back(from);
   const Seen seen(*this, own_from);
-  if (seen.usable) return AxialDirections(seen).density(t, from, direction, p);
-  return density_by_both(direction_share(own_from), from, direction, p,
-                         [this](const SurfacePoint& q) { return area_density(q); });
+  if (seen.usable) return AxialDirections(seen).pdf(t, from, direction, p);
+  return pdf_by_both(direction_share(own_from), from, direction, p, [this](const SurfacePoint& q) { return area_pdf(q); });
 }
 
 }  // namespace etendue

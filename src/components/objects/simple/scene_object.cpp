@@ -52,19 +52,19 @@ void SceneObject::stand_for(const SceneObject& other) {
 
 SurfaceSample SceneObject::sample_visible(const Point3& from, Point2 u, float time) const {
   SurfaceSample s = sample_area(u, time);
-  if (s.density == 0 || s.delta || s.infinite) return s;
+  if (s.pdf == 0 || s.delta || s.infinite) return s;
   const Vector3 to = s.point.position - from;
   const float d2 = length_squared(to);
   s.distance = std::sqrt(d2);
   s.direction = d2 > 0 ? to / s.distance : Vector3{0, 0, 1};
   const float cosine = std::abs(dot(s.point.normal, s.direction));
-  s.density = cosine > 0 && d2 > 0 ? s.density * d2 / cosine : 0;
+  s.pdf = cosine > 0 && d2 > 0 ? s.pdf * d2 / cosine : 0;
   return s;
 }
 
-float SceneObject::visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
+float SceneObject::visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
   const float cosine = std::abs(dot(p.normal, direction));
-  return cosine > 0 ? area_density(p) * distance_squared(p.position, from) / cosine : 0;
+  return cosine > 0 ? area_pdf(p) * distance_squared(p.position, from) / cosine : 0;
 }
 
 static const Register<SceneObject> registered;

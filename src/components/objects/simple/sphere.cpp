@@ -101,11 +101,11 @@ class Sphere final : public SceneObject {
   SurfaceSample sample_area(Point2 u, float time) const override {
     SurfaceSample s;
     fill(warp::sphere(u), time, s.point);
-    s.density = area_density(s.point);
+    s.pdf = area_pdf(s.point);
     return s;
   }
 
-  float area_density(const SurfacePoint& p) const override {
+  float area_pdf(const SurfacePoint& p) const override {
     if (round_) return 1 / still_area_;
     Transform scratch;
     const Transform& t = placed(transform, p.time, scratch);
@@ -134,18 +134,18 @@ class Sphere final : public SceneObject {
       fill(out, time, s.point);
     else
       fill(normalize(transform.at(time).back(out)), time, s.point);
-    complete_by_angle(s, from, warp::cone_density(one_minus_cosine));
+    complete_by_angle(s, from, warp::cone_pdf(one_minus_cosine));
     return s;
   }
 
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
     Ball ball;
     float one_minus_cosine = 0;
     if (!as_ball(p.time, ball) || !ball.cone(from, one_minus_cosine)) {
       const float cosine = std::abs(dot(p.normal, direction));
-      return cosine > 0 ? area_density(p) * distance_squared(p.position, from) / cosine : 0;
+      return cosine > 0 ? area_pdf(p) * distance_squared(p.position, from) / cosine : 0;
     }
-    return dot(p.normal, direction) < 0 ? warp::cone_density(one_minus_cosine) : 0;  // never its far side
+    return dot(p.normal, direction) < 0 ? warp::cone_pdf(one_minus_cosine) : 0;  // never its far side
   }
 
  private:
@@ -237,7 +237,7 @@ class Sphere final : public SceneObject {
 
   SurfaceSample by_area(const Point3& from, Point2 u, float time) const {
     SurfaceSample s = sample_area(u, time);
-    complete_by_area(s, from, s.density);
+    complete_by_area(s, from, s.pdf);
     return s;
   }
 

@@ -48,15 +48,15 @@ class Tube final : public PlacedObject {
     const Transform& t = placed(transform, time, scratch);
     const Seen seen(*this, t.back(from));
     if (!seen.within_wall()) return AxialDirections(seen).sample(*this, t, from, u, time);
-    return sample_by_both(*this, everywhere, from, u, time, none, no_density);
+    return sample_by_both(*this, everywhere, from, u, time, none, no_pdf);
   }
 
-  float visible_density(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
+  float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
     Transform scratch;
     const Transform& t = placed(transform, p.time, scratch);
     const Seen seen(*this, t.back(from));
-    if (!seen.within_wall()) return AxialDirections(seen).density(t, from, direction, p);
-    return density_by_both(everywhere, from, direction, p, no_density);
+    if (!seen.within_wall()) return AxialDirections(seen).pdf(t, from, direction, p);
+    return pdf_by_both(everywhere, from, direction, p, no_pdf);
   }
 
   float inner_radius = 0.75f, radius = 1, height = 2;
@@ -167,7 +167,7 @@ class Tube final : public PlacedObject {
   /// From within the wall all samples are by direction, and none by area.
   static constexpr DirectionShare everywhere{1, false};
   static bool none(Point2, SurfaceSample&) { return false; }
-  static float no_density(const SurfacePoint&) { return 0; }
+  static float no_pdf(const SurfacePoint&) { return 0; }
 
   void point_on(int part, double phi, double share, OwnPoint& p) const {
     const double cosine = std::cos(phi), sine = std::sin(phi);

@@ -37,7 +37,7 @@ struct PhongHalf {
     return {s * v.x, s * v.y, 1 - k};
   }
   /// [1/sr] of h
-  float density(const HalfVector& half) const {
+  float pdf(const HalfVector& half) const {
     const float s2 = half.sine_squared();
     if (s2 >= 1) return 0;
     // t^n(h) = (1 - s2)^(n(h) / 2) and n(h) s2 = nu h.x^2 + nv h.y^2.
@@ -80,9 +80,9 @@ class AshikhminShirleyScatter final : public HalfVectorScatter<AshikhminShirleyS
   Spectrum matte(const Vector3& out, const Vector3& in) const { return base_ * (28 / (23 * pi) * passed(out) * passed(in)); }
   ScatterValue glossy(const Vector3& out, const Vector3& in) const {
     const HalfVector half = half_vector(out, in);
-    const float density = shape_.density(half) / (4 * half.u);
+    const float pdf = shape_.pdf(half) / (4 * half.u);
     const Spectrum fresnel = specular_ + (Spectrum(1.0f) - specular_) * schlick_growth(half.u);
-    return {fresnel * (density / std::max(std::abs(out.z), std::abs(in.z))), density};
+    return {fresnel * (pdf / std::max(std::abs(out.z), std::abs(in.z))), pdf};
   }
   Vector3 sample_half(Point2 u) const { return shape_.sample(u); }
   Spectrum matte_albedo(const Vector3& out) const { return base_ * passed(out); }

@@ -27,7 +27,7 @@ class CoupledScatter final : public ScatterModel<CoupledScatter> {
     if (!(which & diffuse_reflection) || !(out.z * in.z > 0)) return {};
     return base_ * (21 / (20 * pi) * passed(out) * passed(in));
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(which & diffuse_reflection) || !(out.z * in.z > 0)) return 0;
     return (1 - mirror_probability(out, which)) * std::abs(in.z) * inverse_pi;
   }
@@ -36,16 +36,16 @@ class CoupledScatter final : public ScatterModel<CoupledScatter> {
     if (choice < mirror) {
       s.in = {-out.x, -out.y, out.z};
       s.value = reflectance(out);
-      s.density = mirror;
+      s.pdf = mirror;
       s.lobe = specular_reflection;
       return true;
     }
     s.in = warp::cosine_hemisphere(u);
-    s.density = (1 - mirror) * s.in.z * inverse_pi;
+    s.pdf = (1 - mirror) * s.in.z * inverse_pi;
     s.value = base_ * (21 / (20 * pi) * passed(out) * passed(s.in) * s.in.z);
     s.lobe = diffuse_reflection;
     if (out.z < 0) s.in.z = -s.in.z;
-    return s.density > 0;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
     Spectrum sum;

@@ -33,7 +33,7 @@ class DiffractionGratingScatter final : public ScatterModel<DiffractionGratingSc
         single_(single) {}
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 
   bool local_sample(const Vector3& out, float choice, Point2, Lobes, LocalSample& s) const override {
     const float total = propagating(out, steps_[0]);
@@ -45,7 +45,7 @@ class DiffractionGratingScatter final : public ScatterModel<DiffractionGratingSc
       if (!(e > 0) || !leaves(out, m, steps_[0], in)) continue;
       s.in = in;
       s.value = reflectance_ * e;
-      s.density = e / total;
+      s.pdf = e / total;
       s.lobe = specular_reflection;
       s.dispersive = m != 0 && !single_;
       before += e;

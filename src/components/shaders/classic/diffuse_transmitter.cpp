@@ -21,7 +21,7 @@ class DiffuseTransmitterScatter final : public ScatterModel<DiffuseTransmitterSc
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return (out.z * in.z > 0 ? reflectance_ : transmittance_) * inverse_pi;
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     const float reflect = reflect_probability(which);
     return (out.z * in.z > 0 ? reflect : 1 - reflect) * std::abs(in.z) * inverse_pi;
   }
@@ -29,12 +29,12 @@ class DiffuseTransmitterScatter final : public ScatterModel<DiffuseTransmitterSc
     const float reflect = reflect_probability(which);
     const bool reflected = choice < reflect;
     s.in = warp::cosine_hemisphere(u);
-    const float density = s.in.z * inverse_pi;
-    s.value = (reflected ? reflectance_ : transmittance_) * density;
-    s.density = (reflected ? reflect : 1 - reflect) * density;
+    const float pdf = s.in.z * inverse_pi;
+    s.value = (reflected ? reflectance_ : transmittance_) * pdf;
+    s.pdf = (reflected ? reflect : 1 - reflect) * pdf;
     s.lobe = reflected ? diffuse_reflection : diffuse_transmission;
     if ((out.z < 0) == reflected) s.in.z = -s.in.z;
-    return s.density > 0;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3&, Lobes which) const override {
     Spectrum sum;

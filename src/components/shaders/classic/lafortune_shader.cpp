@@ -75,9 +75,9 @@ class LafortuneScatter final : public JointScatter<LafortuneScatter> {
                    Spectrum diffuse, const Colors& colors)
       : JointScatter(p, frame, lobes), list_(list.data()), count_(list.size()), diffuse_(diffuse), colors_(colors) {}
 
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(out.z * in.z > 0)) return {};
-    return value_and_density_of(above(out), above(in), shares(above(out), which), which);
+    return value_and_pdf_of(above(out), above(in), shares(above(out), which), which);
   }
   bool local_sample(const Vector3& out_, float choice, Point2 u, Lobes which, LocalSample& s) const override {
     const Vector3 out = above(out_);
@@ -101,11 +101,11 @@ class LafortuneScatter final : public JointScatter<LafortuneScatter> {
       s.lobe = diffuse_reflection;
     }
     if (!(s.in.z > 0)) return false;
-    const ScatterValue both = value_and_density_of(out, s.in, share, which);
+    const ScatterValue both = value_and_pdf_of(out, s.in, share, which);
     s.value = both.value * s.in.z;
-    s.density = both.density;
+    s.pdf = both.pdf;
     if (out_.z < 0) s.in.z = -s.in.z;
-    return s.density > 0;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
     Spectrum sum;
@@ -127,11 +127,11 @@ class LafortuneScatter final : public JointScatter<LafortuneScatter> {
       for (size_t i = 0; i <= count_; ++i) share[i] /= sum;
     return share;
   }
-  ScatterValue value_and_density_of(const Vector3& out, const Vector3& in, const Shares& share, Lobes which) const {
+  ScatterValue value_and_pdf_of(const Vector3& out, const Vector3& in, const Shares& share, Lobes which) const {
     ScatterValue r;
     if (which & diffuse_reflection) {
       r.value = diffuse_ * inverse_pi;
-      r.density = share[count_] * in.z * inverse_pi;
+      r.pdf = share[count_] * in.z * inverse_pi;
     }
     if (which & glossy_reflection)
       for (size_t i = 0; i < count_; ++i) {
@@ -144,7 +144,7 @@ class LafortuneScatter final : public JointScatter<LafortuneScatter> {
         if (d2 >= 2) continue;
         const float power = std::exp(lobe.n * std::log1p(-0.5f * d2));
         r.value += colors_[i] * (std::pow(length_m, lobe.n) * power);
-        r.density += share[i] * (lobe.n + 1) / (2 * pi) * power;
+        r.pdf += share[i] * (lobe.n + 1) / (2 * pi) * power;
       }
     return r;
   }

@@ -19,20 +19,20 @@ class LambertianScatter final : public ScatterModel<LambertianScatter> {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? reflectance_ * inverse_pi : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
     if (!(out.z * in.z > 0)) return {};
     return {reflectance_ * inverse_pi, std::abs(in.z) * inverse_pi};
   }
   bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const override {
     s.in = warp::cosine_hemisphere(u);
-    s.density = s.in.z * inverse_pi;
-    s.value = reflectance_ * s.density;
+    s.pdf = s.in.z * inverse_pi;
+    s.value = reflectance_ * s.pdf;
     s.lobe = diffuse_reflection;
     if (out.z < 0) s.in.z = -s.in.z;
-    return s.density > 0;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3&, Lobes which) const override {
     return (which & diffuse_reflection) ? reflectance_ : Spectrum();

@@ -16,7 +16,7 @@ namespace etendue {
 template <class Model>
 class MatteGlossyScatter : public JointScatter<Model> {
  public:
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(out.z * in.z > 0)) return {};
     return combine(
         in, glossy_probability(out, which), which, [&] { return model().matte(out, in); },
@@ -44,19 +44,19 @@ class MatteGlossyScatter : public JointScatter<Model> {
     ScatterValue r;
     if (which & diffuse_reflection) {
       r.value = matte();
-      r.density = (1 - probability) * std::abs(in.z) * inverse_pi;
+      r.pdf = (1 - probability) * std::abs(in.z) * inverse_pi;
     }
     if (which & glossy_reflection) {
       const ScatterValue lobe = glossy();
       r.value += lobe.value;
-      r.density += probability * lobe.density;
+      r.pdf += probability * lobe.pdf;
     }
     return r;
   }
   static bool complete(Scatter::LocalSample& s, const ScatterValue& both) {
     s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
-    return s.density > 0;
+    s.pdf = both.pdf;
+    return s.pdf > 0;
   }
 
  private:

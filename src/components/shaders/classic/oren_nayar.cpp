@@ -37,7 +37,7 @@ struct ClippedCosine {
     return normalize(Vector3{a * x + b * z, c * y, d * x + z});
   }
   /// With the adjugate of M: M^-1 = adj / det, and |M h| = 1 / |M^-1 in|.
-  float density(const Vector3& in) const {
+  float pdf(const Vector3& in) const {
     const Vector3 h{c * (in.x - b * in.z), (a - b * d) * in.y, c * (a * in.z - d * in.x)};
     return square(determinant / length_squared(h)) * std::max(h.z, 0.0f) * inverse_pi / part;
   }
@@ -55,8 +55,8 @@ class OrenNayarScatter final : public ScatterModel<OrenNayarScatter> {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? lobe_.value(out, in) : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
-    return out.z * in.z > 0 ? density_of(out, in) : 0;
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? pdf_of(out, in) : 0;
   }
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const override {
     const float mu = std::abs(out.z);
@@ -68,7 +68,7 @@ class OrenNayarScatter final : public ScatterModel<OrenNayarScatter> {
     }
     if (!(s.in.z > 0)) return false;
     if (out.z < 0) s.in.z = -s.in.z;
-    s.density = density_of(out, s.in);
+    s.pdf = pdf_of(out, s.in);
     s.value = lobe_.value(out, s.in) * std::abs(s.in.z);
     s.lobe = diffuse_reflection;
     return true;
@@ -85,11 +85,11 @@ class OrenNayarScatter final : public ScatterModel<OrenNayarScatter> {
   }
   float uniform_share(float mu) const { return uniform_ * (0.162925f + mu * (-0.372058f + (0.538233f - 0.290822f * mu) * mu)); }
 
-  float density_of(const Vector3& out, const Vector3& in) const {
+  float pdf_of(const Vector3& out, const Vector3& in) const {
     const float mu = std::abs(out.z), share = uniform_share(mu);
     const Vector3 x = azimuth(out);
     const Vector3 turned{in.x * x.x + in.y * x.y, in.y * x.x - in.x * x.y, std::abs(in.z)};
-    return lerp(share, ClippedCosine(mu, roughness_).density(turned), warp::hemisphere_density);
+    return lerp(share, ClippedCosine(mu, roughness_).pdf(turned), warp::hemisphere_pdf);
   }
 
   EonLobe lobe_;

@@ -9,20 +9,22 @@ class PassThroughScatter final : public ScatterModel<PassThroughScatter> {
  public:
   // Around the geometric normal: interpolated normals play no part, and where they disagree with the surface nothing may
   // be lost.
-  explicit PassThroughScatter(const SurfacePoint& p) : ScatterModel(p, Frame(p.normal), pass_through) { has_choice_ = false; }
+  explicit PassThroughScatter(const SurfacePoint& p) : ScatterModel(p, Frame(p.normal), null_scattering) {
+    has_choice_ = false;
+  }
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
   bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
     s.in = -out;
     s.value = Spectrum(1.0f);
-    s.density = 1;
-    s.lobe = pass_through;
+    s.pdf = 1;
+    s.lobe = null_scattering;
     s.eta = 1;
     return true;
   }
   Spectrum local_albedo(const Vector3&, Lobes which) const override {
-    return (which & pass_through) ? Spectrum(1.0f) : Spectrum();
+    return (which & null_scattering) ? Spectrum(1.0f) : Spectrum();
   }
 };
 
@@ -37,7 +39,7 @@ class PassThrough final : public Shader {
   const Scatter* bind(const SurfacePoint& p, const Wavelengths&, Arena& arena) const override {
     return arena.make<PassThroughScatter>(p);
   }
-  Lobes possible_lobes() const override { return pass_through; }
+  Lobes possible_lobes() const override { return null_scattering; }
 };
 
 const Register<PassThrough> registered;

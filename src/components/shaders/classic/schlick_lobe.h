@@ -47,7 +47,7 @@ class SchlickLobe {
     return {s * cosine, s * sine, t};
   }
   /// Of h [1/sr].
-  float density(const HalfVector& half) const { return factors(half) * half.h.z * inverse_pi / mean_; }
+  float pdf(const HalfVector& half) const { return factors(half) * half.h.z * inverse_pi / mean_; }
   /// D / max(1, B(v), B(v')) [1/sr].
   float value(float v_out, float v_in, const HalfVector& half) const {
     return factors(half) / (4 * pi * open(v_out) * open(v_in) * excess(v_out, v_in));

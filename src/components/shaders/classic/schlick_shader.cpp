@@ -74,15 +74,15 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     return Lobes((l.d > 0 ? diffuse_reflection : 0) | (l.g > 0 ? glossy_reflection : 0) | (l.s > 0 ? specular_reflection : 0));
   }
 
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return out.z * in.z > 0 ? value_and_density_of(out, in, shares(out, which), which) : ScatterValue();
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
+    return out.z * in.z > 0 ? value_and_pdf_of(out, in, shares(out, which), which) : ScatterValue();
   }
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
     const Shares share = shares(out, which);
     if (choice < share.specular) {
       s.in = {-out.x, -out.y, out.z};
       s.value = mirrored(std::abs(out.z));
-      s.density = share.specular;
+      s.pdf = share.specular;
       s.lobe = specular_reflection;
       return true;
     }
@@ -97,10 +97,10 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     }
     if (!(s.in.z > 0)) return false;
     if (out.z < 0) s.in.z = -s.in.z;
-    const ScatterValue both = value_and_density_of(out, s.in, share, which);
+    const ScatterValue both = value_and_pdf_of(out, s.in, share, which);
     s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
-    return s.density > 0;
+    s.pdf = both.pdf;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
     Spectrum sum;
@@ -152,7 +152,7 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     return top_.fresnel(growth) * top_.d + (Spectrum(1.0f) - top_.c) * base_.fresnel(growth) * (passed * base_.d);
   }
 
-  ScatterValue value_and_density_of(const Vector3& out, const Vector3& in, const Shares& share, Lobes which) const {
+  ScatterValue value_and_pdf_of(const Vector3& out, const Vector3& in, const Shares& share, Lobes which) const {
     const HalfVector half = half_vector(out, in);
     const float v_out = std::abs(out.z), v_in = std::abs(in.z), growth = schlick_growth(half.u);
     float top = 0, base = 0;
@@ -160,16 +160,16 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     if (which & diffuse_reflection) {
       top += top_.d * inverse_pi;
       base += base_.d * inverse_pi;
-      r.density += share.diffuse * v_in * inverse_pi;
+      r.pdf += share.diffuse * v_in * inverse_pi;
     }
     if (which & glossy_reflection) {
       if (top_.g > 0) {
         top += top_.g * top_.lobe.value(v_out, v_in, half);
-        r.density += share.glossy[0] * top_.lobe.density(half) / (4 * half.u);
+        r.pdf += share.glossy[0] * top_.lobe.pdf(half) / (4 * half.u);
       }
       if (base_.g > 0) {
         base += base_.g * base_.lobe.value(v_out, v_in, half);
-        r.density += share.glossy[1] * base_.lobe.density(half) / (4 * half.u);
+        r.pdf += share.glossy[1] * base_.lobe.pdf(half) / (4 * half.u);
       }
     }
     r.value = top_.fresnel(growth) * top;

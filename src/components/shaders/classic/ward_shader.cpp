@@ -27,9 +27,7 @@ struct Slopes {
     return normalize(Vector3{ax * radius * cosine, ay * radius * sine, 1});
   }
   /// Per unit of both slopes.
-  float density(const Vector3& h) const {
-    return std::exp(-(square(h.x / ax) + square(h.y / ay)) / (h.z * h.z)) / (pi * ax * ay);
-  }
+  float pdf(const Vector3& h) const { return std::exp(-(square(h.x / ax) + square(h.y / ay)) / (h.z * h.z)) / (pi * ax * ay); }
 };
 
 /// The glossy albedo over ks by the cosine of `out` and the roots of the slopes' deviations along its azimuth and across it.
@@ -58,10 +56,10 @@ class WardScatter final : public HalfVectorScatter<WardScatter> {
   Spectrum matte(const Vector3&, const Vector3&) const { return diffuse_ * inverse_pi; }
   ScatterValue glossy(const Vector3& out, const Vector3& in) const {
     const HalfVector half = half_vector(out, in);
-    const float t = half.h.z, per_h = slopes_.density(half.h);
+    const float t = half.h.z, per_h = slopes_.pdf(half.h);
     if (!(per_h > 0)) return {};  // where the exponential is 0, t^4 may be as well
-    const float density = per_h / (4 * half.u * t * t * t);
-    return {specular_ * (density / (half.u * t)), density};
+    const float pdf = per_h / (4 * half.u * t * t * t);
+    return {specular_ * (pdf / (half.u * t)), pdf};
   }
   Vector3 sample_half(Point2 u) const { return slopes_.sample(u); }
   Spectrum matte_albedo(const Vector3&) const { return diffuse_; }

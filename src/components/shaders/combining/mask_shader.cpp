@@ -15,20 +15,20 @@ namespace {
 class MaskScatter final : public ScatterCombination {
  public:
   MaskScatter(const SurfacePoint& p, const Scatter* below, float opacity)
-      : ScatterCombination(p, Lobes((below ? below->lobes() : no_lobes) | pass_through)), below_(below), opacity_(opacity) {
+      : ScatterCombination(p, Lobes((below ? below->lobes() : no_lobes) | null_scattering)), below_(below), opacity_(opacity) {
     if (below) frame_ = below->frame();
   }
 
-  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     if (!below_ || !below_->has(which & smooth_lobes)) return {};
-    const ScatterValue v = below_->value_and_density(out, in, transport, which);
-    return {v.value * opacity_, v.density * (1 - straight_probability(out, which))};
+    const ScatterValue v = below_->value_and_pdf(out, in, transport, which);
+    return {v.value * opacity_, v.pdf * (1 - straight_probability(out, which))};
   }
 
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
                                             Lobes which) const override {
     const float open = 1 - opacity_;
-    if (which == pass_through)
+    if (which == null_scattering)
       return straight_on(out, Spectrum(open) + opacity_ * straight_fraction(below_, out, transport), 1);
     const float straight = straight_probability(out, which);
     if (choice < straight) return straight_on(out, Spectrum(open / straight), straight);
@@ -36,20 +36,20 @@ class MaskScatter final : public ScatterCombination {
     std::optional<ScatterSample> s = below_->sample(out, left_of_choice(choice, straight), u, transport, which);
     if (!s) return s;
     s->weight *= opacity_ / (1 - straight);
-    s->density *= 1 - straight;
+    s->pdf *= 1 - straight;
     return s;
   }
 
   Spectrum world_albedo(const Vector3& out, Lobes which) const override {
     Spectrum sum;
     if (below_) sum = below_->albedo(out, which) * opacity_;
-    if (which & pass_through) sum += Spectrum(1 - opacity_);
+    if (which & null_scattering) sum += Spectrum(1 - opacity_);
     return sum;
   }
 
  private:
   float straight_probability(const Vector3& out, Lobes which) const {
-    if (!(which & pass_through)) return 0;
+    if (!(which & null_scattering)) return 0;
     const float open = 1 - opacity_;
     return open / (open + promise(below_, opacity_, out, which));
   }
@@ -79,15 +79,17 @@ class MaskShader final : public Shader {
     return arena.make<MaskScatter>(p, a > 0 ? shader->bind(p, w, arena) : nullptr, a);
   }
 
-  Lobes possible_lobes() const override { return Lobes(shader->possible_lobes() | (opaque_ ? no_lobes : Lobes(pass_through))); }
+  Lobes possible_lobes() const override {
+    return Lobes(shader->possible_lobes() | (opaque_ ? no_lobes : Lobes(null_scattering)));
+  }
   Spectrum interior_index(const Wavelengths& w) const override { return shader->interior_index(w); }
   bool transmits() const override { return !opaque_ || shader->transmits(); }
   bool lossless() const override { return shader->lossless(); }
   // As in a mixture: a walk beneath the surface comes out without asking how much surface is there.
-  bool reciprocal() const override { return shader->reciprocal() && !(moves_exit() && !opacity->constant()); }
+  bool reciprocal() const override { return shader->reciprocal() && !(has_subsurface_exit() && !opacity->constant()); }
   bool stochastic() const override { return shader->stochastic(); }
   float albedo_error() const override { return shader->albedo_error(); }
-  bool moves_exit() const override { return shader->moves_exit(); }
+  bool has_subsurface_exit() const override { return shader->has_subsurface_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
                                             NumberStream& random, Arena& arena) const override {
     return shader->sample_exit(p, scene, w, random, arena);

@@ -29,14 +29,14 @@ class MixScatter final : public ScatterCombination {
     frame_ = first && (!second || !(first->frame().n == p.shading_normal)) ? first->frame() : second->frame();
   }
 
-  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     const float probability[2] = {first_probability(out, which), 1 - first_probability(out, which)};
     ScatterValue sum;
     for (int k = 0; k < 2; ++k) {
       if (!parts_[k] || !parts_[k]->has(which)) continue;
-      const ScatterValue v = parts_[k]->value_and_density(out, in, transport, which);
+      const ScatterValue v = parts_[k]->value_and_pdf(out, in, transport, which);
       sum.value += v.value * shares_[k];
-      sum.density += probability[k] * v.density;
+      sum.pdf += probability[k] * v.pdf;
     }
     return sum;
   }
@@ -44,7 +44,7 @@ class MixScatter final : public ScatterCombination {
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
                                             Lobes which) const override {
     // Both parts' light goes the same way: all of it, without choosing.
-    if (which == pass_through)
+    if (which == null_scattering)
       return straight_on(
           out,
           shares_[0] * straight_fraction(parts_[0], out, transport) + shares_[1] * straight_fraction(parts_[1], out, transport),
@@ -58,16 +58,16 @@ class MixScatter final : public ScatterCombination {
     const Scatter* other = parts_[1 - k];
     if (s->specular() || !other || !other->has(which)) {
       s->weight *= shares_[k] / probability;
-      s->density *= probability;
+      s->pdf *= probability;
       return s;
     }
-    const ScatterValue v = other->value_and_density(out, s->direction, transport, which);
-    const float density = probability * s->density + (1 - probability) * v.density;
+    const ScatterValue v = other->value_and_pdf(out, s->direction, transport, which);
+    const float pdf = probability * s->pdf + (1 - probability) * v.pdf;
     if (stochastic_)
       s->weight *= shares_[k] / probability;
     else
-      s->weight = (s->weight * (shares_[k] * s->density) + v.value * shares_[1 - k]) / density;
-    s->density = density;
+      s->weight = (s->weight * (shares_[k] * s->pdf) + v.value * shares_[1 - k]) / pdf;
+    s->pdf = pdf;
     return s;
   }
 
@@ -104,8 +104,8 @@ class MixShader final : public Shader {
     if (!second) fail("second", "a shader is needed");
     require_scalar(*this, "amount", amount);
     // The walk beneath the surface is asked for without saying which part the light went in by.
-    const bool one = first->moves_exit(), two = second->moves_exit();
-    constexpr Lobes inwards = transmission_lobes & ~pass_through;
+    const bool one = first->has_subsurface_exit(), two = second->has_subsurface_exit();
+    constexpr Lobes inwards = transmission_lobes & ~null_scattering;
     if ((one && two) || (one && (second->possible_lobes() & inwards)) || (two && (first->possible_lobes() & inwards)))
       fail(one ? "second" : "first",
            "lets light into the body too, and the other part leads it out elsewhere: only one of the two can");
@@ -128,14 +128,14 @@ class MixShader final : public Shader {
   // A walk beneath the surface weighs the amount where light goes in and not where it comes out: from place to place
   // these differ.
   bool reciprocal() const override {
-    return first->reciprocal() && second->reciprocal() && !(moves_exit() && !amount->constant());
+    return first->reciprocal() && second->reciprocal() && !(has_subsurface_exit() && !amount->constant());
   }
   bool stochastic() const override { return first->stochastic() || second->stochastic(); }
   float albedo_error() const override { return std::max(first->albedo_error(), second->albedo_error()); }
-  bool moves_exit() const override { return first->moves_exit() || second->moves_exit(); }
+  bool has_subsurface_exit() const override { return first->has_subsurface_exit() || second->has_subsurface_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
                                             NumberStream& random, Arena& arena) const override {
-    return (first->moves_exit() ? first : second)->sample_exit(p, scene, w, random, arena);
+    return (first->has_subsurface_exit() ? first : second)->sample_exit(p, scene, w, random, arena);
   }
 
   Ref<Shader> first, second;

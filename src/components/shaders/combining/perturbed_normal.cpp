@@ -33,11 +33,10 @@ class TiltedScatter final : public ScatterCombination {
     frame_ = own->frame();
   }
 
-  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     const bool radiance = transport == Transport::radiance;
-    ScatterValue v = seen_from(radiance ? out : in).value_and_density(out, in, transport, which);
-    if (!radiance && opposite_)
-      v.density = (own_->density(out, in, transport, which) + opposite_->density(out, in, transport, which)) / 2;
+    ScatterValue v = seen_from(radiance ? out : in).value_and_pdf(out, in, transport, which);
+    if (!radiance && opposite_) v.pdf = (own_->pdf(out, in, transport, which) + opposite_->pdf(out, in, transport, which)) / 2;
     v.value *= let_through(radiance ? in : out);
     return v;
   }
@@ -45,26 +44,26 @@ class TiltedScatter final : public ScatterCombination {
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
                                             Lobes which) const override {
     const bool radiance = transport == Transport::radiance;
-    if (radiance || !opposite_ || which == pass_through) {
-      const Scatter& part = radiance || which == pass_through ? seen_from(out) : *own_;
+    if (radiance || !opposite_ || which == null_scattering) {
+      const Scatter& part = radiance || which == null_scattering ? seen_from(out) : *own_;
       std::optional<ScatterSample> s = part.sample(out, choice, u, transport, which);
-      if (s && s->lobe != pass_through) s->weight *= let_through(radiance ? s->direction : out);
+      if (s && s->lobe != null_scattering) s->weight *= let_through(radiance ? s->direction : out);
       return s;
     }
     const Scatter& part = choice < 0.5f ? *own_ : *opposite_;
     std::optional<ScatterSample> s = part.sample(out, left_of_choice(choice, 0.5f), u, transport, which);
     if (!s) return s;
-    const bool discrete = s->specular() || s->lobe == pass_through;
+    const bool discrete = s->specular() || s->lobe == null_scattering;
     if (discrete || stochastic_) {
       if (&seen_from(s->direction) != &part) return std::nullopt;
-      s->weight *= s->lobe == pass_through ? 2 : 2 * let_through(out);
-      s->density = discrete ? s->density / 2 : world_value_and_density(out, s->direction, transport, which).density;
+      s->weight *= s->lobe == null_scattering ? 2 : 2 * let_through(out);
+      s->pdf = discrete ? s->pdf / 2 : world_value_and_pdf(out, s->direction, transport, which).pdf;
       return s;
     }
-    const ScatterValue v = world_value_and_density(out, s->direction, transport, which);
-    if (!(v.density > 0)) return std::nullopt;
-    s->weight = v.value / v.density;
-    s->density = v.density;
+    const ScatterValue v = world_value_and_pdf(out, s->direction, transport, which);
+    if (!(v.pdf > 0)) return std::nullopt;
+    s->weight = v.value / v.pdf;
+    s->pdf = v.pdf;
     return s;
   }
 

@@ -21,7 +21,7 @@ class PerturbedNormalShader : public Shader {
   bool stochastic() const override { return shader->stochastic(); }
   /// What is lost to shadowing is not counted.
   float albedo_error() const override { return shadowing ? 0.5f : shader->albedo_error(); }
-  bool moves_exit() const override { return shader->moves_exit(); }
+  bool has_subsurface_exit() const override { return shader->has_subsurface_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
                                             NumberStream& random, Arena& arena) const override {
     return shader->sample_exit(perturbed(p), scene, w, random, arena);

@@ -19,9 +19,9 @@ class TwoSidedScatter final : public ScatterCombination {
     frame_ = front && (!back || !(front->frame().n == p.shading_normal)) ? front->frame() : back->frame();
   }
 
-  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     const Scatter* const part = seen_from(out);
-    return part ? part->value_and_density(out, in, transport, which) : ScatterValue{};
+    return part ? part->value_and_pdf(out, in, transport, which) : ScatterValue{};
   }
 
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,

@@ -40,7 +40,7 @@ class HairScatter final : public JointScatter<HairScatter> {
     reciprocal_ = false;
   }
 
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
     if (in.z == 0) return {};
     ScatterValue r = along_and_around(Angles(out), section(out), in);
     r.value /= std::abs(in.z);
@@ -62,7 +62,7 @@ class HairScatter final : public JointScatter<HairScatter> {
     if (!(which & s.lobe) || s.in.z == 0) return false;
     const ScatterValue r = along_and_around(from, across, s.in);
     s.value = r.value;
-    s.density = r.density;
+    s.pdf = r.pdf;
     return true;
   }
 
@@ -110,7 +110,7 @@ class HairScatter final : public JointScatter<HairScatter> {
       const float shape =
           fibre_.longitudinal(p, from.sine, from.cosine, to.sine, to.cosine) * fibre_.azimuthal(p, across, to.phi - from.phi);
       r.value += across.attenuation[size_t(p)] * shape;
-      r.density += probability[size_t(p)] * shape;
+      r.pdf += probability[size_t(p)] * shape;
     }
     return r;
   }
@@ -127,16 +127,16 @@ class HairScatter final : public JointScatter<HairScatter> {
 // Of light that arrives from outside the wall thus does both, scatter and let pass: the sum of the two is no fraction.
 class WallScatter final : public ScatterCombination {
  public:
-  static constexpr Lobes all = HairScatter::all | pass_through;
+  static constexpr Lobes all = HairScatter::all | null_scattering;
 
   WallScatter(const SurfacePoint& p, const HairScatter& fibre) : ScatterCombination(p, all), fibre_(fibre) {
     frame_ = fibre.frame();
   }
 
-  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     if (!outside(transport == Transport::radiance ? out : in)) return {};
-    const ScatterValue v = fibre_.value_and_density(out, in, transport, which);
-    return {v.value, v.density * (1 - straight_probability(out, transport, which))};
+    const ScatterValue v = fibre_.value_and_pdf(out, in, transport, which);
+    return {v.value, v.pdf * (1 - straight_probability(out, transport, which))};
   }
 
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
@@ -147,19 +147,19 @@ class WallScatter final : public ScatterCombination {
     std::optional<ScatterSample> s = fibre_.sample(out, left_of_choice(choice, straight), u, transport, which);
     if (!s || (transport == Transport::importance && !outside(s->direction))) return std::nullopt;
     s->weight /= 1 - straight;
-    s->density *= 1 - straight;
+    s->pdf *= 1 - straight;
     return s;
   }
 
   Spectrum world_albedo(const Vector3& out, Lobes which) const override {
     if (outside(out)) return fibre_.albedo(out, which);
-    return which & pass_through ? Spectrum(1.0f) : Spectrum();
+    return which & null_scattering ? Spectrum(1.0f) : Spectrum();
   }
 
  private:
   bool outside(const Vector3& v) const { return dot(normal_, v) > 0; }
   float straight_probability(const Vector3& out, Transport transport, Lobes which) const {
-    if (!(which & pass_through) || outside(out) == (transport == Transport::radiance)) return 0;
+    if (!(which & null_scattering) || outside(out) == (transport == Transport::radiance)) return 0;
     return transport == Transport::importance && which & glossy_lobes ? 0.5f : 1;
   }
 

@@ -67,9 +67,9 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     return Lobes(glossy_reflection | (parts.body > 0 ? diffuse_reflection : 0) | (parts.glass > 0 ? glossy_transmission : 0));
   }
 
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (out.z == 0 || in.z == 0) return {};
-    if (turned(out)) return local_value_and_density(mirrored(out), mirrored(in), which);
+    if (turned(out)) return local_value_and_pdf(mirrored(out), mirrored(in), which);
     const Chances chances = chances_of(out, which);
     const bool front = out.z > 0;
     if (!front && !(d_.glass > 0)) return {};
@@ -80,20 +80,19 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     if (which & glossy_reflection) {
       const float f = fresnel_dielectric(u, towards(out));
       r.value += fresnel(f, u, front) * (d_.facets.D(h) * d_.facets.G2_through(out, in) / (4 * std::abs(out.z * in.z)));
-      r.density +=
-          chances.facets * reflect_chance(f, u, front, which) * d_.facets.visible_density(out, h) * reflection_jacobian(u);
+      r.pdf += chances.facets * reflect_chance(f, u, front, which) * d_.facets.visible_pdf(out, h) * reflection_jacobian(u);
     }
     if (!front) return r;
     if (which & diffuse_reflection) {
       r.value += d_.color * (d_.body * inverse_pi * disney::diffuse(out.z, in.z, u, d_.roughness, d_.flatness)) +
                  sheen() * schlick_growth(u);
-      r.density += chances.diffuse * in.z * inverse_pi;
+      r.pdf += chances.diffuse * in.z * inverse_pi;
     }
     if ((which & glossy_reflection) && d_.clearcoat > 0) {
       const MicrofacetDistribution masking(MicrofacetDistribution::ggx, 0.25f);
       r.value += Spectrum(0.25f * d_.clearcoat * disney::schlick(Spectrum(0.04f), u, d_.eta)[0] * coat_D(h) *
                           masking.G2_through(out, in));
-      r.density += chances.coat * coat_D(h) * h.z * reflection_jacobian(u);
+      r.pdf += chances.coat * coat_D(h) * h.z * reflection_jacobian(u);
     }
     r.value *= kept(out, in);
     return r;
@@ -134,10 +133,10 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
       }
     }
     if ((s.in.z * out.z > 0) == (s.lobe == glossy_transmission)) return false;  // another facet is in the way
-    const ScatterValue both = local_value_and_density(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, which);
     s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
-    return s.density > 0;
+    s.pdf = both.pdf;
+    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
@@ -253,8 +252,8 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     r.value = root_ * (d_.glass * (1 - f) * d_.facets.D(m) * d_.facets.G2_through(out, in) * std::abs(out_m) * jacobian /
                        std::abs(out.z * in.z));
     r.value *= kept(out, in);
-    r.density = chances.facets * (1 - reflect_chance(f, std::abs(out_m), out.z > 0, which)) *
-                d_.facets.visible_density(out, m) * jacobian;
+    r.pdf =
+        chances.facets * (1 - reflect_chance(f, std::abs(out_m), out.z > 0, which)) * d_.facets.visible_pdf(out, m) * jacobian;
     return r;
   }
 

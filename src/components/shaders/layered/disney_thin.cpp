@@ -31,7 +31,7 @@ class SheetScatter final : public JointScatter<SheetScatter> {
                            (parts.clear < 1 && parts.through > 0 ? diffuse_transmission : 0))),
         d_(parts) {}
 
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (out.z == 0 || in.z == 0) return {};
     const bool reflected = out.z * in.z > 0;
     const Vector3 v = above(out), w = above(in);
@@ -44,14 +44,14 @@ class SheetScatter final : public JointScatter<SheetScatter> {
       r.value += reflected ? d_.color * (body() * inverse_pi * disney::diffuse(v.z, w.z, u, d_.roughness, d_.flatness)) +
                                  sheen() * schlick_growth(u)
                            : d_.color * ((1 - d_.clear) * d_.through * inverse_pi);
-      r.density += (reflected ? chances.diffuse : chances.diffuse_through)[0] * w.z * inverse_pi;
+      r.pdf += (reflected ? chances.diffuse : chances.diffuse_through)[0] * w.z * inverse_pi;
     }
     if (which & glossy) {
       const MicrofacetDistribution& d = reflected ? d_.front : d_.behind;
       const float f = fresnel_dielectric(u, d_.eta);
       const Spectrum factor = reflected ? fresnel(f, u) : d_.color * (1 - f);
       r.value += factor * (d_.clear * d.D(h) * d.G2_through(v, w) / (4 * v.z * w.z));
-      r.density += (reflected ? chances.shine : chances.shine_through)[0] * d.visible_density(v, h) * reflection_jacobian(u);
+      r.pdf += (reflected ? chances.shine : chances.shine_through)[0] * d.visible_pdf(v, h) * reflection_jacobian(u);
     }
     const Spectrum a = scale_of(shares(v)), b = scale_of(shares(w));
     const detail::Lanes x = a.lanes(), y = b.lanes();
@@ -78,10 +78,10 @@ class SheetScatter final : public JointScatter<SheetScatter> {
     }
     if (k % 2) s.in.z = -s.in.z;
     if (out.z < 0) s.in.z = -s.in.z;
-    const ScatterValue both = local_value_and_density(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, which);
     s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
-    return s.density > 0;
+    s.pdf = both.pdf;
+    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {

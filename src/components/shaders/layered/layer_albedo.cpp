@@ -5,7 +5,7 @@
 namespace etendue {
 namespace {
 
-constexpr Lobes specular_out = specular_transmission | pass_through;
+constexpr Lobes specular_out = specular_transmission | null_scattering;
 
 }  // namespace
 

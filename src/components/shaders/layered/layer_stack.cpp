@@ -50,11 +50,11 @@ bool survives(Spectrum& carried, float squared_index, HashedRandom& random) {
 struct LayerStack::Edge {
   Vector3 direction;  ///< away from the face it begins at
   Spectrum carried;
-  int begin = 0;      ///< the face
-  float density = 0;  ///< [1/sr] with which it was drawn among smooth lobes; 0: it is specular
+  int begin = 0;  ///< the face
+  float pdf = 0;  ///< [1/sr] with which it was drawn among smooth lobes; 0: it is specular
   int end() const { return 1 - begin; }
   /// The weight of connecting to it from where a walk would have drawn its direction with density p.
-  float weight(float p) const { return density > 0 ? density / (density + p) : 1; }
+  float weight(float p) const { return pdf > 0 ? pdf / (pdf + p) : 1; }
 };
 
 struct LayerStack::Edges {
@@ -79,7 +79,7 @@ float LayerStack::adjoint_factor(Transport transport, const Vector3& a, const Ve
 
 /// What of a face's transmission may be drawn from outside instead of from between.
 Lobes LayerStack::reversible(int side) const {
-  return faces_[side].reciprocal ? transmission_lobes : Lobes(specular_transmission | pass_through);
+  return faces_[side].reciprocal ? transmission_lobes : Lobes(specular_transmission | null_scattering);
 }
 
 void LayerStack::trace_back(const Vector3& in, Transport transport, HashedRandom& random, Edges& edges) const {
@@ -94,7 +94,7 @@ void LayerStack::trace_back(const Vector3& in, Transport transport, HashedRandom
     if (back == Transport::radiance) squared_index *= s->eta * s->eta;
     const float cosine = std::abs(dot(normal_, s->direction));
     if (!(cosine > 0) || carried.black()) return;
-    edges.list[edges.count++] = {s->direction, carried / cosine, at, s->specular() ? 0 : s->density};
+    edges.list[edges.count++] = {s->direction, carried / cosine, at, s->specular() ? 0 : s->pdf};
     at = 1 - at;
     if (!s->specular() || edges.count == Edges::most || !face(at).has(specular_reflection)) return;
     carried *= transmittance(s->direction, 1);
@@ -124,12 +124,12 @@ bool LayerStack::fly(const Vector3& w, float& z, Spectrum& carried, HashedRandom
   const bool scattered = depth < reach;
   const Spectrum left = exp(per_depth * -std::min(depth, reach));
   const Spectrum mixture = share * left * (scattered ? per_depth : Spectrum(1.0f));
-  const float density = mixture.average() * spectrum_size;
-  if (!(density > 0)) {
+  const float pdf = mixture.average() * spectrum_size;
+  if (!(pdf > 0)) {
     carried = {};
     return false;
   }
-  carried *= left * (1 / density);
+  carried *= left * (1 / pdf);
   if (scattered) carried *= medium_.scattering * slant(w);
   z = scattered ? clamp(towards == 0 ? z - depth : z + depth, 0, 1) : float(towards);
   return scattered;
@@ -138,18 +138,18 @@ bool LayerStack::fly(const Vector3& w, float& z, Spectrum& carried, HashedRandom
 bool LayerStack::walk(const Vector3& out, const ScatterSample& entering, Transport transport, HashedRandom& random,
                       LayerWalk& walk) const {
   walk.weight = entering.weight;
-  walk.probability = entering.density;
+  walk.probability = entering.pdf;
   walk.eta = entering.eta;
   walk.smooth = !entering.specular();
-  walk.straight = entering.lobe == pass_through;
+  walk.straight = entering.lobe == null_scattering;
   walk.dispersive = entering.dispersive;
   Vector3 w = entering.direction;
   float z = float(side(out));
   for (int event = 0; event < longest; ++event) {
     if (event > 3 && !survives(walk.weight, transport == Transport::radiance ? square(walk.eta) : 1, random)) return false;
     if (fly(w, z, walk.weight, random)) {
-      float density = 0;
-      const Vector3 next = medium_.shader->sample_phase(medium_.position, -w, random.next_pair(), density);
+      float pdf = 0;
+      const Vector3 next = medium_.shader->sample_phase(medium_.position, -w, random.next_pair(), pdf);
       walk.weight *= adjoint_factor(transport, -w, next);
       w = next;
       walk.smooth = true;
@@ -160,10 +160,10 @@ bool LayerStack::walk(const Vector3& out, const ScatterSample& entering, Transpo
     const auto s = face(side(w)).sample(-w, choice, random.next_pair(), transport);
     if (!s) return false;
     walk.weight *= s->weight;
-    walk.probability *= std::min(s->density, 1.0f);
+    walk.probability *= std::min(s->pdf, 1.0f);
     walk.eta *= s->eta;
     walk.smooth |= !s->specular();
-    walk.straight &= s->lobe == pass_through;
+    walk.straight &= s->lobe == null_scattering;
     walk.dispersive |= s->dispersive;
     w = s->direction;
     if (s->transmitted()) {
@@ -184,12 +184,12 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
   trace_back(in, transport, random, edges);
 
   const bool evaluates = leaving.has(smooth_transmission);
-  const auto leave = [&](const Spectrum& carried, const Vector3& w, float z, float density) {
+  const auto leave = [&](const Spectrum& carried, const Vector3& w, float z, float pdf) {
     if (!evaluates || side(w) != exit) return;
     Spectrum f = leaving.evaluate(-w, in, transport, transmission_lobes);
     if (f.black()) return;
-    const float back = density > 0 ? leaving.density(in, -w, adjoint(transport), reversible(exit)) : 0;
-    if (density > 0) f *= density / (density + back);
+    const float back = pdf > 0 ? leaving.pdf(in, -w, adjoint(transport), reversible(exit)) : 0;
+    if (pdf > 0) f *= pdf / (pdf + back);
     sum += carried * f * transmittance(w, std::abs(float(exit) - z));
   };
 
@@ -202,9 +202,9 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
     if (here.has(lobes & smooth_lobes))
       for (const Edge& edge : edges) {
         if (edge.end() != at) continue;
-        const ScatterValue v = here.value_and_density(from, -edge.direction, transport, lobes);
+        const ScatterValue v = here.value_and_pdf(from, -edge.direction, transport, lobes);
         if (v.value.black()) continue;
-        sum += carried * v.value * edge.carried * transmittance(edge.direction, 1) * edge.weight(v.density);
+        sum += carried * v.value * edge.carried * transmittance(edge.direction, 1) * edge.weight(v.pdf);
       }
     const float choice = random.next();
     const auto s = here.sample(from, choice, random.next_pair(), transport, lobes);
@@ -212,7 +212,7 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
     carried *= s->weight;
     if (transport == Transport::radiance) squared_index *= s->eta * s->eta;
     Vector3 w = s->direction;
-    leave(carried, w, z, s->specular() ? 0 : s->density);
+    leave(carried, w, z, s->specular() ? 0 : s->pdf);
 
     while (fly(w, z, carried, random) && ++event < longest) {
       for (const Edge& edge : edges) {
@@ -220,11 +220,11 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
         const float factor = phase * adjoint_factor(transport, -w, -edge.direction) * edge.weight(phase);
         sum += carried * edge.carried * transmittance(edge.direction, std::abs(float(edge.begin) - z)) * factor;
       }
-      float density = 0;
-      const Vector3 next = medium_.shader->sample_phase(medium_.position, -w, random.next_pair(), density);
+      float pdf = 0;
+      const Vector3 next = medium_.shader->sample_phase(medium_.position, -w, random.next_pair(), pdf);
       carried *= adjoint_factor(transport, -w, next);
       w = next;
-      leave(carried, w, z, density);
+      leave(carried, w, z, pdf);
       if (event > 1 && !survives(carried, squared_index, random)) return sum;
     }
     if (event > 1 && !survives(carried, squared_index, random)) return sum;
@@ -239,7 +239,7 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
 // Light that goes in, is reflected by N or goes through it, and comes out: what came back is left to an even part. A direction
 // inside is drawn from `out` by E, and one from `in` by X; between them N has a density that changes by
 // dw / d(in) = |in.n| / (eta^2 |w.n|) on the way out (Snell's law).
-float LayerStack::density(const Vector3& out, const Vector3& in, Transport transport, HashedRandom& random) const {
+float LayerStack::pdf(const Vector3& out, const Vector3& in, Transport transport, HashedRandom& random) const {
   const Scatter &entering = face(side(out)), &leaving = face(side(in));
   const bool through = side(out) != side(in);
   const float even = std::max(leaving.cosine(in), 1e-4f) * inverse_pi;
@@ -254,14 +254,14 @@ float LayerStack::density(const Vector3& out, const Vector3& in, Transport trans
   const float share = std::max(fraction(behind, -from->direction, through ? transmission_lobes : reflection_lobes), 0.02f);
   float direct = 0;
   if (through && leaving.has(smooth_transmission)) {
-    direct = leaving.density(-from->direction, in, transport);
+    direct = leaving.pdf(-from->direction, in, transport);
   } else {
     choice = random.next();
     if (const auto to = leaving.sample(in, choice, random.next_pair(), adjoint(transport), transmission_lobes)) {
       const float spread =
           std::abs(dot(normal_, in)) / (square(to->eta) * std::max(std::abs(dot(normal_, to->direction)), 1e-4f));
-      direct = through ? share * entering.density(out, -to->direction, transport, transmission_lobes)
-                       : behind.density(-from->direction, -to->direction, transport);
+      direct = through ? share * entering.pdf(out, -to->direction, transport, transmission_lobes)
+                       : behind.pdf(-from->direction, -to->direction, transport);
       direct *= spread;
     }
   }

@@ -81,7 +81,7 @@ class LayerStack {
 
   /// About the density [1/sr] with which walks of such light that begin with `entering` of the lobes in the face come out in
   /// direction `in`. Never 0.
-  float density(const Vector3& out, const Vector3& in, Transport, HashedRandom&) const;
+  float pdf(const Vector3& out, const Vector3& in, Transport, HashedRandom&) const;
 
   /// Goes on from a sample of the face on the side of `out` that went in, until it comes out; false: it does not.
   bool walk(const Vector3& out, const ScatterSample& entering, Transport, HashedRandom&, LayerWalk&) const;

@@ -18,9 +18,9 @@ namespace etendue {
 
 Lobes lobes_between(Lobes near, Lobes far, bool scatters) {
   if (!(near & transmission_lobes)) return no_lobes;
-  constexpr Lobes specular_in = specular_transmission | pass_through, smooth_in = smooth_lobes & transmission_lobes;
+  constexpr Lobes specular_in = specular_transmission | null_scattering, smooth_in = smooth_lobes & transmission_lobes;
   constexpr Lobes smooth_back = smooth_lobes & reflection_lobes;
-  const bool diffuse = scatters || ((near | far) & diffuse_lobes), both_pass = near & far & pass_through;
+  const bool diffuse = scatters || ((near | far) & diffuse_lobes), both_pass = near & far & null_scattering;
   const bool bent = scatters || (near & smooth_in) || ((far & smooth_back) && (near & reflection_lobes)) ||
                     ((far & reflection_lobes) && (near & smooth_back));
   Lobes lobes = no_lobes;
@@ -29,7 +29,7 @@ Lobes lobes_between(Lobes near, Lobes far, bool scatters) {
   if ((near & specular_in) && (far & specular_reflection)) lobes |= specular_reflection;
   if (far & transmission_lobes) {
     if (bent || (far & smooth_in)) lobes |= diffuse ? diffuse_transmission : glossy_transmission;
-    if (both_pass) lobes |= pass_through;
+    if (both_pass) lobes |= null_scattering;
     const bool refracts = ((near | far) & specular_transmission) || (near & far & specular_reflection);
     if ((near & specular_in) && (far & specular_in) && refracts) lobes |= specular_transmission;
   }
@@ -62,20 +62,20 @@ HashedRandom LayeredScatter::numbers(Use use, const Vector3& out, const Vector3&
   return random;
 }
 
-float LayeredScatter::density_between(const LayerStack& stack, Lobes asked, const Vector3& out, const Vector3& in,
-                                      Transport transport) const {
-  HashedRandom random = numbers(Use::density, out, in, transport);
+float LayeredScatter::pdf_between(const LayerStack& stack, Lobes asked, const Vector3& out, const Vector3& in,
+                                  Transport transport) const {
+  HashedRandom random = numbers(Use::pdf, out, in, transport);
   const Scatter& near = stack.face(stack.side(out));
   float goes_in = 1;
   if (near.has(asked & reflection_lobes)) {
     const float all = near.albedo(out, asked).average();
     goes_in = std::max(all > 0 ? near.albedo(out, transmission_lobes).average() / all : 0, 0.01f);
   }
-  return goes_in * stack.density(out, in, transport, random);
+  return goes_in * stack.pdf(out, in, transport, random);
 }
 
-ScatterValue LayeredScatter::world_value_and_density(const Vector3& out, const Vector3& in, Transport transport,
-                                                     Lobes which) const {
+ScatterValue LayeredScatter::world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport,
+                                                 Lobes which) const {
   const LayerStack* const* stacks = seen_from(out);
   const LayerStack& stack = *stacks[0];
   const Scatter& face = stack.face(stack.side(out));
@@ -84,7 +84,7 @@ ScatterValue LayeredScatter::world_value_and_density(const Vector3& out, const V
   ScatterValue sum;
   if (same_side && face.has(which & reflection_lobes & smooth_lobes)) {
     sum.value = face.evaluate(out, in, transport, which & reflection_lobes);
-    sum.density = face.density(out, in, transport, q.face);
+    sum.pdf = face.pdf(out, in, transport, q.face);
   }
   if (!(q.between & smooth_lobes & (same_side ? reflection_lobes : transmission_lobes))) return sum;
   Spectrum between;
@@ -98,7 +98,7 @@ ScatterValue LayeredScatter::world_value_and_density(const Vector3& out, const V
       between.set(i, estimate[0]);
   }
   sum.value += between / float(walks_);
-  sum.density += density_between(stack, q.face, out, in, transport);
+  sum.pdf += pdf_between(stack, q.face, out, in, transport);
   if (!sum.value.finite()) sum.value = {};
   return sum;
 }
@@ -108,7 +108,7 @@ std::optional<ScatterSample> LayeredScatter::world_sample(const Vector3& out, fl
   const LayerStack& stack = *seen_from(out)[0];
   const int side = stack.side(out);
   const Scatter& face = stack.face(side);
-  if (which == pass_through) {  // nothing to choose, as shadow rays rely on
+  if (which == null_scattering) {  // nothing to choose, as shadow rays rely on
     const Spectrum both = straight_fraction(&face, out, transport) * straight_fraction(&stack.face(1 - side), out, transport);
     return straight_on(out, both * stack.transmittance(out, 1), 1);
   }
@@ -124,16 +124,16 @@ std::optional<ScatterSample> LayeredScatter::world_sample(const Vector3& out, fl
     const Lobes one_side = reflected ? reflection_lobes : transmission_lobes;
     const Lobes smooth = q.possible & smooth_lobes & one_side;
     const Lobe lobe = walk.smooth     ? Lobe(smooth)
-                      : walk.straight ? pass_through
+                      : walk.straight ? null_scattering
                                       : (reflected ? specular_reflection : specular_transmission);
     if (!(q.between & lobe)) return std::nullopt;
     s = ScatterSample{walk.direction, walk.weight, walk.probability, lobe, walk.eta, walk.dispersive};
   }
   if (!s->specular()) {
     const bool same_side = stack.side(s->direction) == side;
-    if (walked) s->density = same_side ? face.density(out, s->direction, transport, q.face) : 0;
+    if (walked) s->pdf = same_side ? face.pdf(out, s->direction, transport, q.face) : 0;
     if (q.between & smooth_lobes & (same_side ? reflection_lobes : transmission_lobes))
-      s->density += density_between(stack, q.face, out, s->direction, transport);
+      s->pdf += pdf_between(stack, q.face, out, s->direction, transport);
   }
   return s;
 }
@@ -148,10 +148,10 @@ Spectrum LayeredScatter::world_albedo(const Vector3& out, Lobes which) const {
   if (q.between & smooth_lobes & transmission_lobes) sum += a.smooth[1];
   if (q.between & specular_reflection) sum += a.specular[0];
   // What passes straight on is part of what goes through specularly, unless it is all of it.
-  if (q.between & (specular_transmission | pass_through)) {
+  if (q.between & (specular_transmission | null_scattering)) {
     Spectrum straight;
-    if (q.possible & pass_through) straight = world_sample(out, 0, {}, Transport::importance, pass_through)->weight;
-    if (q.between & pass_through) sum += straight;
+    if (q.possible & null_scattering) straight = world_sample(out, 0, {}, Transport::importance, null_scattering)->weight;
+    if (q.between & null_scattering) sum += straight;
     if (q.between & specular_transmission) sum += max(a.specular[1] - straight, 0);
   }
   return sum;

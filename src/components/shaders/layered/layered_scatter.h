@@ -17,7 +17,7 @@ class LayeredScatter final : public ScatterCombination {
   LayeredScatter(const SurfacePoint& p, const LayerStack* const* front, const LayerStack* const* back, int stacks, int walks,
                  std::uint64_t seed, Lobes lobes);
 
-  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override;
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override;
 
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
                                             Lobes which) const override;
@@ -36,10 +36,10 @@ class LayeredScatter final : public ScatterCombination {
   const LayerStack* const* seen_from(const Vector3& out) const { return sides_[dot(normal_, out) > 0 ? 0 : 1]; }
 
   /// Each use has numbers of its own: weights must not depend on what they weigh.
-  enum class Use : std::uint8_t { estimate, walk, density };
+  enum class Use : std::uint8_t { estimate, walk, pdf };
   HashedRandom numbers(Use use, const Vector3& out, const Vector3& other, Transport transport) const;
   /// Of what goes in, with about the probability that it does, and comes out in direction `in`.
-  float density_between(const LayerStack& stack, Lobes asked, const Vector3& out, const Vector3& in, Transport transport) const;
+  float pdf_between(const LayerStack& stack, Lobes asked, const Vector3& out, const Vector3& in, Transport transport) const;
 
   const LayerStack* sides_[2][spectrum_size];
   int stacks_, walks_;

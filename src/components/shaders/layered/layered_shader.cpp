@@ -14,7 +14,7 @@ class BlackScatter final : public ScatterModel<BlackScatter> {
   explicit BlackScatter(const SurfacePoint& p) : ScatterModel(p, no_lobes) {}
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
   bool local_sample(const Vector3&, float, Point2, Lobes, LocalSample&) const override { return false; }
   Spectrum local_albedo(const Vector3&, Lobes) const override { return {}; }
 };
@@ -115,17 +115,17 @@ class LayeredShader final : public Shader {
 
   void check(const char* member, const Ref<Shader>& layer) const {
     if (!layer) fail(member, "a shader is needed");
-    if (layer->moves_exit()) fail(member, "lets light out of the body elsewhere, which a layer cannot");
+    if (layer->has_subsurface_exit()) fail(member, "lets light out of the body elsewhere, which a layer cannot");
   }
 
   /// The mean cosine of the angle by which a medium scatters.
   static float mean_cosine(const VolumeShader& volume) {
     constexpr int side = 16;
     const Vector3 out{0, 0, 1};
-    float sum = 0, density = 0;
+    float sum = 0, pdf = 0;
     for (int i = 0; i < side * side; ++i) {
       const Point2 u{(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side};
-      sum -= volume.sample_phase({}, out, u, density).z;
+      sum -= volume.sample_phase({}, out, u, pdf).z;
     }
     return clamp(sum / (side * side), -1, 1);
   }

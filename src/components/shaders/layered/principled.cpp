@@ -62,7 +62,7 @@ class Principled final : public Shader {
   Spectrum interior_index(const Wavelengths& w) const override {
     return refracts_ ? index_at(inside_index_, w) : Spectrum(1.0f);
   }
-  bool transmits() const override { return refracts_ || (possible_lobes_ & pass_through); }
+  bool transmits() const override { return refracts_ || (possible_lobes_ & null_scattering); }
 
   Ref<ObjectMap> base_weight = constant(1.0f), base_color = constant(0.8f), base_diffuse_roughness = constant(0.0f),
                  base_metalness = constant(0.0f);
@@ -245,7 +245,7 @@ void Principled::prepare() {
   if (clear) possible_lobes_ |= glossy_transmission;
   if (clear && smooth) possible_lobes_ |= specular_transmission;
   if (matt && thin_walled && !always(subsurface_weight, 0)) possible_lobes_ |= diffuse_transmission;
-  if (!always(geometry_opacity, 1)) possible_lobes_ |= pass_through;
+  if (!always(geometry_opacity, 1)) possible_lobes_ |= null_scattering;
 
   // Tables are made when first asked for: now.
   const MicrofacetDistribution some(MicrofacetDistribution::ggx, 0.5f);

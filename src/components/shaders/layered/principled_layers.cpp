@@ -277,7 +277,7 @@ Spectrum PrincipledScatter::local_albedo(const Vector3& out, Lobes which) const 
              coat_absorption(inverse_cosine_in_coat(out));
   }
   sum *= l.opacity;
-  if (which & pass_through) sum += Spectrum(1 - l.opacity);
+  if (which & null_scattering) sum += Spectrum(1 - l.opacity);
   return clamp(sum, 0, 1);
 }
 

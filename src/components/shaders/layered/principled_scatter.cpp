@@ -36,7 +36,7 @@ Lobes PrincipledScatter::lobes_of(const PrincipledLayers& l) {
   add(there && l.clear > 0, smooth ? specular_transmission : glossy_transmission);
   add(there && l.opaque > 0 && !l.diffuse_color.black(), diffuse_reflection);
   add(there && l.opaque > 0 && !l.diffuse_through_color.black(), diffuse_transmission);
-  add(l.opacity < 1, pass_through);
+  add(l.opacity < 1, null_scattering);
   return r;
 }
 
@@ -70,7 +70,7 @@ PrincipledScatter::Plan PrincipledScatter::plan(const Vector3& out, Lobes which)
     if (which & glossy_reflection) r.matt_glossy += missing * (1 - share);
     if (which & glossy_transmission) r.through_glossy += missing * share;
   }
-  if (which & pass_through) r.straight = 1 - l.opacity;
+  if (which & null_scattering) r.straight = 1 - l.opacity;
 
   const float there = r.fuzz + r.coat + r.base + r.matt + r.matt_glossy + r.through + r.through_glossy;
   const float sum = there * l.opacity + r.straight;
@@ -102,19 +102,19 @@ void PrincipledScatter::reflection(const Vector3& out, const Vector3& in, Lobes 
     const float out_m = std::abs(dot(out, m)), jacobian = reflection_jacobian(out_m);
     if (l.fuzz > 0) {
       r.value += l.fuzz_color * (front * l.fuzz * l.fuzz_lobe.value(out, in));
-      r.density += plan.fuzz * warp::hemisphere_density;
+      r.pdf += plan.fuzz * warp::hemisphere_pdf;
     }
     if (l.coat > 0 && !coat_smooth_) {
       const float below_fuzz = std::min(fuzz_passed(out), fuzz_passed(in));
       r.value += Spectrum(front * l.coat * below_fuzz * fresnel_dielectric(out_m, l.coat_eta) * l.coat_facets.D(m) *
                           l.coat_facets.visibility(out, in));
-      r.density += plan.coat * l.coat_facets.visible_density(out, m) * jacobian;
+      r.pdf += plan.coat * l.coat_facets.visible_pdf(out, m) * jacobian;
     }
     if (!smooth_) {
       const Facets f = facets_at(out_m, inside(out));
       const Spectrum clear = inside(out) ? f.clear : f.clear * upper;
       r.value += ((f.metal + f.opaque) * upper + clear) * (l.facets.D(m) * l.facets.visibility(out, in));
-      r.density += plan.base * reflect_probability(f, which) * l.facets.visible_density(out, m) * jacobian;
+      r.pdf += plan.base * reflect_probability(f, which) * l.facets.visible_pdf(out, m) * jacobian;
       if (multiple_) r.value += (metal_more_ * l.metal + sheet_back_ * l.clear) * upper * multiple_->value(out, in);
       if (clear_more_ > 0)
         r.value += (inside(out) ? Spectrum(1.0f) : l.specular_color * upper) *
@@ -125,13 +125,13 @@ void PrincipledScatter::reflection(const Vector3& out, const Vector3& in, Lobes 
     const Spectrum coat = coat_absorption(inverse_cosine_in_coat(out) + inverse_cosine_in_coat(in));
     r.value += matt_.value(out, in) * l.matt_darkening * coat * (l.opaque * matt_passed(out) * matt_passed(in) / matt_mean_);
   }
-  r.density += (plan.matt + plan.matt_glossy) * std::abs(in.z) * inverse_pi;
+  r.pdf += (plan.matt + plan.matt_glossy) * std::abs(in.z) * inverse_pi;
 }
 
 void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobes which, const Plan& plan,
                                      ScatterValue& r) const {
   const PrincipledLayers& l = layers_;
-  r.density = (plan.through + plan.through_glossy) * std::abs(in.z) * inverse_pi;
+  r.pdf = (plan.through + plan.through_glossy) * std::abs(in.z) * inverse_pi;
   if (l.thin_walled) return thin_transmission(out, in, which, plan, r);
   if (smooth_ || !(which & glossy_transmission)) return;
 
@@ -151,8 +151,7 @@ void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobe
     else
       r.value = value;
     if (i < choosing_)
-      r.density +=
-          plan.base * (1 - reflect_probability(f, which)) * l.facets.visible_density(out, m) * jacobian / float(choosing_);
+      r.pdf += plan.base * (1 - reflect_probability(f, which)) * l.facets.visible_pdf(out, m) * jacobian / float(choosing_);
   }
   if (clear_more_ > 0)
     r.value += l.transmission_color * once_through_upper(outside, 1) *
@@ -174,8 +173,7 @@ void PrincipledScatter::thin_transmission(const Vector3& out, const Vector3& in,
     r.value += (f.through * (l.facets.D(m) * l.facets.visibility(out, turned)) +
                 sheet_through_ * (l.clear * multiple_->value(out, turned))) *
                through_upper(out, turned);
-    r.density +=
-        plan.base * (1 - reflect_probability(f, which)) * l.facets.visible_density(out, m) * reflection_jacobian(out_m);
+    r.pdf += plan.base * (1 - reflect_probability(f, which)) * l.facets.visible_pdf(out, m) * reflection_jacobian(out_m);
   }
   if ((which & diffuse_transmission) && l.opaque > 0)
     r.value += matt_through_.value(out, turned) * l.matt_darkening * coat *
@@ -198,18 +196,18 @@ bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u,
   if (chosen(plan.straight)) {
     s.in = -out;
     s.value = Spectrum(1 - l.opacity);
-    s.density = plan.straight;
-    s.lobe = pass_through;
+    s.pdf = plan.straight;
+    s.lobe = null_scattering;
     return true;
   }
   if (chosen(plan.base)) {
     if (!sample_base(out, choice, u, which, plan, s)) return false;
-    if (smooth_) return s.density > 0;
+    if (smooth_) return s.pdf > 0;
   } else if (chosen(plan.coat)) {
     if (coat_smooth_) {
       s.in = {-out.x, -out.y, out.z};
       s.value = Spectrum(l.opacity * fronting(out) * (1 - coat_passed(out)) * fuzz_passed(out));
-      s.density = plan.coat;
+      s.pdf = plan.coat;
       s.lobe = specular_reflection;
       return true;
     }
@@ -229,8 +227,8 @@ bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u,
   }
   const ScatterValue both = combine(out, s.in, which, plan);
   s.value = both.value * std::abs(s.in.z);
-  s.density = both.density;
-  return s.density > 0;
+  s.pdf = both.pdf;
+  return s.pdf > 0;
 }
 
 /// For a smooth base the whole sample, for a rough one its direction.
@@ -254,7 +252,7 @@ bool PrincipledScatter::sample_base(const Vector3& out, float choice, Point2 u, 
     if (!smooth_) return s.in.z * out.z > 0;
     const Spectrum upper = through_upper(out, s.in);
     s.value = (f.metal + f.opaque) * upper + (inside(out) ? f.clear : f.clear * upper);
-    s.density = plan.base * reflect_p;
+    s.pdf = plan.base * reflect_p;
   } else {
     float cosine_behind = 0;
     if (l.thin_walled) {
@@ -272,7 +270,7 @@ bool PrincipledScatter::sample_base(const Vector3& out, float choice, Point2 u, 
     if (!smooth_) return true;
     const Vector3& outside = out.z > 0 ? out : s.in;
     s.value = f.through * (l.thin_walled ? through_upper(out, s.in) : once_through_upper(outside, std::abs(outside.z)));
-    s.density = plan.base * (1 - reflect_p);
+    s.pdf = plan.base * (1 - reflect_p);
     s.dispersive = disperses_ && !l.single;
   }
   s.value *= l.opacity;

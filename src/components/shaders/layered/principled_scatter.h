@@ -52,7 +52,7 @@ class PrincipledScatter final : public JointScatter<PrincipledScatter> {
   static Lobes lobes_of(const PrincipledLayers&);
   PrincipledScatter(const SurfacePoint& p, const Frame& frame, const PrincipledLayers&);
 
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     return combine(out, in, which, plan(out, which));
   }
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample&) const override;

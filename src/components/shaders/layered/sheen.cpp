@@ -22,14 +22,14 @@ class SheenScatter final : public ScatterModel<SheenScatter> {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? color_ * lobe_.value(out, in) : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
-    return out.z * in.z > 0 ? warp::hemisphere_density : 0;
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? warp::hemisphere_pdf : 0;
   }
   bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const override {
     s.in = warp::hemisphere(u);
     if (out.z < 0) s.in.z = -s.in.z;
     s.value = color_ * (lobe_.value(out, s.in) * std::abs(s.in.z));
-    s.density = warp::hemisphere_density;
+    s.pdf = warp::hemisphere_pdf;
     s.lobe = glossy_reflection;
     return s.in.z != 0;
   }
@@ -61,11 +61,11 @@ class CoveredScatter final : public ScatterCombination {
     frame_ = base.frame();
   }
 
-  ScatterValue world_value_and_density(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
     const float probability = sheen_probability(out, which);
-    const ScatterValue a = sheen_.value_and_density(out, in, transport, which);
-    const ScatterValue b = base_.value_and_density(out, in, transport, which);
-    return {a.value + b.value * through(out, in), lerp(probability, b.density, a.density)};
+    const ScatterValue a = sheen_.value_and_pdf(out, in, transport, which);
+    const ScatterValue b = base_.value_and_pdf(out, in, transport, which);
+    return {a.value + b.value * through(out, in), lerp(probability, b.pdf, a.pdf)};
   }
 
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
@@ -79,17 +79,17 @@ class CoveredScatter final : public ScatterCombination {
     const float share = fibres ? 1 : t;
     if (s->specular()) {
       s->weight *= share / probability;
-      s->density *= probability;
+      s->pdf *= probability;
       return s;
     }
     const Scatter& other = fibres ? base_ : static_cast<const Scatter&>(sheen_);
-    const ScatterValue v = other.value_and_density(out, s->direction, transport, which);
-    const float density = probability * s->density + (1 - probability) * v.density;
+    const ScatterValue v = other.value_and_pdf(out, s->direction, transport, which);
+    const float pdf = probability * s->pdf + (1 - probability) * v.pdf;
     if (stochastic_)  // the base's density is not that of its samples: each sample stands for its own part
       s->weight *= share / probability;
     else
-      s->weight = (s->weight * (share * s->density) + v.value * (fibres ? t : 1)) / density;
-    s->density = density;
+      s->weight = (s->weight * (share * s->pdf) + v.value * (fibres ? t : 1)) / pdf;
+    s->pdf = pdf;
     return s;
   }
 
@@ -151,9 +151,9 @@ class SheenShader final : public Shader {
   Lobes possible_lobes() const override { return Lobes(glossy_reflection | (base ? base->possible_lobes() : no_lobes)); }
   Spectrum interior_index(const Wavelengths& w) const override { return base ? base->interior_index(w) : Spectrum(1.0f); }
   bool transmits() const override { return base && base->transmits(); }
-  bool reciprocal() const override { return !base || (base->reciprocal() && !base->moves_exit()); }
+  bool reciprocal() const override { return !base || (base->reciprocal() && !base->has_subsurface_exit()); }
   bool stochastic() const override { return base && base->stochastic(); }
-  bool moves_exit() const override { return base && base->moves_exit(); }
+  bool has_subsurface_exit() const override { return base && base->has_subsurface_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
                                             NumberStream& random, Arena& arena) const override {
     return base ? base->sample_exit(p, scene, w, random, arena) : std::nullopt;

@@ -56,11 +56,11 @@ class MerlData {
     return normalize(2 * dot(out, m) * m - out);
   }
   /// [1/sr]
-  float density(const Vector3& out, const Vector3& in) const {
+  float pdf(const Vector3& out, const Vector3& in) const {
     const Vector3 sum = out + in, m = normalize(sum);
     const float s = sine(m), u = std::sqrt(std::atan2(s, m.z) * (2 * inverse_pi));
     const float turn = std::atan2(out.x * m.y - out.y * m.x, out.x * m.x + out.y * m.y) * (inverse_pi / 2);
-    return warp_.density({u, turn - std::floor(turn)}, blend(out)) /
+    return warp_.pdf({u, turn - std::floor(turn)}, blend(out)) /
            (4 * std::max(dot(out, m), 1e-10f) * half_vector_stretch(u, s));
   }
   Rgb albedo(const Vector3& out) const {
@@ -106,8 +106,8 @@ class MerlScatter final : public ScatterModel<MerlScatter> {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? value(upwards(out), upwards(in)) : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
-    return out.z * in.z > 0 ? density_of(upwards(out), upwards(in)) : 0;
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? pdf_of(upwards(out), upwards(in)) : 0;
   }
 
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const override {
@@ -115,10 +115,10 @@ class MerlScatter final : public ScatterModel<MerlScatter> {
     const Vector3 to = choice < cosine_share ? warp::cosine_hemisphere(u) : data_->sample(from, u);
     if (!(to.z > 0)) return false;
     s.value = value(from, to) * to.z;
-    s.density = density_of(from, to);
+    s.pdf = pdf_of(from, to);
     s.in = out.z > 0 ? to : Vector3{to.x, to.y, -to.z};
     s.lobe = glossy_reflection;
-    return s.density > 0;
+    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
@@ -134,8 +134,8 @@ class MerlScatter final : public ScatterModel<MerlScatter> {
   // f may exceed 1, so it is no reflectance; as a coefficient its spectrum has the same shape.
   Spectrum spectrum(const Rgb& c) const { return rgb_spectrum(*space_, c.r, c.g, c.b, ColorUse::coefficient, wavelengths_); }
   Spectrum value(const Vector3& from, const Vector3& to) const { return spectrum(data_->table().evaluate(from, to)); }
-  float density_of(const Vector3& from, const Vector3& to) const {
-    return (1 - cosine_share) * data_->density(from, to) + cosine_share * warp::cosine_hemisphere_density(to.z);
+  float pdf_of(const Vector3& from, const Vector3& to) const {
+    return (1 - cosine_share) * data_->pdf(from, to) + cosine_share * warp::cosine_hemisphere_pdf(to.z);
   }
 
   const MerlData* data_;

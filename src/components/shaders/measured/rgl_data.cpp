@@ -163,14 +163,14 @@ Spectrum RglData::evaluate(const Vector3& from, const Vector3& to, const RglChan
   return rgb_spectrum(*space_, rgb[0], rgb[1], rgb[2], ColorUse::coefficient, w);
 }
 
-float RglData::density(const Vector3& from, const Vector3& to) const {
+float RglData::pdf(const Vector3& from, const Vector3& to) const {
   if (!(from.z > 0 && to.z > 0)) return 0;
   const Incident i = incident(from);
   const Vector3 half = normalize(i.direction + Vector3{i.flip_x * to.x, i.flip_y * to.y, to.z});
   const Point2 u = place(half, i.phi);
   const Warp2D::Placed s = vndf_.invert(u, i.blend);
   const float sine = std::sqrt(half.x * half.x + half.y * half.y);
-  return luminance_.density(s.point, i.blend) * s.density /
+  return luminance_.pdf(s.point, i.blend) * s.pdf /
          (half_vector_stretch(u.x, sine) * 4 * std::max(dot(i.direction, half), 1e-10f));
 }
 
@@ -204,7 +204,7 @@ void RglData::estimate_albedo(bool symmetric) {
       const Vector3 to = sample(from, {(float(n % side) + 0.5f) / side, (float(n / side) + 0.5f) / side});
       if (!(to.z > 0)) continue;
       // What `to` is hardly ever drawn for must not count for much.
-      const float factor = 1 / (side * side * std::max(density(from, to), 0.1f * inverse_pi * to.z));
+      const float factor = 1 / (side * side * std::max(pdf(from, to), 0.1f * inverse_pi * to.z));
       const float share = symmetric ? to.z / (from.z + to.z) : 1;
       add(from, to, factor * share);
       if (symmetric) add(to, from, factor * share);

@@ -37,7 +37,7 @@ class RglData {
   /// f(from, to) cos(to) [1/sr] for two directions above the surface (z > 0), as the file has it: the first is w_i.
   Spectrum evaluate(const Vector3& from, const Vector3& to, const RglChannels&, const Wavelengths&) const;
   /// The density [1/sr] with which `sample` gives a direction.
-  float density(const Vector3& from, const Vector3& to) const;
+  float pdf(const Vector3& from, const Vector3& to) const;
   /// A direction; it may lie below the surface.
   Vector3 sample(const Vector3& from, Point2 u) const;
   /// An estimate of the fraction of light from one direction that is reflected.

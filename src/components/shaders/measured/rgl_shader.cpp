@@ -27,8 +27,8 @@ class RglScatter final : public ScatterModel<RglScatter> {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? value(upwards(out), upwards(in)) / std::abs(in.z) : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
-    return out.z * in.z > 0 ? density_of(upwards(out), upwards(in)) : 0;
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+    return out.z * in.z > 0 ? pdf_of(upwards(out), upwards(in)) : 0;
   }
 
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const override {
@@ -37,10 +37,10 @@ class RglScatter final : public ScatterModel<RglScatter> {
     if (!(to.z > 0)) return false;
     // Both from the direction that came out, rounded as it is: where f is steep they must belong together.
     s.value = value(from, to);
-    s.density = density_of(from, to);
+    s.pdf = pdf_of(from, to);
     s.in = out.z > 0 ? to : Vector3{to.x, to.y, -to.z};
     s.lobe = glossy_reflection;
-    return s.density > 0;
+    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
@@ -57,8 +57,8 @@ class RglScatter final : public ScatterModel<RglScatter> {
     if (!reciprocal_) return there;
     return (there + data_->evaluate(to, from, channels_, wavelengths_)) * (to.z / (from.z + to.z));
   }
-  float density_of(const Vector3& from, const Vector3& to) const {
-    return (1 - cosine_share) * data_->density(from, to) + cosine_share * warp::cosine_hemisphere_density(to.z);
+  float pdf_of(const Vector3& from, const Vector3& to) const {
+    return (1 - cosine_share) * data_->pdf(from, to) + cosine_share * warp::cosine_hemisphere_pdf(to.z);
   }
 
   static constexpr float cosine_share = 0.1f;

@@ -96,13 +96,13 @@ class Warp2D {
 
   struct Placed {
     Point2 point;
-    float density = 0;  ///< per unit area of the square, at the point of the square's warped side
+    float pdf = 0;  ///< per unit area of the square, at the point of the square's warped side
   };
   /// From uniform numbers to a point, with its density.
   Placed sample(Point2 u, const TableBlend&) const;
   /// The other way: the numbers that give a point, with the point's density.
   Placed invert(Point2 p, const TableBlend&) const;
-  float density(Point2 p, const TableBlend& blend) const { return tables_.at(p, blend); }
+  float pdf(Point2 p, const TableBlend& blend) const { return tables_.at(p, blend); }
 
  private:
   /// One number blended over the tables: `i` is its index within a table of `size` numbers.

@@ -39,11 +39,11 @@ class PolishedConductor final : public ScatterModel<PolishedConductor> {
   }
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
   bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
     s.in = {-out.x, -out.y, out.z};
     s.value = tint_ * boundary_.at(std::abs(out.z));
-    s.density = 1;
+    s.pdf = 1;
     s.lobe = specular_reflection;
     return true;
   }
@@ -79,21 +79,21 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
   }
 
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_density(out, in, which).value;
+    return local_value_and_pdf(out, in, which).value;
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
     if (!(out.z * in.z > 0)) return 0;
     const float multiple = has_choice_ ? probability_of_multiple(multiple_reflection_.missing(out)) : 0;
-    return density(out, in, reflection_half_vector(out, in), multiple);
+    return pdf(out, in, reflection_half_vector(out, in), multiple);
   }
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
     if (!(out.z * in.z > 0)) return {};
     const Vector3 m = reflection_half_vector(out, in);
     Spectrum value = boundary_.at(std::abs(dot(out, m))) * (distribution_.D(m) * distribution_.visibility(out, in));
-    if (!has_choice_) return {tint_ * value, density(out, in, m, 0)};
+    if (!has_choice_) return {tint_ * value, pdf(out, in, m, 0)};
     const float missing = multiple_reflection_.missing(out);
     value += multiple_ * multiple_reflection_.value(missing, multiple_reflection_.missing(in));
-    return {tint_ * value, density(out, in, m, probability_of_multiple(missing))};
+    return {tint_ * value, pdf(out, in, m, probability_of_multiple(missing))};
   }
 
   bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
@@ -103,11 +103,11 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
     } else {
       s.in = reflect(out, distribution_.sample_visible(out, u));
     }
-    const ScatterValue both = local_value_and_density(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, which);
     s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
+    s.pdf = both.pdf;
     s.lobe = glossy_reflection;
-    return s.density > 0;
+    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
@@ -121,8 +121,8 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
     const float multiple = missing * multiple_over_single_;
     return multiple / (multiple + 1 - missing);
   }
-  float density(const Vector3& out, const Vector3& in, const Vector3& m, float multiple) const {
-    return (1 - multiple) * distribution_.visible_density(out, m) * reflection_jacobian(dot(out, m)) +
+  float pdf(const Vector3& out, const Vector3& in, const Vector3& m, float multiple) const {
+    return (1 - multiple) * distribution_.visible_pdf(out, m) * reflection_jacobian(dot(out, m)) +
            multiple * std::abs(in.z) * inverse_pi;
   }
 

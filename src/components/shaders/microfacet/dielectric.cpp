@@ -26,12 +26,12 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
         varies_(varies),
         dispersive_(dispersive),
         tinted_(!tint.none()) {
-    has_captives_ = true;
+    has_total_internal_reflection_ = true;
     if (dispersive) dispersed_ = specular_transmission;
   }
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 
   bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
     float cosine_behind = 0;
@@ -44,7 +44,7 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
     if (choice < reflect_probability) {
       s.in = {-out.x, -out.y, out.z};
       s.value = tint_.reflected * reflected;
-      s.density = reflect_probability;
+      s.pdf = reflect_probability;
       s.lobe = specular_reflection;
       return true;
     }
@@ -53,14 +53,14 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
     s.in = {-out.x / eta, -out.y / eta, out.z > 0 ? -cosine_behind : cosine_behind};
     s.value = varies_ ? Spectrum(1 - hero) : Spectrum(1.0f) - reflected;
     s.value *= tint_.transmitted;
-    s.density = 1 - reflect_probability;
+    s.pdf = 1 - reflect_probability;
     s.lobe = specular_transmission;
     s.eta = eta;
     s.dispersive = dispersive_;
     return true;
   }
 
-  bool holds_captive(const Vector3& out) const override {
+  bool total_internal_reflection(const Vector3& out) const override {
     float unused = 0;
     return fresnel_dielectric(std::abs(out.z), towards(out, eta_[0]), unused) >= 1;
   }

@@ -99,13 +99,13 @@ class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
     shine_weight_ = shine.average();
   }
 
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(out.z * in.z > 0)) return {};
     const float through = coat_.lets_through(out), coat_probability = probability_of_coat(out, through, which);
     ScatterValue r;
     if (which & diffuse_reflection) {
       r.value = body_ * (through * coat_.lets_through(in) * inverse_pi);
-      r.density = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
+      r.pdf = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
     }
     if (which & glossy_reflection) {
       const MicrofacetDistribution& d = coat_.distribution;
@@ -113,7 +113,7 @@ class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
       const float cosine = std::abs(dot(out, m));
       r.value += shine_ *
                  (fresnel_dielectric(cosine, coat_.eta) * d.D(m) * coat_.G1(out) * coat_.G1(in) / (4 * std::abs(out.z * in.z)));
-      r.density += coat_probability * d.visible_density(out, m) * reflection_jacobian(cosine);
+      r.pdf += coat_probability * d.visible_pdf(out, m) * reflection_jacobian(cosine);
     }
     return r;
   }
@@ -124,7 +124,7 @@ class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
       if (which & specular_reflection) {
         s.in = {-out.x, -out.y, out.z};
         s.value = shine_ * coat_.throws_back(out);
-        s.density = coat_probability;
+        s.pdf = coat_probability;
         s.lobe = specular_reflection;
         return true;
       }
@@ -135,10 +135,10 @@ class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
       if (out.z < 0) s.in.z = -s.in.z;
       s.lobe = diffuse_reflection;
     }
-    const ScatterValue both = local_value_and_density(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, which);
     s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
-    return s.density > 0;
+    s.pdf = both.pdf;
+    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {

@@ -67,7 +67,7 @@ struct MicrofacetDistribution {
 
   /// Density [1/sr] of sample_visible: of the facets seen from `out`, the share of area across `out` with normals around m:
   /// G1(out) |out . m| D(m) / |out.z| (Heitz 2014, eq. 16).
-  float visible_density(const Vector3& out, const Vector3& m) const {
+  float visible_pdf(const Vector3& out, const Vector3& m) const {
     const float cosine = out.z > 0 ? dot(out, m) : -dot(out, m);
     if (!(cosine > 0)) return 0;
     if (kind == ggx) return 2 * cosine * D(m) / (std::abs(out.z) + stretched(out));

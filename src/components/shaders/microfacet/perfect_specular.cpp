@@ -12,11 +12,11 @@ class PerfectSpecularScatter final : public ScatterModel<PerfectSpecularScatter>
       : ScatterModel(p, specular_reflection), reflectance_(reflectance) {}
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
   bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
     s.in = {-out.x, -out.y, out.z};
     s.value = reflectance_;
-    s.density = 1;
+    s.pdf = 1;
     s.lobe = specular_reflection;
     return true;
   }

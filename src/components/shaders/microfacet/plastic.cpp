@@ -50,19 +50,19 @@ class PlasticScatter final : public JointScatter<PlasticScatter> {
     body_weight_ = body_albedo_.average();
   }
 
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (!(out.z * in.z > 0)) return {};
     const float through = coat_.through(out), coat_probability = probability_of_coat(through, which);
     ScatterValue r;
     if (which & diffuse_reflection) {
       r.value = body_ * (through * coat_.through(in) * inverse_pi);
-      r.density = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
+      r.pdf = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
     }
     if (which & glossy_reflection) {
       const Vector3 m = reflection_half_vector(out, in);
       const float cosine = std::abs(dot(out, m));
       r.value += Spectrum(fresnel_dielectric(cosine, coat_.eta) * distribution_.D(m) * distribution_.visibility(out, in));
-      r.density += coat_probability * distribution_.visible_density(out, m) * reflection_jacobian(cosine);
+      r.pdf += coat_probability * distribution_.visible_pdf(out, m) * reflection_jacobian(cosine);
     }
     return r;
   }
@@ -73,7 +73,7 @@ class PlasticScatter final : public JointScatter<PlasticScatter> {
       if (which & specular_reflection) {
         s.in = {-out.x, -out.y, out.z};
         s.value = Spectrum(1 - through);
-        s.density = coat_probability;
+        s.pdf = coat_probability;
         s.lobe = specular_reflection;
         return true;
       }
@@ -84,10 +84,10 @@ class PlasticScatter final : public JointScatter<PlasticScatter> {
       if (out.z < 0) s.in.z = -s.in.z;
       s.lobe = diffuse_reflection;
     }
-    const ScatterValue both = local_value_and_density(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, which);
     s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
-    return s.density > 0;
+    s.pdf = both.pdf;
+    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {

@@ -59,7 +59,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     return d.smooth() || std::max(d.alpha_x, d.alpha_y) * bend < 3e-4f;
   }
 
-  ScatterValue local_value_and_density(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (out.z == 0 || in.z == 0) return {};
     ScatterValue r = out.z * in.z > 0 ? reflection(out, in, which) : transmission(out, in, which);
     if (multiple_) {
@@ -67,7 +67,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       const float side = out.z * in.z > 0 ? 1 - through : through;
       const float more = multiple_refraction_.value(out, in);
       r.value += side_factor(out, in) * more;
-      r.density = lerp(missing, r.density, side * std::abs(in.z) * inverse_pi);
+      r.pdf = lerp(missing, r.pdf, side * std::abs(in.z) * inverse_pi);
     }
     r.value *= out.z * in.z > 0 ? tint_.reflected : tint_.transmitted;
     return r;
@@ -94,12 +94,12 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       if ((s.in.z * out.z > 0) != reflects) return false;  // another facet is in the way
     }
     const bool above = s.in.z * out.z > 0;
-    const ScatterValue both = local_value_and_density(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, which);
     s.value = both.value * std::abs(s.in.z);
-    s.density = both.density;
+    s.pdf = both.pdf;
     s.lobe = above ? glossy_reflection : glossy_transmission;
     if (!above) s.eta = towards(out, eta_[0]);
-    return s.density > 0;
+    return s.pdf > 0;
   }
 
   // What is reflected once, and what is lost to more than one facet, stand in tables for isotropic distributions. Of others
@@ -155,7 +155,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     float reflected = 0, refracted = 0;
     for (int i = 0; i < side * side; ++i) {
       const Vector3 m = distribution_.sample_visible(out, {(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side});
-      const float out_m = std::abs(dot(out, m)), facets = distribution_.D(m) / distribution_.visible_density(out, m);
+      const float out_m = std::abs(dot(out, m)), facets = distribution_.D(m) / distribution_.visible_pdf(out, m);
       float cosine_behind = 0;
       const float fresnel = fresnel_dielectric(out_m, eta, cosine_behind);
       const Vector3 back = reflect(out, m), on = refract(out, m, eta, cosine_behind);
@@ -198,7 +198,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       if (i < choosing_) probability += reflect_probability(reflected, which) / float(choosing_);
     }
     if (!varies_) r.value = Spectrum(r.value[0]);
-    r.density = probability * distribution_.visible_density(out, m) * reflection_jacobian(out_m);
+    r.pdf = probability * distribution_.visible_pdf(out, m) * reflection_jacobian(out_m);
     return r;
   }
 
@@ -213,8 +213,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       const float reflected = fresnel_dielectric(std::abs(out_m), eta), jacobian = refraction_jacobian(out_m, in_m, eta);
       r.value.set(i, front * (1 - reflected) * distribution_.D(m) * std::abs(out_m) * jacobian);
       if (i < choosing_)
-        r.density +=
-            (1 - reflect_probability(reflected, which)) * distribution_.visible_density(out, m) * jacobian / float(choosing_);
+        r.pdf += (1 - reflect_probability(reflected, which)) * distribution_.visible_pdf(out, m) * jacobian / float(choosing_);
     }
     if (!varies_) r.value = Spectrum(r.value[0]);
     return r;

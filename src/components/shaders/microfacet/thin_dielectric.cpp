@@ -24,7 +24,7 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
  public:
   /// eta: index of the slab over that around it; `passage`: what is left after one passage along the normal.
   ThinDielectricScatter(const SurfacePoint& p, Spectrum eta, Spectrum passage, const BoundaryTint& tint, Polarizations kept)
-      : ScatterModel(p, specular_reflection | pass_through),
+      : ScatterModel(p, specular_reflection | null_scattering),
         eta_(eta),
         passage_(passage),
         tint_(tint),
@@ -33,24 +33,24 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
         flat_(eta.minimum() == eta.maximum() && passage.minimum() == passage.maximum()) {}
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 
   bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
     const Slab slab = tinted(slab_at(std::abs(out.z)));
     const float reflected = (which & specular_reflection) ? slab.reflected.average() : 0;
-    const float transmitted = (which & pass_through) ? slab.transmitted.average() : 0;
+    const float transmitted = (which & null_scattering) ? slab.transmitted.average() : 0;
     if (!(reflected + transmitted > 0)) return false;
     const float probability = transmitted > 0 ? reflected / (reflected + transmitted) : 1;
     if (choice < probability) {
       s.in = {-out.x, -out.y, out.z};
       s.value = slab.reflected;
-      s.density = probability;
+      s.pdf = probability;
       s.lobe = specular_reflection;
     } else {
       s.in = -out;
       s.value = slab.transmitted;
-      s.density = 1 - probability;
-      s.lobe = pass_through;
+      s.pdf = 1 - probability;
+      s.lobe = null_scattering;
     }
     return true;
   }
@@ -59,7 +59,7 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
     const Slab slab = tinted(slab_at(std::abs(out.z)));
     Spectrum sum;
     if (which & specular_reflection) sum += slab.reflected;
-    if (which & pass_through) sum += slab.transmitted;
+    if (which & null_scattering) sum += slab.transmitted;
     return sum;
   }
 
@@ -146,7 +146,7 @@ class ThinDielectric final : public Shader {
         p, eta, reflectance_at(*color, p, w),
         BoundaryTint{reflectance_at(*reflection_tint, p, w), reflectance_at(*transmission_tint, p, w)}, polarizations);
   }
-  Lobes possible_lobes() const override { return specular_reflection | pass_through; }
+  Lobes possible_lobes() const override { return specular_reflection | null_scattering; }
   bool transmits() const override { return false; }
   bool lossless() const override {
     return everywhere(color, 1) && everywhere(reflection_tint, 1) && everywhere(transmission_tint, 1);

@@ -32,7 +32,7 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
   }
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 
   bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
     const Spectrum reflected = reflectance(out);
@@ -42,7 +42,7 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
     if (choice < reflect_probability) {
       s.in = {-out.x, -out.y, out.z};
       s.value = reflected;
-      s.density = reflect_probability;
+      s.pdf = reflect_probability;
       s.lobe = specular_reflection;
       return true;
     }
@@ -50,11 +50,11 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
     if (!(cosine2 > 0)) return false;  // total reflection of the hero, which alone says where the path would go
     s.in = {-out.x / eta, -out.y / eta, out.z > 0 ? -std::sqrt(cosine2) : std::sqrt(cosine2)};
     s.value = Spectrum(1.0f) - reflected;
-    s.density = 1 - reflect_probability;
+    s.pdf = 1 - reflect_probability;
     s.lobe = specular_transmission;
     s.eta = eta;
     s.dispersive = layers_.dispersive;
-    return s.density > 0;
+    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {

@@ -35,7 +35,7 @@ class BoundaryScatter final : public ScatterModel<BoundaryScatter> {
       : ScatterModel(p, specular_reflection | specular_transmission), eta_(eta) {}
 
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_density(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
 
   bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
     const Spectrum reflected = reflectance_of(std::abs(out.z), eta_);
@@ -45,12 +45,12 @@ class BoundaryScatter final : public ScatterModel<BoundaryScatter> {
     if (choice < probability) {
       s.in = {-out.x, -out.y, out.z};
       s.value = reflected;
-      s.density = probability;
+      s.pdf = probability;
       s.lobe = specular_reflection;
     } else {
       s.in = -out;
       s.value = Spectrum(1.0f) - reflected;
-      s.density = 1 - probability;
+      s.pdf = 1 - probability;
       s.lobe = specular_transmission;
     }
     return true;
@@ -80,16 +80,16 @@ class ExitScatter final : public ScatterModel<ExitScatter> {
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? passed(std::abs(in.z)) * inverse_pi : Spectrum();
   }
-  float local_density(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
   bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const override {
     s.in = warp::cosine_hemisphere(u);
-    s.density = s.in.z * inverse_pi;
-    s.value = passed(s.in.z) * s.density;
+    s.pdf = s.in.z * inverse_pi;
+    s.value = passed(s.in.z) * s.pdf;
     s.lobe = diffuse_reflection;
     if (out.z < 0) s.in.z = -s.in.z;
-    return s.density > 0;
+    return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3&, Lobes which) const override {
     return (which & diffuse_reflection) ? Spectrum(1.0f) : Spectrum();
@@ -153,7 +153,7 @@ class Subsurface final : public Shader {
   Lobes possible_lobes() const override { return specular_reflection | specular_transmission; }
   /// A path that comes out again has never been inside for those who count.
   bool transmits() const override { return false; }
-  bool moves_exit() const override { return true; }
+  bool has_subsurface_exit() const override { return true; }
 
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
                                             NumberStream& random, Arena& arena) const override {

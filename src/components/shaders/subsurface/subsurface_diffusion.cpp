@@ -47,7 +47,7 @@ struct Profiles {
       if (share[i] > 0) furthest = std::max(furthest, profile[i].end());
     return furthest;
   }
-  float density(float r) const {
+  float pdf(float r) const {
     float sum = 0;
     for (int i = 0; i < spectrum_size; ++i)
       if (share[i] > 0) sum += share[i] * profile[i].by_area(r);
@@ -67,15 +67,15 @@ bool exit_by_diffusion(const SubsurfaceBody& body, const SurfacePoint& entry, co
   const auto contribution = [&](const SurfacePoint& p) {
     const Vector3 offset = p.position - entry.position;
     const float whole = length_squared(offset);
-    float density = 0;
+    float pdf = 0;
     for (const Vector3& a : axes) {
       const float along = dot(offset, a);
-      density += profiles.density(safe_sqrt(whole - along * along)) * std::abs(dot(p.normal, a));
+      pdf += profiles.pdf(safe_sqrt(whole - along * along)) * std::abs(dot(p.normal, a));
     }
-    if (!(density > 0)) return Spectrum();
+    if (!(pdf > 0)) return Spectrum();
     Spectrum r;
     const float distance = std::sqrt(whole);
-    for (int i = 0; i < spectrum_size; ++i) r.set(i, body.returned[i] * profiles.profile[i].by_area(distance) / density);
+    for (int i = 0; i < spectrum_size; ++i) r.set(i, body.returned[i] * profiles.profile[i].by_area(distance) / pdf);
     return r;
   };
 

@@ -8,7 +8,7 @@
 //   t = 1: the light's walk goes to the lens, and the light falls on the film where it does.
 // Merging: a photon that came by s vertices lies within r of z_{t-1}, and is taken to have come there (photons.h).
 //
-//     WalkPair walks(context, lights, sample, heuristic);
+//     BidirectionalSubpaths walks(context, lights, sample, heuristic);
 //     walks.from_camera(ray, limits, found);
 //     walks.from_luminaire(ray.time, limits);
 //     for each t: if (const auto light = walks.sample_luminaire(t)) found(*light);  …
@@ -23,7 +23,7 @@ namespace etendue {
 struct Photon;
 
 /// Light that one strategy found.
-struct FoundLight {
+struct PathContribution {
   int s = 0, t = 0;  ///< vertices from the luminaire and from the camera
   bool merged = false;
   Spectrum light;  ///< [W m^-2 sr^-1 nm^-1] of the sample, without the weight; for t = 1 as a Splat counts it
@@ -36,64 +36,65 @@ struct FoundLight {
 
 /// Who is told of what the camera's walk finds while it grows.
 struct LightListener {
-  virtual void found(const FoundLight&) = 0;
+  virtual void found(const PathContribution&) = 0;
 
  protected:
   ~LightListener() = default;
 };
 
 /// One at a time on each thread: its walks live in the thread's own memory.
-class WalkPair {
+class BidirectionalSubpaths {
  public:
-  WalkPair(const RenderContext&, const LightSampler&, SampleContext&, const StrategyWeights&);
+  BidirectionalSubpaths(const RenderContext&, const LightSampler&, SampleContext&, const StrategyWeights&);
 
-  /// Lets the camera's walk grow; whoever chooses its directions (WalkLimits) is in the weights from then on. `listener` hears
-  /// of light that media send (s = 0) and of luminaires passed straight through; those at the walk's vertices are for `meet`.
-  void from_camera(const Ray&, const WalkLimits&, LightListener&);
+  /// Lets the camera's walk grow; whoever chooses its directions (SubpathLimits) is in the weights from then on. `listener`
+  /// hears of light that media send (s = 0) and of luminaires passed straight through; those at the walk's vertices are for
+  /// `meet`.
+  void from_camera(const Ray&, const SubpathLimits&, LightListener&);
   /// Lets the light's walk grow, by numbers of its own ("light"); after the camera's. It has no vertices when no light leaves.
-  void from_luminaire(float time, const WalkLimits&);
+  void from_luminaire(float time, const SubpathLimits&);
 
   int camera_vertices() const { return int(camera_.size()); }
   int light_vertices() const { return int(light_.size()); }
   /// z_{t-1} and y_{s-1}.
-  const KeptVertex& camera_vertex(int t) const { return camera_[size_t(t - 1)]; }
-  const KeptVertex& light_vertex(int s) const { return light_[size_t(s - 1)]; }
-  const std::vector<KeptVertex>& camera_walk() const { return camera_; }
+  const SubpathVertex& camera_vertex(int t) const { return camera_[size_t(t - 1)]; }
+  const SubpathVertex& light_vertex(int s) const { return light_[size_t(s - 1)]; }
+  const std::vector<SubpathVertex>& camera_subpath() const { return camera_; }
   /// Whether mirrors and clear surfaces alone lie between the lens and z_{t-1}.
-  bool by_mirrors(int t) const;
+  bool has_specular_prefix(int t) const;
   const Wavelengths& light_wavelengths() const { return light_wavelengths_; }
 
   /// s = 0: z_{t-1} lies on a luminaire, or sees those at infinity.
   void meet(int t, LightListener&) const;
   /// s = 1.
-  std::optional<FoundLight> sample_luminaire(int t) const;
+  std::optional<PathContribution> sample_luminaire(int t) const;
   /// s > 1, t > 1.
-  std::optional<FoundLight> connect(int s, int t) const;
+  std::optional<PathContribution> connect(int s, int t) const;
   /// t = 1.
-  std::optional<FoundLight> connect_to_lens(int s) const;
+  std::optional<PathContribution> connect_to_lens(int s) const;
   /// Of a photon that lies within r of z_{t-1}.
-  std::optional<FoundLight> merge(const Photon&, int t) const;
+  std::optional<PathContribution> merge(const Photon&, int t) const;
 
   /// For people: both walks, when the sample is recorded.
   void record() const;
 
  private:
-  void meet_at(const KeptVertex&, const SurfacePoint& luminaire, int t, LightListener&) const;
+  void meet_at(const SubpathVertex&, const SurfacePoint& luminaire, int t, LightListener&) const;
   /// The density of a walk's vertex before its last, `count` vertices long, had a walk come from `from` through the last.
-  float before_from(const std::vector<KeptVertex>& walk, int count, const Vector3& from, Transport) const;
+  float before_from(const std::vector<SubpathVertex>& walk, int count, const Vector3& from, Transport) const;
 
   const RenderContext& context_;
   const LightSampler& lights_;
   SampleContext& sample_;
   const StrategyWeights weights_;
-  std::vector<KeptVertex>&camera_, &light_;
+  std::vector<SubpathVertex>&camera_, &light_;
   Wavelengths light_wavelengths_;
-  const LightFront front_;
+  const EmissionPlane front_;
   CameraDirections* directions_ = nullptr;
   float direct_ = 0;  ///< density of y_0 when it is sampled as seen from y_1
 };
 
 /// Tells a sample of light that was found: its value, or a splat, and whoever observes it.
-void add_found(SampleContext&, const Wavelengths& of_light, const FoundLight&, Spectrum& radiance);
+void add_contribution(SampleContext&, const Wavelengths& of_light, const PathContribution&, Spectrum& radiance);
 
 }  // namespace etendue

@@ -1,8 +1,8 @@
-#include "etendue/render/number_chains.h"
+#include "etendue/render/primary_sample_chains.h"
 
 #include <array>
 
-#include "etendue/transport/number_vectors.h"
+#include "etendue/transport/primary_sample_vectors.h"
 #include "film/picture_format.h"
 
 namespace etendue {
@@ -54,18 +54,18 @@ Pool make_pool(Schedule& schedule, const Chains& chains, std::uint64_t seed, std
   return pool;
 }
 
-class NumberChains final : public Chains {
+class PrimarySampleChains final : public Chains {
  public:
-  NumberChains(const ChainSettings& settings, const PathFunction& path) : settings_(settings), path_(path) {}
+  PrimarySampleChains(const ChainSettings& settings, const PathFunction& path) : settings_(settings), path_(path) {}
 
   void draw(std::uint64_t seed, Arena& arena, const std::atomic<bool>* abort, Contribution& f) const override {
-    path_.evaluate(MutatedNumbers(seed), arena, abort, f);
+    path_.evaluate(MutatedPrimarySamples(seed), arena, abort, f);
   }
 
   void run(std::uint64_t first, std::uint64_t own_seed, std::uint64_t states, const StateWeights& weights, const FilmWeights& v,
            ImageTile& tile, Arena& arena, const std::atomic<bool>* abort) const override {
     ChoiceNumbers choices(own_seed);
-    MutatedNumbers numbers(first);
+    MutatedPrimarySamples numbers(first);
     Contribution current, proposed;
     path_.evaluate(numbers, arena, abort, current);
     numbers.accept();
@@ -102,9 +102,9 @@ class NumberChains final : public Chains {
 
 }  // namespace
 
-void mutate_numbers(Schedule& schedule, const ImageBuffer& image, const ChainSettings& settings, const PathFunction& path,
-                    std::uint64_t seed, std::uint64_t paths, bool count_paths) {
-  run_chains(schedule, image, settings, NumberChains(settings, path), seed, paths, count_paths);
+void mutate_primary_samples(Schedule& schedule, const ImageBuffer& image, const ChainSettings& settings,
+                            const PathFunction& path, std::uint64_t seed, std::uint64_t paths, bool count_paths) {
+  run_chains(schedule, image, settings, PrimarySampleChains(settings, path), seed, paths, count_paths);
 }
 
 void run_chains(Schedule& schedule, const ImageBuffer& image, const ChainSettings& settings, const Chains& chains,

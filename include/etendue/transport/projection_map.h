@@ -8,10 +8,10 @@
 
 namespace etendue {
 
-class EmissionTargets {
+class ProjectionMap {
  public:
   /// Spheres around what has mirror-like lobes in a prepared scene; of very many such objects neighbours share one.
-  explicit EmissionTargets(const Scene&);
+  explicit ProjectionMap(const Scene&);
 
   /// Whether sending light there alone saves anything: there are such objects, none without end, and they are smaller than the
   /// scene. What is not useful must not be used.
@@ -33,8 +33,8 @@ class EmissionTargets {
     float radius;
   };
   void share(std::vector<Sphere>& spheres, size_t begin, size_t end, size_t most);
-  Point3 place(Point2 u, const Vector3& direction, float& density) const;
-  Vector3 direction(const SurfacePoint& from, Point2 u, float& density) const;
+  Point3 place(Point2 u, const Vector3& direction, float& pdf) const;
+  Vector3 direction(const SurfacePoint& from, Point2 u, float& pdf) const;
   int met_by(const Point3&, const Vector3& direction, bool ahead_alone) const;
 
   std::vector<Sphere> spheres_;

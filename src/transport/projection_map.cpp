@@ -1,4 +1,4 @@
-#include "etendue/transport/emission_targets.h"
+#include "etendue/transport/projection_map.h"
 
 #include <algorithm>
 
@@ -25,7 +25,7 @@ bool throws_on(const SceneObject& object, const Shader* instead) {
 
 }  // namespace
 
-EmissionTargets::EmissionTargets(const Scene& scene) {
+ProjectionMap::ProjectionMap(const Scene& scene) {
   for (const Ref<SceneObject>& object : scene.objects) {
     if (object->infinite() || object->delta() || !throws_on(*object, nullptr)) continue;
     if (object->unbounded()) return;
@@ -42,7 +42,7 @@ EmissionTargets::EmissionTargets(const Scene& scene) {
 }
 
 /// Halves the list across its longest extent until `most` spheres are enough for each half.
-void EmissionTargets::share(std::vector<Sphere>& spheres, size_t begin, size_t end, size_t most) {
+void ProjectionMap::share(std::vector<Sphere>& spheres, size_t begin, size_t end, size_t most) {
   Bounds3 bounds, centres;
   for (size_t i = begin; i < end; ++i) {
     const Sphere& s = spheres[i];
@@ -68,19 +68,19 @@ void EmissionTargets::share(std::vector<Sphere>& spheres, size_t begin, size_t e
 }
 
 /// A place on the disc of a target, uniform over all of them together; how many they are there. [0, 1)^2 to the place.
-Point3 EmissionTargets::place(Point2 u, const Vector3& direction, float& density) const {
+Point3 ProjectionMap::place(Point2 u, const Vector3& direction, float& pdf) const {
   const float sum = up_to_.back(), at = u.x * sum;
   const size_t k = std::min(size_t(std::ranges::upper_bound(up_to_, at) - up_to_.begin()), spheres_.size() - 1);
   const float below = k == 0 ? 0 : up_to_[k - 1];
   const Point2 p = warp::disc({clamp((at - below) / (up_to_[k] - below), 0, one_minus_epsilon), u.y});
   const Frame frame((Normal3(direction)));
   const Point3 through = spheres_[k].centre + spheres_[k].radius * (p.x * frame.s + p.y * frame.t);
-  density = float(met_by(through, direction, false)) / (pi * sum);
+  pdf = float(met_by(through, direction, false)) / (pi * sum);
   return through;
 }
 
 /// A direction towards a target from a point, or one that its emission shader chooses.
-Vector3 EmissionTargets::direction(const SurfacePoint& from, Point2 u, float& density) const {
+Vector3 ProjectionMap::direction(const SurfacePoint& from, Point2 u, float& pdf) const {
   const EmissionShader& emission = *from.object->emission;
   // 1 - cosine of the half angle under which each target is seen; 2 from within.
   static thread_local std::vector<float> opening;
@@ -94,7 +94,7 @@ Vector3 EmissionTargets::direction(const SurfacePoint& from, Point2 u, float& de
   Vector3 to;
   if (u.x < 0.5f) {
     const DirectionSample d = emission.sample(from, {2 * u.x, u.y});
-    if (!(d.density > 0)) return density = 0, to;
+    if (!(d.pdf > 0)) return pdf = 0, to;
     to = d.direction;
   } else {
     float rest = (2 * u.x - 1) * sum;
@@ -103,12 +103,12 @@ Vector3 EmissionTargets::direction(const SurfacePoint& from, Point2 u, float& de
     const Vector3 axis = opening[k] < 2 ? normalize(spheres_[k].centre - from.position) : Vector3{0, 0, 1};
     to = Frame(Normal3(axis)).to_world(warp::cone({clamp(rest / opening[k], 0, one_minus_epsilon), u.y}, opening[k]));
   }
-  density = 0.5f * emission.density(from, to) + 0.5f * float(met_by(from.position, to, true)) / (2 * pi * sum);
+  pdf = 0.5f * emission.pdf(from, to) + 0.5f * float(met_by(from.position, to, true)) / (2 * pi * sum);
   return to;
 }
 
 /// How many targets a line meets, or a ray that begins at a point of it.
-int EmissionTargets::met_by(const Point3& p, const Vector3& direction, bool ahead_alone) const {
+int ProjectionMap::met_by(const Point3& p, const Vector3& direction, bool ahead_alone) const {
   int met = 0;
   for (const Sphere& s : spheres_) {
     const Vector3 to = s.centre - p;
@@ -120,25 +120,25 @@ int EmissionTargets::met_by(const Point3& p, const Vector3& direction, bool ahea
   return met;
 }
 
-bool EmissionTargets::sample_emitted_light(const Scene& scene, const LightSampler& lights, const Wavelengths& w, float time,
-                                           NumberStream& numbers, EmittedLight& light) const {
+bool ProjectionMap::sample_emitted_light(const Scene& scene, const LightSampler& lights, const Wavelengths& w, float time,
+                                         NumberStream& numbers, EmittedLight& light) const {
   const float which = numbers.next();
   const Point2 u = numbers.next_pair(), v = numbers.next_pair();
   if (!choose_luminaire(lights, which, time, light)) return false;
   const SceneObject& luminaire = *light.luminaire;
   if (luminaire.infinite()) {
     const SurfaceSample s = luminaire.sample_visible(scene.centre(), v, time);
-    if (!(s.density > 0)) return false;
-    light.direction = s.density;
+    if (!(s.pdf > 0)) return false;
+    light.direction = s.pdf;
     const Point3 through = place(u, s.direction, light.position);
-    if (!(light.position > 0) || !begin_at_infinity(scene, through, s, w, light)) return false;
+    if (!(light.position > 0) || !emit_from_infinity(scene, through, s, w, light)) return false;
   } else {
     const SurfaceSample s = luminaire.sample_area(u, time);
-    if (!(s.density > 0)) return false;
-    light.position = s.density;
+    if (!(s.pdf > 0)) return false;
+    light.position = s.pdf;
     const Vector3 to = direction(s.point, v, light.direction);
     if (!(light.direction > 0)) return false;
-    begin_at_point(scene, s, to, w, light);
+    emit_from_point(scene, s, to, w, light);
   }
   return !light.radiance.black();
 }

@@ -1,4 +1,4 @@
-#include "etendue/transport/number_vectors.h"
+#include "etendue/transport/primary_sample_vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace etendue {
 
-float RecordedNumbers::number(SampleKey key, std::uint32_t dimension) const {
+float RecordedPrimarySamples::number(SampleKey key, std::uint32_t dimension) const {
   auto& walk = walks_[key.walk];
   const auto known = walk.find(dimension);
   if (known != walk.end()) return known->second;
@@ -16,7 +16,7 @@ float RecordedNumbers::number(SampleKey key, std::uint32_t dimension) const {
   return walk[dimension] = source_->number(key, dimension);
 }
 
-Point2 RecordedNumbers::pair(SampleKey key, std::uint32_t dimension) const {
+Point2 RecordedPrimarySamples::pair(SampleKey key, std::uint32_t dimension) const {
   auto& walk = walks_[key.walk];
   if (source_ && !walk.contains(dimension)) {
     const Point2 p = source_->pair(key, dimension);
@@ -26,19 +26,19 @@ Point2 RecordedNumbers::pair(SampleKey key, std::uint32_t dimension) const {
   return {number(key, dimension), number(key, dimension + 1)};
 }
 
-void MutatedNumbers::begin(bool large, double variance) {
+void MutatedPrimarySamples::begin(bool large, double variance) {
   time_before_ = time_;
   time_ += variance;
   large_ = large;
   touched_.clear();
 }
 
-void MutatedNumbers::accept() {
+void MutatedPrimarySamples::accept() {
   if (large_) last_large_ = time_;
   touched_.clear();
 }
 
-void MutatedNumbers::reject() {
+void MutatedPrimarySamples::reject() {
   for (const auto& [walk, dimension] : touched_) {
     Coordinate& c = (*walk)[dimension];
     c.value = c.before;
@@ -48,16 +48,16 @@ void MutatedNumbers::reject() {
   time_ = time_before_;
 }
 
-float MutatedNumbers::draw() const {
+float MutatedPrimarySamples::draw() const {
   return to_unit_float(std::uint32_t(mix_bits(seed_ + ++drawn_ * 0x9e3779b97f4a7c15ull) >> 32));
 }
 
-Point2 MutatedNumbers::normal_pair() const {  // Box & Muller 1958
+Point2 MutatedPrimarySamples::normal_pair() const {  // Box & Muller 1958
   const float radius = std::sqrt(-2 * std::log(1 - draw())), angle = 2 * pi * draw();
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-MutatedNumbers::Walk& MutatedNumbers::walk(std::uint64_t name) const {
+MutatedPrimarySamples::Walk& MutatedPrimarySamples::walk(std::uint64_t name) const {
   if (!last_ || name != last_name_) {
     last_ = &walks_[name];
     last_name_ = name;
@@ -65,14 +65,14 @@ MutatedNumbers::Walk& MutatedNumbers::walk(std::uint64_t name) const {
   return *last_;
 }
 
-void MutatedNumbers::move(Coordinate& c, double time, float normal) {
+void MutatedPrimarySamples::move(Coordinate& c, double time, float normal) {
   const float moved = c.value + float(std::sqrt(time - c.changed)) * normal;
   c.value = std::min(moved - std::floor(moved), one_minus_epsilon);
   c.changed = time;
 }
 
 template <class Normal>
-float MutatedNumbers::proposed(Walk& walk, std::uint32_t dimension, const Normal& normal) const {
+float MutatedPrimarySamples::proposed(Walk& walk, std::uint32_t dimension, const Normal& normal) const {
   Coordinate& c = walk[dimension];
   if (c.changed == time_) return c.value;
   if (!large_) {
@@ -98,13 +98,13 @@ float MutatedNumbers::proposed(Walk& walk, std::uint32_t dimension, const Normal
   return c.value;
 }
 
-float MutatedNumbers::number(SampleKey key, std::uint32_t dimension) const {
+float MutatedPrimarySamples::number(SampleKey key, std::uint32_t dimension) const {
   Walk& all = walk(key.walk);
   if (all.size() <= dimension) all.resize(size_t(dimension) + 1);
   return proposed(all, dimension, [&] { return normal_pair().x; });
 }
 
-Point2 MutatedNumbers::pair(SampleKey key, std::uint32_t dimension) const {
+Point2 MutatedPrimarySamples::pair(SampleKey key, std::uint32_t dimension) const {
   Walk& all = walk(key.walk);
   if (all.size() <= dimension + 1) all.resize(size_t(dimension) + 2);
   const Point2 normal = large_ ? Point2{} : normal_pair();
@@ -129,7 +129,7 @@ void take(std::span<const std::byte>& from, T& value) {
 
 }  // namespace
 
-void MutatedNumbers::save(std::vector<std::byte>& to) const {
+void MutatedPrimarySamples::save(std::vector<std::byte>& to) const {
   append(to, seed_);
   append(to, time_);
   append(to, last_large_);
@@ -149,7 +149,7 @@ void MutatedNumbers::save(std::vector<std::byte>& to) const {
   }
 }
 
-void MutatedNumbers::load(std::span<const std::byte>& from) {
+void MutatedPrimarySamples::load(std::span<const std::byte>& from) {
   std::uint64_t seed = 0, drawn = 0, count = 0, size = 0, name = 0;
   double time = 0, last_large = 0;
   take(from, seed);

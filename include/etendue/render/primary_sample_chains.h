@@ -1,8 +1,8 @@
 #pragma once
 // Chains of mutated numbers: what a step of a Metropolis renderer does whose paths are functions of numbers u in [0, 1).
 //
-// A chain goes on by large steps, all numbers drawn anew, or small ones, each moved a little (transport/number_vectors.h). Both
-// are symmetric, so a proposal v is accepted with the probability
+// A chain goes on by large steps, all numbers drawn anew, or small ones, each moved a little
+// (transport/primary_sample_vectors.h). Both are symmetric, so a proposal v is accepted with the probability
 //     a = min(1, I(v) / I(u)),
 // and u and v are both added to the film, weighted with 1 - a and a, and with what large steps are worth by themselves
 // (StateWeights in transport/metropolis.h). Each step of the render has chains of its own, that begin with paths of a pool
@@ -73,8 +73,8 @@ class PathFunction {
 };
 
 /// The same with chains of numbers.
-void mutate_numbers(Schedule&, const ImageBuffer&, const ChainSettings&, const PathFunction&, std::uint64_t seed,
-                    std::uint64_t paths, bool count_paths);
+void mutate_primary_samples(Schedule&, const ImageBuffer&, const ChainSettings&, const PathFunction&, std::uint64_t seed,
+                            std::uint64_t paths, bool count_paths);
 
 /// A process whose chains mutate the paths of another process.
 ///

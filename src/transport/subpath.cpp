@@ -1,6 +1,6 @@
-#include "etendue/transport/kept_walk.h"
+#include "etendue/transport/subpath.h"
 
-#include "etendue/transport/emission_targets.h"
+#include "etendue/transport/projection_map.h"
 #include "etendue/transport/roulette.h"
 #include "etendue/transport/walk.h"
 
@@ -10,18 +10,18 @@ namespace {
 using Growing = Walk<false>;
 
 /// Adds the vertex a walk has come to.
-KeptVertex& add(const Growing& walk, float density, const LightFront& front, std::vector<KeptVertex>& kept) {
-  KeptVertex& v = kept.emplace_back();
-  keep(walk, kept[kept.size() - 2], density, front, v);
+SubpathVertex& add(const Growing& walk, float pdf, const EmissionPlane& front, std::vector<SubpathVertex>& subpath) {
+  SubpathVertex& v = subpath.emplace_back();
+  store_vertex(walk, subpath[subpath.size() - 2], pdf, front, v);
   return v;
 }
 
-struct KeptListener : NoListener {
+struct StoringListener : NoListener {
   const Growing& walk;
-  const LightFront& front;
-  std::vector<KeptVertex>& kept;
+  const EmissionPlane& front;
+  std::vector<SubpathVertex>& subpath;
   WalkListener* listener;
-  const float& density;
+  const float& pdf;
 
   void emitted(const Spectrum& light) const {
     if (listener) listener->emitted(walk.length, light);
@@ -31,25 +31,25 @@ struct KeptListener : NoListener {
   }
   void crossed_luminaire() const {
     if (!listener) return;
-    add(walk, density, front, kept);
+    add(walk, pdf, front, subpath);
     listener->crossed_luminaire();
-    kept.pop_back();
+    subpath.pop_back();
   }
 };
 
 /// Lets a walk grow whose first vertex is kept already. `density`: of its first direction.
-void grow(Growing& walk, float density, const WalkLimits& limits, std::vector<KeptVertex>& kept, WalkListener* listener) {
-  const LightFront front(walk.scene);
+void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<SubpathVertex>& subpath, WalkListener* listener) {
+  const EmissionPlane front(walk.scene);
   const Roulette roulette{limits.roulette_depth};
   const bool from_camera = walk.transport == Transport::radiance;
   CameraDirections* const chosen = from_camera ? limits.directions : nullptr;
   float more = 1;  // the product of what directions are more likely than by scattering: so much more would be left without
-  walk.keeps = walk.watched = true;
-  const KeptListener at{{}, walk, front, kept, listener, density};
+  walk.stores_subpath = walk.observed = true;
+  const StoringListener at{{}, walk, front, subpath, listener, pdf};
   while (walk.length < walk.longest && walk.next_vertex(at)) {
-    if (kept.size() % 64 == 0 && walk.sample.aborted()) return;
+    if (subpath.size() % 64 == 0 && walk.sample.aborted()) return;
     if (walk.vertex.kind == Vertex::Kind::escape && walk.transport == Transport::importance) return;
-    KeptVertex& v = add(walk, density, front, kept);
+    SubpathVertex& v = add(walk, pdf, front, subpath);
     if (v.kind == Vertex::Kind::escape) return;
     const bool chooses = chosen || (v.scatter && v.scatter->has_choice());
     const float choice = chooses ? walk.numbers.next() : (walk.numbers.skip(), 0.0f);
@@ -57,76 +57,77 @@ void grow(Growing& walk, float density, const WalkLimits& limits, std::vector<Ke
     const CameraDirections::Choice way =
         chosen ? chosen->sample(walk, choice, u) : CameraDirections::Choice{walk.sample_direction(choice, u)};
     const auto& next = way.next;
-    if (!next || (v.on_surface() && enters_body(v.point, *next))) return;
+    if (!next || (v.on_surface() && enters_subsurface(v.point, *next))) return;
     walk.leave(*next);
     v.specular = walk.specular;
-    density = v.specular ? 1 : next->density;
+    pdf = v.specular ? 1 : next->pdf;
     // Of the vertex before, had the walk come the other way through this one.
-    float back = v.specular ? 1 : scattering_density(v, next->direction, v.out, adjoint(walk.transport));
-    if (!from_camera && !v.specular) back = camera_density(limits.directions, v, next->direction, v.out, back);
-    KeptVertex& before = kept[kept.size() - 2];
-    before.reverse = vertex_density(back, v, before, v.out, v.chance, front);
+    float back = v.specular ? 1 : scattering_pdf(v, next->direction, v.out, adjoint(walk.transport));
+    if (!from_camera && !v.specular) back = camera_pdf(limits.directions, v, next->direction, v.out, back);
+    SubpathVertex& before = subpath[subpath.size() - 2];
+    before.pdf_reverse = vertex_pdf(back, v, before, v.out, v.mean_transmittance, front);
     more *= way.more;
-    if (!roulette.survives(walk, walk.left() * more)) return;
+    if (!roulette.survives(walk, walk.roulette_weight() * more)) return;
   }
 }
 
 }  // namespace
 
-void keep(const Walk<false>& walk, const KeptVertex& before, float density, const LightFront& front, KeptVertex& v) {
+void store_vertex(const Walk<false>& walk, const SubpathVertex& before, float pdf, const EmissionPlane& front,
+                  SubpathVertex& v) {
   static_cast<Vertex&>(v) = walk.vertex;
   v.infinite = v.kind == Vertex::Kind::escape;
   v.single = walk.sample.wavelengths.single();
   v.throughput = walk.throughput;
-  v.chance = walk.edge.average();
+  v.mean_transmittance = walk.segment_transmittance.average();
   if (v.in_medium())
     v.extinction = v.medium.coefficients(v.point.position, v.point.time, walk.sample.wavelengths).extinction().average();
-  v.forward = vertex_density(density, before, v, walk.ray.direction, v.chance, front);
+  v.pdf_forward = vertex_pdf(pdf, before, v, walk.ray.direction, v.mean_transmittance, front);
 }
 
-float vertex_density(float density, const KeptVertex& a, const KeptVertex& b, const Vector3& direction, float chance,
-                     const LightFront& front) {
-  density *= chance;
-  if (b.infinite || b.kind == Vertex::Kind::escape) return density;
+float vertex_pdf(float pdf, const SubpathVertex& a, const SubpathVertex& b, const Vector3& direction, float mean_transmittance,
+                 const EmissionPlane& front) {
+  pdf *= mean_transmittance;
+  if (b.infinite || b.kind == Vertex::Kind::escape) return pdf;
   if (b.in_medium())
-    density *= b.extinction;
+    pdf *= b.extinction;
   else if (b.point.normal != Normal3{})
-    density *= std::abs(dot(b.point.normal, direction));
-  if (a.parallel) return density;
-  if (a.infinite) return density * front.density(b.point.position, direction);
-  return density / length_squared(b.point.position - a.point.position);
+    pdf *= std::abs(dot(b.point.normal, direction));
+  if (a.parallel) return pdf;
+  if (a.infinite) return pdf * front.pdf(b.point.position, direction);
+  return pdf / length_squared(b.point.position - a.point.position);
 }
 
-float camera_direction_density(const Camera& camera, const Ray& ray) {
-  const CameraDensity density = camera.density(ray);
-  return camera.parallel() ? density.position : density.direction;
+float camera_direction_pdf(const Camera& camera, const Ray& ray) {
+  const CameraPdf pdf = camera.pdf(ray);
+  return camera.parallel() ? pdf.position : pdf.direction;
 }
 
-void walk_from_camera(const RenderContext& context, const Ray& ray, const WalkLimits& limits, SampleContext& sample,
-                      std::vector<KeptVertex>& kept, WalkListener& listener) {
-  kept.clear();
-  KeptVertex& lens = kept.emplace_back();
+void generate_camera_subpath(const RenderContext& context, const Ray& ray, const SubpathLimits& limits, SampleContext& sample,
+                             std::vector<SubpathVertex>& subpath, WalkListener& listener) {
+  subpath.clear();
+  SubpathVertex& lens = subpath.emplace_back();
   lens.kind = Vertex::Kind::camera;
   lens.parallel = context.camera.parallel();
   lens.point.position = context.camera.lens_point(ray);
   lens.point.time = ray.time;
   Growing walk(context.scene, sample, ray, limits.longest);
   if (context.scene.has_interiors()) media_at(context.scene, ray.origin, ray.time, walk.media);
-  grow(walk, camera_direction_density(context.camera, ray), limits, kept, &listener);
+  grow(walk, camera_direction_pdf(context.camera, ray), limits, subpath, &listener);
 }
 
-bool walk_from_luminaire(const Scene& scene, const LightSampler& lights, float time, const WalkLimits& limits,
-                         SampleContext& sample, std::vector<KeptVertex>& kept, EmittedLight& light,
-                         const EmissionTargets* targets, WalkListener* listener) {
-  kept.clear();
+bool generate_light_subpath(const Scene& scene, const LightSampler& lights, float time, const SubpathLimits& limits,
+                            SampleContext& sample, std::vector<SubpathVertex>& subpath, EmittedLight& light,
+                            const ProjectionMap* targets, WalkListener* listener) {
+  subpath.clear();
   const bool leaves = targets ? targets->sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light)
                               : sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light);
   if (!leaves && !light.placed) return false;
-  KeptVertex& first = kept.emplace_back();
+  SubpathVertex& first = subpath.emplace_back();
   first.kind = Vertex::Kind::luminaire;
   first.infinite = light.infinite;
   first.point = light.point;
-  first.forward = light.choice * (light.infinite ? light.direction : light.position);
+  first.pdf_forward = light.choice * (light.infinite ? light.direction : light.position);
   if (!leaves) return false;
   Growing walk(scene, sample, light.ray, limits.longest, Transport::importance, light.throughput());
   if (scene.has_interiors() && !light.infinite) {
@@ -144,30 +145,31 @@ bool walk_from_luminaire(const Scene& scene, const LightSampler& lights, float t
     }
   }
   // From infinity, places in the scene are given by where the ray crosses the disc around it.
-  grow(walk, light.infinite ? 1 : light.direction, limits, kept, listener);
+  grow(walk, light.infinite ? 1 : light.direction, limits, subpath, listener);
   return true;
 }
 
-float begun_density(const LightSampler& lights, const KeptVertex& x1, const KeptVertex& luminaire, const Vector3& direction) {
+float pdf_emission_origin(const LightSampler& lights, const SubpathVertex& x1, const SubpathVertex& luminaire,
+                          const Vector3& direction) {
   const SceneObject& object = *luminaire.point.object;
   const float choice = lights.probability(object);
   if (object.delta()) return choice;
-  return choice * (luminaire.infinite ? object.visible_density(x1.point.position, direction, luminaire.point)
-                                      : object.area_density(luminaire.point));
+  return choice * (luminaire.infinite ? object.visible_pdf(x1.point.position, direction, luminaire.point)
+                                      : object.area_pdf(luminaire.point));
 }
 
-float sampled_density(const LightSampler& lights, const KeptVertex& x1, const KeptVertex& luminaire, const Vector3& direction) {
+float pdf_next_event(const LightSampler& lights, const SubpathVertex& x1, const SubpathVertex& luminaire,
+                     const Vector3& direction) {
   const SceneObject& object = *luminaire.point.object;
   const float choice = lights.probability(x1.point.position, x1.normal(), object);
   if (object.delta() || !(choice > 0)) return choice;
-  const float density = choice * object.visible_density(x1.point.position, direction, luminaire.point);
-  if (luminaire.infinite) return density;
-  return density * std::abs(dot(luminaire.point.normal, direction)) /
-         length_squared(luminaire.point.position - x1.point.position);
+  const float pdf = choice * object.visible_pdf(x1.point.position, direction, luminaire.point);
+  if (luminaire.infinite) return pdf;
+  return pdf * std::abs(dot(luminaire.point.normal, direction)) / length_squared(luminaire.point.position - x1.point.position);
 }
 
-void record_walk(std::vector<PathRecord::Vertex>& vertices, std::span<const KeptVertex> walk) {
-  for (const KeptVertex& w : walk) {
+void record_subpath(std::vector<PathRecord::Vertex>& vertices, std::span<const SubpathVertex> walk) {
+  for (const SubpathVertex& w : walk) {
     PathRecord::Vertex v;
     switch (w.kind) {
       case Vertex::Kind::camera: v.kind = "camera"; break;
@@ -180,7 +182,7 @@ void record_walk(std::vector<PathRecord::Vertex>& vertices, std::span<const Kept
     v.position = w.point.position;
     v.normal = w.point.normal;
     v.throughput = w.throughput;
-    v.density = w.forward;
+    v.pdf = w.pdf_forward;
     if (w.specular) v.lobe = "specular";
     if (w.single) v.note = "the hero wavelength alone";
     vertices.push_back(std::move(v));
@@ -189,21 +191,21 @@ void record_walk(std::vector<PathRecord::Vertex>& vertices, std::span<const Kept
 
 void note_first_surface(const Scene& scene, const Ray& camera_ray, SampleContext& sample) {
   Ray ray = camera_ray;
-  float crossed = 0;
+  float null_crossed_distance = 0;
   Hit hit;
   SurfacePoint point;
   for (int crossings = 0; crossings <= most_crossings && scene.nearest(ray, hit); ++crossings) {
     scene.locate(ray, hit, point);
     const Shader* shader = point.object->shader.get();
-    if (shader && shader->possible_lobes() == pass_through) {
-      crossed += hit.distance;
+    if (shader && shader->possible_lobes() == null_scattering) {
+      null_crossed_distance += hit.distance;
       ray.maximum -= hit.distance;
       ray.origin = point.exit(ray.direction);
       hit = {};
       continue;
     }
     const Scatter* scatter = shader ? bound(*shader, point, sample.wavelengths, sample.arena) : nullptr;
-    sample.observe.first_surface(scene, point, hit, scatter, -ray.direction, sample.wavelengths, crossed);
+    sample.observe.first_surface(scene, point, hit, scatter, -ray.direction, sample.wavelengths, null_crossed_distance);
     return;
   }
 }

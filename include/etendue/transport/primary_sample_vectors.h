@@ -12,9 +12,9 @@ namespace etendue {
 
 /// What another source gave for one sample, kept: asked again it gives the same, also when the other source is gone or has
 /// changed.
-class RecordedNumbers final : public NumberSource {
+class RecordedPrimarySamples final : public NumberSource {
  public:
-  explicit RecordedNumbers(const NumberSource& source) : source_(&source) {}
+  explicit RecordedPrimarySamples(const NumberSource& source) : source_(&source) {}
   /// From now on what was never asked for is 0.5.
   void close() { source_ = nullptr; }
 
@@ -33,11 +33,11 @@ class RecordedNumbers final : public NumberSource {
 /// iterations are moved as often as they were left out, when they are asked for again; where that puts them is part of the
 /// state from then on, whether or not the proposal is accepted. One for each chain, and one thread at a time: asking draws.
 /// SampleKey::sample does not count, so that one key serves the whole chain.
-class MutatedNumbers final : public NumberSource {
+class MutatedPrimarySamples final : public NumberSource {
  public:
-  explicit MutatedNumbers(std::uint64_t seed) : seed_(seed) {}
-  MutatedNumbers(const MutatedNumbers&) = delete;  // it points into itself
-  MutatedNumbers& operator=(const MutatedNumbers&) = delete;
+  explicit MutatedPrimarySamples(std::uint64_t seed) : seed_(seed) {}
+  MutatedPrimarySamples(const MutatedPrimarySamples&) = delete;  // it points into itself
+  MutatedPrimarySamples& operator=(const MutatedPrimarySamples&) = delete;
 
   void large_step() { begin(true, 1); }
   /// `deviation`: the standard deviation of each number. It may differ from step to step, but must not depend on the state.

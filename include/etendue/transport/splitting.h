@@ -12,9 +12,9 @@ namespace etendue {
 ///
 /// Branches of wavelengths take the same numbers. So they stay near each other and bring nearly the same amount of light, and
 /// its colour is that of the n together, not of one; what differs is where they part for good. docs/decisions/004 measures it.
-struct Division {
-  int both_ways = 0;    ///< so many times a walk that met nothing else before is both reflected and refracted
-  int wavelengths = 1;  ///< n; 1: the hero alone (Wavelengths::drop_secondary)
+struct Splitting {
+  int reflect_and_refract = 0;  ///< so many times a walk that met nothing else before is both reflected and refracted
+  int wavelengths = 1;          ///< n; 1: the hero alone (Wavelengths::drop_secondary)
 };
 
 }  // namespace etendue

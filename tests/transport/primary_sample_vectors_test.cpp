@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "etendue/transport/metropolis.h"
-#include "etendue/transport/number_vectors.h"
+#include "etendue/transport/primary_sample_vectors.h"
 
 namespace etendue {
 namespace {
 
-float asked(const MutatedNumbers& numbers, std::uint64_t walk) {
+float asked(const MutatedPrimarySamples& numbers, std::uint64_t walk) {
   SampleKey key;
   key.walk = walk;
   return numbers.number(key, 0);
@@ -19,12 +19,12 @@ float asked(const MutatedNumbers& numbers, std::uint64_t walk) {
 // States of two kinds lie in narrow stripes of one number. Those of the first kind bring 1. The others ask for one number more,
 // of which values within `width` bring 1 / width and all others nothing: either kind brings half of all there is, so a chain
 // is at either half of the time. A chain that leaves for the first kind finds the second number moved when it comes back.
-TEST(MutatedNumbers, StatesThatAskForMoreAreAsLikelyAsTheyShouldBe) {
+TEST(MutatedPrimarySamples, StatesThatAskForMoreAreAsLikelyAsTheyShouldBe) {
   constexpr float width = 0.02f, deviation = 0.05f;
   constexpr int chains = 200, steps = 20000;
   double sum = 0, squares = 0;
   for (int chain = 0; chain < chains; ++chain) {
-    MutatedNumbers numbers(mix_bits(std::uint64_t(chain) + 1));
+    MutatedPrimarySamples numbers(mix_bits(std::uint64_t(chain) + 1));
     ChoiceNumbers choices(mix_bits(std::uint64_t(chain) + 1000));
     bool more = false;
     const auto brought = [&] {

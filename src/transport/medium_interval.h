@@ -1,12 +1,12 @@
 #pragma once
-// Stretch: where along a ray a medium is.
+// MediumInterval: where along a ray a medium is.
 
 #include "etendue/transport/medium.h"
 
 namespace etendue {
 
 /// From `begin` to `end` [m] of the ray; of a medium that the ray passes by, nothing.
-struct Stretch {
+struct MediumInterval {
   float begin = 0, end = 0;
   float length() const { return end - begin; }
   /// The ray from where it comes in.
@@ -19,6 +19,6 @@ struct Stretch {
 
 /// Where a medium is of a ray that something ends at `reach` [m], or nothing (infinity): as far as its object's bounds; of
 /// surroundings that have an end within their sphere alone, wherever the ray begins.
-Stretch stretch_of(const Medium&, const Ray&, float reach);
+MediumInterval medium_interval(const Medium&, const Ray&, float reach);
 
 }  // namespace etendue

@@ -1,0 +1,197 @@
+#include "etendue/transport/bidirectional_subpaths.h"
+
+#include "etendue/transport/light_groups.h"
+#include "etendue/transport/photons.h"
+
+namespace etendue {
+namespace {
+
+bool emitter_can_be_hit(const SubpathVertex& luminaire) { return !luminaire.point.object->delta(); }
+
+std::vector<SubpathVertex>& kept_on_this_thread(int which) {
+  static thread_local std::vector<SubpathVertex> walks[2];
+  walks[which].clear();
+  return walks[which];
+}
+
+}  // namespace
+
+BidirectionalSubpaths::BidirectionalSubpaths(const RenderContext& context, const LightSampler& lights, SampleContext& sample,
+                                             const StrategyWeights& weights)
+    : context_(context),
+      lights_(lights),
+      sample_(sample),
+      weights_(weights),
+      camera_(kept_on_this_thread(0)),
+      light_(kept_on_this_thread(1)),
+      light_wavelengths_(sample.wavelengths),
+      front_(context.scene) {}
+
+void BidirectionalSubpaths::from_camera(const Ray& ray, const SubpathLimits& limits, LightListener& listener) {
+  struct Growing final : WalkListener {
+    const BidirectionalSubpaths& walks;
+    LightListener& listener;
+    Growing(const BidirectionalSubpaths& w, LightListener& l) : walks(w), listener(l) {}
+    void emitted(int length, const Spectrum& light) override { listener.found({0, length + 1, false, light}); }
+    void crossed_luminaire() override { walks.meet(walks.camera_vertices(), listener); }
+  } growing(*this, listener);
+  directions_ = limits.directions;
+  generate_camera_subpath(context_, ray, limits, sample_, camera_, growing);
+}
+
+void BidirectionalSubpaths::from_luminaire(float time, const SubpathLimits& limits) {
+  SampleContext light{light_wavelengths_, sample_.numbers.fork("light"), sample_.arena, {}, nullptr, sample_.abort};
+  EmittedLight emitted;
+  generate_light_subpath(context_.scene, lights_, time, {limits.longest, limits.roulette_depth, directions_}, light, light_,
+                         emitted);
+  if (light_.size() > 1) direct_ = pdf_next_event(lights_, light_[1], light_[0], light_[1].out);
+}
+
+bool BidirectionalSubpaths::has_specular_prefix(int t) const {
+  for (int i = 2; i < t; ++i)
+    if (!camera_vertex(i).specular) return false;
+  return true;
+}
+
+void BidirectionalSubpaths::meet(int t, LightListener& listener) const {
+  const SubpathVertex& z = camera_vertex(t);
+  if (z.kind == Vertex::Kind::escape) {
+    SurfacePoint point;
+    Ray ray;
+    ray.origin = camera_vertex(t - 1).point.position;
+    ray.direction = -z.out;
+    ray.time = camera_[0].point.time;
+    ray.of_camera = t == 2;
+    for (const SceneObject* far : context_.scene.infinite_luminaires(ray)) {
+      far->surface_point(ray, {}, point);
+      meet_at(z, point, t, listener);
+    }
+  } else if (z.on_surface() && z.point.object->luminaire()) {
+    meet_at(z, z.point, t, listener);
+  }
+}
+
+void BidirectionalSubpaths::meet_at(const SubpathVertex& z, const SurfacePoint& point, int t, LightListener& listener) const {
+  PathContribution found{0, t, false, z.throughput * point.object->emission->radiance(point, z.out, sample_.wavelengths),
+                         point.object};
+  if (found.light.black()) return;
+  if (t > 2 && weights_.weighted) {
+    const SubpathVertex& x1 = camera_vertex(t - 1);
+    SubpathVertex x0 = z;
+    x0.point = point;
+    ConnectedPath path{nullptr, 0, camera_.data(), t, 0, 0, 0, 0, 0, 0, true, weights_.merging};
+    path.pdf_emission_origin = path.camera_last_from_light = pdf_emission_origin(lights_, x1, x0, -z.out);
+    path.pdf_next_event = pdf_next_event(lights_, x1, x0, -z.out);
+    path.camera_before_from_light =
+        vertex_pdf(x0.infinite ? 1 : point.object->emission->pdf(point, z.out), x0, x1, z.out, z.mean_transmittance, front_);
+    if (path.pdf_emission_origin > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
+  }
+  listener.found(found);
+}
+
+std::optional<PathContribution> BidirectionalSubpaths::sample_luminaire(int t) const {
+  const SubpathVertex& z = camera_vertex(t);
+  NumberStream numbers = sample_.numbers.fork("luminaire", std::uint32_t(t));
+  const auto c = connect_to_luminaire(context_.scene, lights_, z, sample_.wavelengths, numbers, sample_.arena);
+  if (!c) return {};
+  PathContribution found{1, t, false, c->light, c->luminaire.point.object};
+  if (weights_.weighted) {
+    const SubpathVertex& x0 = c->luminaire;
+    ConnectedPath path{&x0, 1, camera_.data(), t, 0, 0, 0, 0, 0, 0, !c->delta, weights_.merging};
+    path.pdf_emission_origin = pdf_emission_origin(lights_, z, x0, c->direction);
+    path.pdf_next_event = pdf_next_event(lights_, z, x0, c->direction);
+    const float at_z = camera_pdf(directions_, z, z.out, c->direction, c->pdf_at_z);
+    path.light_last_from_camera = vertex_pdf(at_z, z, x0, c->direction, c->mean_transmittance, front_);
+    path.camera_last_from_light = vertex_pdf(c->pdf_at_luminaire, x0, z, -c->direction, c->mean_transmittance, front_);
+    path.camera_before_from_light = before_from(camera_, t, c->direction, Transport::importance);
+    if (path.pdf_emission_origin > 0 && path.pdf_next_event > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
+  }
+  return found;
+}
+
+std::optional<PathContribution> BidirectionalSubpaths::connect(int s, int t) const {
+  const SubpathVertex &y = light_vertex(s), &z = camera_vertex(t);
+  NumberStream numbers = sample_.numbers.fork("connection", std::uint32_t(s * 0x10000 + t));
+  const auto c = etendue::connect(context_.scene, y, z, sample_.wavelengths, numbers, sample_.arena);
+  if (!c) return {};
+  PathContribution found{s, t, false, c->light, light_[0].point.object};
+  if (weights_.weighted) {
+    ConnectedPath path{
+        light_.data(),   s, camera_.data(), t, 0, 0, 0, 0, direct_, light_[0].pdf_forward, emitter_can_be_hit(light_[0]),
+        weights_.merging};
+    const float at_z = camera_pdf(directions_, z, z.out, c->direction, c->pdf_at_z);
+    path.light_last_from_camera = vertex_pdf(at_z, z, y, c->direction, c->mean_transmittance, front_);
+    path.light_before_from_camera = before_from(light_, s, -c->direction, Transport::radiance);
+    path.camera_last_from_light = vertex_pdf(c->pdf_at_y, y, z, -c->direction, c->mean_transmittance, front_);
+    path.camera_before_from_light = before_from(camera_, t, c->direction, Transport::importance);
+    found.weight = bidirectional_weight(path, weights_.heuristic);
+  }
+  return found;
+}
+
+std::optional<PathContribution> BidirectionalSubpaths::connect_to_lens(int s) const {
+  const SubpathVertex& y = light_vertex(s);
+  NumberStream numbers = sample_.numbers.fork("lens", std::uint32_t(s));
+  const auto c = etendue::connect_to_lens(context_, y, light_wavelengths_, numbers, sample_.arena);
+  if (!c) return {};
+  PathContribution found{s, 1, false, c->light, light_[0].point.object, 1, c->lens.film};
+  if (weights_.weighted) {
+    const Vector3& direction = c->lens.direction;
+    ConnectedPath path{
+        light_.data(),   s, &c->camera, 1, 0, 0, 0, 0, direct_, light_[0].pdf_forward, emitter_can_be_hit(light_[0]),
+        weights_.merging};
+    path.light_last_from_camera = vertex_pdf(c->pdf_at_lens, c->camera, y, -direction, c->mean_transmittance, front_);
+    path.light_before_from_camera = before_from(light_, s, direction, Transport::radiance);
+    found.weight = bidirectional_weight(path, weights_.heuristic);
+  }
+  return found;
+}
+
+std::optional<PathContribution> BidirectionalSubpaths::merge(const Photon& photon, int t) const {
+  const SubpathVertex& z = camera_vertex(t);
+  const double merging = z.in_medium() ? weights_.merging.medium : weights_.merging.surface;
+  const Spectrum scattered = scattered_from_photon(z, photon, {sample_.wavelengths, z.single});
+  if (scattered.black()) return {};
+  PathContribution found{int(photon.vertices), t, true, z.throughput * scattered / float(merging), photon.from(context_.scene)};
+  if (weights_.weighted) {
+    ConnectedPath path{nullptr, int(photon.vertices), camera_.data(), t, 0, 0, photon.weight.pdf_forward, 0, 0, 0,
+                       true,    weights_.merging};
+    path.camera_before_from_light = before_from(camera_, t, photon.out, Transport::importance);
+    const float back = camera_pdf(directions_, z, z.out, photon.out, scattering_pdf(z, z.out, photon.out, Transport::radiance));
+    found.weight = merging_weight(path, photon.weight, back, weights_.heuristic);
+  }
+  return found;
+}
+
+float BidirectionalSubpaths::before_from(const std::vector<SubpathVertex>& walk, int count, const Vector3& from,
+                                         Transport transport) const {
+  if (count < 2) return 0;
+  const SubpathVertex &last = walk[size_t(count - 1)], &before = walk[size_t(count - 2)];
+  float pdf = scattering_pdf(last, from, last.out, transport);
+  if (transport == Transport::radiance) pdf = camera_pdf(directions_, last, from, last.out, pdf);
+  return vertex_pdf(pdf, last, before, last.out, last.mean_transmittance, front_);
+}
+
+void BidirectionalSubpaths::record() const {
+  PathRecord* record = sample_.observe.record;
+  if (!record) return;
+  record_subpath(record->vertices, std::span<const SubpathVertex>(camera_).subspan(1));
+  record_subpath(record->light_vertices, light_);
+}
+
+void add_contribution(SampleContext& sample, const Wavelengths& of_light, const PathContribution& found, Spectrum& radiance) {
+  const Spectrum light = found.light * found.weight;
+  const bool splat = found.t == 1;
+  if (splat) {
+    splat_light(sample, found.film, light, of_light, found.length(), found.luminaire);
+  } else {
+    radiance += light;
+    report_light(sample.observe, found.length(), light, found.luminaire);
+  }
+  if (PathRecord* record = sample.observe.record) [[unlikely]]
+    record->contribute({std::to_string(found.s) + " from the luminaire, " + std::to_string(found.t) + " from the camera" +
+                            (found.merged ? ", merged" : ""),
+                        found.length(), found.weight, light, found.film, splat});
+}
+
+}  // namespace etendue
